@@ -311,7 +311,7 @@ def _constraints(mechanism: Mechanism) -> Iterator[str]:
     }
 
     def at_nominal(expression: sp.Basic) -> sp.Basic:
-        return expression.subs({s: values.get(s.name, sp.Integer(0)) for s in expression.free_symbols})
+        return expression.xreplace({s: values.get(s.name, sp.Integer(0)) for s in expression.free_symbols})
 
     for constraint in mechanism.constraints:
         for step in constraint.steps:

@@ -12,6 +12,7 @@ from derive.ir.constants import (
     DEGREE,
 )
 from derive.ir.interpret import Array, evaluate
+from derive.kept import kept_by_identity
 from derive.kinematics.sampling import sample_machine
 
 Values = Mapping[str, Array]
@@ -54,7 +55,7 @@ class Naming:
     def __init__(self, mechanism: Mechanism, values: Values) -> None:
         self._parameters = lengths_of(mechanism)
         self._angles = tuple(p.name for p in mechanism.parameters if p.role is Role.ANGLE)
-        self._machines = [{**values, **_own(mechanism, seed)} for seed in _SEEDS]
+        self._machines = [{**values, **other} for other in _others(mechanism)]
 
     def length(self, measure: Callable[[Values], float]) -> sp.Expr | None:
         """The parameter, or half of it, that equals the length on every machine; else None."""
@@ -91,6 +92,12 @@ class Naming:
             for factor in (sp.Integer(1), sp.Rational(1, 2)):
                 scaled = given * float(factor)
                 yield factor * sp.Symbol(parameter.name), np.abs(scaled) if magnitude else scaled
+
+
+@kept_by_identity(10)
+def _others(mechanism: Mechanism) -> tuple[Values, ...]:
+    """The parameters of other machines."""
+    return tuple(_own(mechanism, seed) for seed in _SEEDS)
 
 
 def _own(mechanism: Mechanism, seed: int) -> dict[str, Array]:

@@ -226,7 +226,8 @@ def _fraction(node: sp.Expr) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
     """The factors of numerator and denominator, with integer powers written out."""
     above: list[sp.Expr] = []
     below: list[sp.Expr] = []
-    for factor in sorted(sp.Mul.make_args(node), key=factor_order):
+    factors = sp.Mul.make_args(node)
+    for factor in sorted(factors, key=factor_order) if len(factors) > 1 else factors:
         base, exponent = factor.as_base_exp()
         if isinstance(factor, sp.Pow):
             side = above if exponent > 0 else below

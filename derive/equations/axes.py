@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import sympy as sp
 
@@ -37,9 +38,15 @@ _CHECK = "inputs must be numbers, and of reasonable size"
 
 def finite(symbols: Sequence[sp.Symbol]) -> tuple[Require, ...]:
     """The condition that every input that is read is a number of reasonable size."""
-    conditions = [sp.Le(sp.Abs(s), LARGEST) for s in symbols]
+    conditions = list(map(_is_reasonable, symbols))
     reason = about_input(Why.NOT_GIVEN, _REASONABLE)
     return (Require(sp.And(*conditions), Status.BAD_INPUT, _CHECK, reason),) if conditions else ()
+
+
+@cache
+def _is_reasonable(symbol: sp.Symbol) -> sp.Basic:
+    """The condition for one of them. Cached: machines share the names of their inputs."""
+    return sp.Le(sp.Abs(symbol), LARGEST)
 
 
 def joint_lets(mechanism: Mechanism) -> tuple[Let, ...]:

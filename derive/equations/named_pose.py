@@ -27,6 +27,7 @@ from derive.ir.symbols import (
     COORDINATE_NAMES,
     real,
 )
+from derive.kept import kept_by_identity
 
 Column = tuple[sp.Expr, sp.Expr, sp.Expr]
 
@@ -41,6 +42,7 @@ class NamedPose:
     screws: tuple[Screw, ...]
 
 
+@kept_by_identity(10)
 def named_pose(mechanism: Mechanism) -> NamedPose:
     """The pose of the chain of a mechanism, composed from its base."""
     assert mechanism.chain is not None

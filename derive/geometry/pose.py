@@ -33,8 +33,9 @@ class Pose:
     screws: tuple[Screw, ...]
 
 
+@cache
 def pose_of(chain: Chain) -> Pose:
-    """The pose of a chain, composed from its base."""
+    """The pose of a chain, composed from its base. Cached: every part of a derivation asks for it."""
     turns: list[Factor] = []
     position = sp.zeros(3, 1)
     screws: list[Screw] = []

@@ -12,7 +12,6 @@ Names, notes and statements are not part of the graph: see `derive.lowering.draf
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -111,7 +110,7 @@ class Graph:
             above.insert(0, self.leaf(number).node)
         if not below and len(above) < 2:
             return Value(above[0], sign) if above else self.leaf(sp.Integer(sign))
-        key = PRODUCT, frozenset(Counter(above).items()), frozenset(Counter(below).items())
+        key = PRODUCT, *(tuple(sorted(node.place for node in side)) for side in (above, below))
         return Value(self._node(key, PRODUCT, tuple(Value(f, 1) for f in above), tuple(below)), sign)
 
     def apply(self, head: type[sp.Basic], arguments: Sequence[Value]) -> Value:

@@ -147,9 +147,8 @@ def _constant(value: float | bool) -> Callable[[Mapping[str, Array]], Array]:
 
 def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array], NDArray[np.object_]]:
     """Outputs and statuses of a program for arrays of inputs; outputs are meaningful where the status is OK."""
-    types = {s.name: s for s in program.inputs}
-    known: dict[str, Array] = {k: _as_declared(v, types.get(k)) for k, v in values.items()}
-    shape = _common_shape(known.values())
+    known = {**values, **{s.name: _as_declared(values[s.name], s) for s in program.inputs if s.name in values}}
+    shape = _common_shape(v.shape if isinstance(v, np.ndarray) else np.shape(v) for v in values.values())
     status = np.full(shape, Status.OK, dtype=object)
     with np.errstate(all="ignore"):
         _execute(program.body, known, status)
@@ -157,9 +156,9 @@ def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array]
     return outputs, status
 
 
-def _common_shape(values: Iterable[Array]) -> tuple[int, ...]:
-    """The shape of what is computed with all of these: at once where they have one shape, apart from plain numbers."""
-    shapes = {value.shape for value in values} - {()}
+def _common_shape(all_shapes: Iterable[tuple[int, ...]]) -> tuple[int, ...]:
+    """The shape of what is computed with values of these: at once where they have one, apart from plain numbers."""
+    shapes = {*all_shapes} - {()}
     return np.broadcast_shapes(*shapes) if len(shapes) > 1 else next(iter(shapes), ())
 
 

@@ -42,6 +42,7 @@ from derive.ir.symbols import (
     ROTATION_ENTRIES,
     called,
     is_decided,
+    names_in,
     symbols_of,
 )
 from derive.ir.verify import RepeatedName, verify
@@ -177,9 +178,11 @@ def needed_for(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[S
 def depending_on(statements: Iterable[Statement], names: Collection[sp.Symbol]) -> dict[sp.Symbol, Let]:
     """The bindings whose values depend on names, by what they bind; bindings of these names are not among them."""
     found: dict[sp.Symbol, Let] = {}
+    depending = set(names)
     for s in statements:
-        if isinstance(s, Let) and s.name not in names and not s.value.free_symbols.isdisjoint((*found, *names)):
+        if isinstance(s, Let) and s.name not in names and not depending.isdisjoint(names_in(s.value)):
             found[s.name] = s
+            depending.add(s.name)
     return found
 
 
@@ -289,18 +292,8 @@ def _with_names(statement: Statement, names: Mapping[sp.Symbol, sp.Expr]) -> Sta
 
 def _varying(program: Program, constants: set[str]) -> list[sp.Symbol]:
     """The names that depend on more than constants."""
-    constant = {let.name for let in program.lets() if _is_constant(let, program, constants)}
+    own, constant = set(program.bound()), set[sp.Symbol]()
+    for let in program.lets():
+        if all(s in constant if s in own else s.name in constants for s in names_in(let.value)):
+            constant.add(let.name)
     return [name for name in program.bound() if name not in constant]
-
-
-def _is_constant(let: Let, program: Program, constants: set[str]) -> bool:
-    """Whether a Let depends on constants alone, directly or by other Lets."""
-    values = {s.name: s.value for s in program.lets()}
-    pending = symbols_of(let.value)
-    while pending:
-        symbol = pending.pop()
-        if symbol in values:
-            pending |= symbols_of(values[symbol])
-        elif symbol.name not in constants:
-            return False
-    return True

@@ -23,7 +23,6 @@ from derive.ir.reason import Reason
 from derive.ir.symbols import (
     PLACE,
     names_in,
-    symbols_of,
 )
 
 
@@ -223,9 +222,9 @@ class Program:
         """Every free symbol that a statement, its reason or an output reads."""
         used: set[sp.Symbol] = set()
         for statement in self.body:
-            used |= reads(statement).union(*map(symbols_of, told(statement)))
+            used |= reads(statement).union(*map(names_in, told(statement)))
         for output in self.outputs:
-            used |= symbols_of(output.value)
+            used |= names_in(output.value)
         return frozenset(used) - set(self.bound())
 
 
@@ -267,6 +266,8 @@ def told(statement: Statement) -> Iterator[sp.Expr]:
 
 def reads(statement: Statement) -> set[sp.Symbol]:
     """The symbols that a statement reads and does not bind itself, without those of its reason."""
+    if isinstance(statement, Let):
+        return set(names_in(statement.value))
     found = set[sp.Symbol]().union(*map(names_in, expressions(statement)))
     if isinstance(statement, Call):
         return found | set(statement.constants)

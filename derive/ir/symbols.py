@@ -23,11 +23,13 @@ def real(name: str) -> sp.Symbol:
     return sp.Symbol(name, real=True)
 
 
+@cache
 def flag(name: str) -> sp.Symbol:
     """The name of what is true or false."""
     return Flag(name)
 
 
+@cache
 def count(name: str) -> sp.Symbol:
     """The name of a whole number: a sign, the number of a turn or of a status, a count of passes."""
     return sp.Symbol(name, integer=True)

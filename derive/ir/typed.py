@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import sympy as sp
 
 from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, Statement
-from derive.ir.types import IllTypedError, Known, Type, angles_of, fits, output_types, type_of
+from derive.ir.types import TURNING, IllTypedError, Known, Type, angles_of, fits, output_types, type_of
 
 
 def check_types(program: Program) -> None:
@@ -21,11 +21,13 @@ def check_types(program: Program) -> None:
 
 def check_statement(statement: Statement, known: Known) -> dict[sp.Symbol, Type]:
     """The names that a statement binds to angles, where some names are; raises `IllTypedError` if it mixes types."""
+    if isinstance(statement, Let):
+        return _check_let(statement, known)
     bound = angles_of(statement, known)
     if isinstance(statement, Iterate):
         _check_loop(statement, known, {**known, **bound})
         return bound
-    for value, wanted in _wanted(statement, bound):
+    for value, wanted in _wanted(statement):
         _check(value, type_of(value, known), wanted)
     if isinstance(statement, Call):
         types = output_types(statement.program)
@@ -39,11 +41,18 @@ def check_statement(statement: Statement, known: Known) -> dict[sp.Symbol, Type]
     return bound
 
 
-def _wanted(statement: Statement, bound: Known) -> Iterator[tuple[sp.Basic, Type]]:
-    """The values of a statement, with the types that they must have. bound: the names that it binds to angles."""
-    if isinstance(statement, Let):
-        yield statement.value, type_of(statement.name, bound)
-    elif isinstance(statement, Require):
+def _check_let(let: Let, known: Known) -> dict[sp.Symbol, Type]:
+    found = type_of(let.value, known)
+    bound = {let.name: found} if found in TURNING else {}
+    wanted = type_of(let.name, bound)
+    if found is not wanted:
+        _check(let.value, found, wanted)
+    return bound
+
+
+def _wanted(statement: Statement) -> Iterator[tuple[sp.Basic, Type]]:
+    """The values of a statement that is no binding, with the types that they must have."""
+    if isinstance(statement, Require):
         yield statement.condition, Type.BOOL
     elif isinstance(statement, Solve):
         yield from ((value, Type.REAL) for value in (*statement.matrix, *statement.right))

@@ -53,14 +53,15 @@ class IllTypedError(Exception):
 Known = Mapping[sp.Symbol, Type]
 """The names that are angles."""
 _NUMBERS = (Type.REAL, Type.INT)
-_TURNING = (Type.ANGLE, Type.HEADING)
+TURNING = (Type.ANGLE, Type.HEADING)
+"""What may be a turn more or less."""
 _NOTHING: Known = {}
 
 
 def type_of(value: sp.Basic, known: Known = _NOTHING) -> Type:
     """The type of an expression, from those of its parts. Raises `IllTypedError`."""
     names = names_in(value)
-    if names.isdisjoint(known):
+    if known.keys().isdisjoint(names):
         return _type_of(value, frozenset())
     return _type_of(value, frozenset((name, known[name]) for name in names if name in known))
 
@@ -85,7 +86,7 @@ def _type_of(value: sp.Basic, angles: frozenset[tuple[sp.Symbol, Type]]) -> Type
 
 def fits(found: Type, wanted: Type) -> bool:
     """Whether a value of one type may be bound to a name of the other: any number is an angle, too."""
-    if wanted in _TURNING:
+    if wanted in TURNING:
         return found in (wanted, Type.REAL, Type.WRITTEN)
     return found is wanted or (found is Type.WRITTEN and wanted in _NUMBERS)
 
@@ -112,7 +113,7 @@ def angles_of(statement: Statement, known: Known) -> dict[sp.Symbol, Type]:
         found = {name: types[name.name] for name in statement.names}
     elif isinstance(statement, FindRoot):
         found = dict(zip(statement.names, output_types(statement.finish).values(), strict=True))
-    return {name: kind for name, kind in found.items() if kind in _TURNING}
+    return {name: kind for name, kind in found.items() if kind in TURNING}
 
 
 def output_types(program: Program) -> dict[str, Type]:
@@ -131,7 +132,7 @@ def _same(value: sp.Basic, found: Sequence[Type], *among: Type) -> Type:
 
 def _turning(value: sp.Basic, found: Sequence[Type]) -> Type | None:
     """The angle type among some parts, if any; all others must be numbers."""
-    kinds = [kind for kind in _TURNING if kind in found]
+    kinds = [kind for kind in TURNING if kind in found]
     return _same(value, [t for t in found if t is not Type.REAL], *kinds) if kinds else None
 
 
@@ -155,7 +156,7 @@ def _product(value: sp.Basic, found: Sequence[Type]) -> Type:
         return Type.HEADING
     if len(factors) == 2 and factors[1][0] == 1 / DEGREE and factors[0][1] is Type.ANGLE:
         return Type.HEADING
-    return factors[0][1] if len(factors) == 1 and factors[0][1] in _TURNING else _numbers(value, found)
+    return factors[0][1] if len(factors) == 1 and factors[0][1] in TURNING else _numbers(value, found)
 
 
 def _power(value: sp.Basic, found: Sequence[Type]) -> Type:

@@ -112,18 +112,25 @@ def _check_loop(program: Program, loop: Iterate, bound: dict[str, sp.Symbol]) ->
 
 
 def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:
-    if not _PORTABLE.match(name):
+    key = _joined(name)
+    if not key:
         raise BrokenProgram(f"{program.name}: {name!r} is not a portable snake_case name")
-    key = name.replace("_", "")  # Structured Text joins the words of a name, and ignores case
     if key in spelled:
         message = f"{program.name}: {name!r} is bound twice (also as {spelled[key]!r})"
         raise RepeatedName(message, name, spelled[key])
     spelled[key] = name
 
 
+@cache
+def _joined(name: str) -> str:
+    """A name as Structured Text has it, which joins its words, and ignores case; empty for one that is not portable."""
+    return name.replace("_", "") if _PORTABLE.match(name) else ""
+
+
 def _check_expression(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol]) -> None:
     for name in names_in(value):
-        if bound.get(name.name) != name:
+        found = bound.get(name.name)
+        if found is not name and found != name:  # the same symbol, nearly always: SymPy compares slowly
             _refuse_name(program, value, bound)
     if strange := _strange_part(value):
         raise BrokenProgram(f"{program.name}: {strange}")

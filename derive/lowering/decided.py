@@ -27,7 +27,7 @@ def decided(program: Program) -> Program:
 
     for statement in program.body:
         changed = rewritten(statement, read)
-        if isinstance(changed, Let) and changed != statement and changed.value.is_Symbol:
+        if isinstance(changed, Let) and changed is not statement and changed.value.is_Symbol:
             known[changed.name] = changed.value
             about.add(changed.name)
             continue

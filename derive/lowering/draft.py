@@ -47,7 +47,7 @@ class Effect:
     def changed(self, change: Callable[[Value], Value]) -> Effect:
         """The same with every value changed."""
         read, told = (tuple((e, change(v)) for e, v in pairs) for pairs in (self.read, self.told))
-        return replace(self, read=read, told=told)
+        return Effect(self.statement, read, told)
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ def changed(draft: Draft, change: Callable[[Value], Value]) -> Draft:
     for node, named in draft.names.items():
         value = change(Value(node, 1))
         if not value.node.is_leaf and value.node not in names:
-            names[value.node] = replace(named, sign=named.sign * value.sign)
+            names[value.node] = named if value.sign > 0 else replace(named, sign=-named.sign)
     items = [_changed(item, change) for item in draft.items]
     return Draft(draft.program, items, tuple(map(change, draft.outputs)), names)
 
@@ -187,20 +187,26 @@ class Rewriting:
 
     def __call__(self, value: Value) -> Value:
         """What becomes of a value."""
-        pending = [value.node]
+        pending = [] if value.node in self._done else [value.node]
         while pending:
             node = pending[-1]
-            missing = () if node in self._done else [n for n in node.read if n not in self._done]
+            if node not in self._done and (known := self.known(node)) is not None:
+                self._done[node] = known
+            missing = [] if node in self._done else [n for n in node.read if n not in self._done]
             pending += missing
             if not missing:
                 pending.pop()
                 if node not in self._done:
-                    self._done[node] = self.rewritten(node, tuple(self._read(p) for p in node.parts))
+                    self._done[node] = self.rewritten(node, tuple([self._read(p) for p in node.parts]))
         return self._read(value)
+
+    def known(self, node: Node) -> Value | None:
+        """What becomes of a node, where that is known without its parts."""
+        return None
 
     def _read(self, value: Value) -> Value:
         done = self._done[value.node]
-        return Value(done.node, done.sign * value.sign)
+        return done if value.sign > 0 else -done
 
     def divisors(self, node: Node) -> list[Value]:
         """The divisors of a product, changed."""
@@ -208,13 +214,12 @@ class Rewriting:
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
         """What becomes of a node, given its changed parts."""
-        divisors = self.divisors(node)
-        if parts == node.parts and all(d == (n, 1) for d, n in zip(divisors, node.divisors, strict=True)):
+        if parts == node.parts and all(self._done[n] == (n, 1) for n in node.divisors):
             return Value(node, 1)
         if node.head is sp.Add:
             return self.graph.sum(parts)
         if node.head is PRODUCT:
-            return self.graph.product(parts, divisors)
+            return self.graph.product(parts, self.divisors(node))
         assert isinstance(node.head, type)
         return self.graph.apply(node.head, parts)
 

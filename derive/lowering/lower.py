@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from derive.ir.graph import Graph, Node, reached
+from derive.ir.graph import Node, reached
 from derive.ir.passes import calling
 from derive.ir.program import Let, Program
 from derive.ir.symbols import Sign
@@ -38,14 +38,14 @@ def lowered(
     reader = Reader()
     graph, constant = reader.graph, Constant(constants)
     drafts = [reader.draft(p) for p in programs]
-    signs = branches or {}
+    signs, gathering = branches or {}, Gathering(graph, constant)
     for place, draft in enumerate(drafts):
         if draft.program.name in signs:  # first what a branch shares with itself, then what branches share
-            drafts[place] = unrolled(_shorter(draft, graph, constant), graph, signs[draft.program.name])
+            drafts[place] = unrolled(_shorter(draft, gathering), graph, signs[draft.program.name])
     if modulo_turns:
         drafts = [changed(draft, Mirrored(graph, _nodes(draft))) for draft in drafts]
         drafts = [changed(draft, Symmetry(graph, [v.node for v in values_of(draft)], draft.names)) for draft in drafts]
-    drafts = [_shorter(draft, graph, constant) for draft in drafts]
+    drafts = [_shorter(draft, gathering) for draft in drafts]
     if inverts:
         drafts = [changed(draft, Dividing(graph, _nodes(draft), constant)) for draft in drafts]
     given = dict(reader.constant(let) for let in known)
@@ -60,10 +60,12 @@ def lowered(
     return tuple(done.values()), lets
 
 
-def _shorter(draft: Draft, graph: Graph, constant: Constant) -> Draft:
-    draft = changed(draft, Gathering(graph, constant))
+def _shorter(draft: Draft, gathering: Gathering) -> Draft:
+    """gathering: of all programs, which share values."""
+    graph, constant = gathering.graph, gathering.constant
+    draft = changed(draft, gathering)
     draft = changed(draft, Factoring(graph, draft.names, constant))
-    draft = changed(draft, Gathering(graph, constant))
+    draft = changed(draft, gathering)
     draft = distributed(collected(draft, graph, constant), graph, constant)
     draft = opened(draft, graph, constant)
     return changed(draft, Sharing(graph, _nodes(draft), constant))

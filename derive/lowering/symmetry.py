@@ -13,7 +13,7 @@ language that computes one side of a choice alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -25,6 +25,8 @@ from derive.lowering.draft import Rewriting
 from derive.lowering.writing import is_condition
 
 _HALF = 180
+_NONE = sp.Integer(0)
+"""No shift: compared by identity, for nearly nothing is shifted."""
 
 
 class Mirrored(Rewriting):
@@ -56,9 +58,11 @@ class Symmetry(Rewriting):
         wanted = (node for node in always & {*named, *turned} if not is_condition(node))
         candidates = sorted(wanted, key=lambda node: (first[node], node.place))
         conditions = {node.parts[0].node for node in always if node.head is Select}
-        found = [_equals(candidates, Assumed(graph, c, counted)) for c in sorted(conditions, key=lambda n: n.place)]
+        always_so, deciding = Assumed(graph, None, counted), _deciding(candidates)
+        assumed = (Assumed(graph, c, counted, (always_so, deciding)) for c in sorted(conditions, key=lambda n: n.place))
+        found = [_equals(candidates, where) for where in assumed]
         found.sort(key=len)  # of several conditions, the one that gives most values
-        everywhere = _equals(candidates, Assumed(graph, None, counted))
+        everywhere = _equals(candidates, always_so)
         self._equals = {node: equal for part in (*found, everywhere) for node, equal in part.items()}
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
@@ -87,39 +91,58 @@ class _Equal:
 class Assumed(Rewriting):
     """Values where a condition holds; what has angles is a value and a shift, a number of half turns."""
 
-    def __init__(self, graph: Graph, condition: Node | None, counted: Iterable[Node]) -> None:
-        """counted: what takes the value of an angle, and may not be a turn more or less."""
+    def __init__(
+        self,
+        graph: Graph,
+        condition: Node | None,
+        counted: Iterable[Node],
+        elsewhere: tuple[Assumed, Mapping[Node, frozenset[Node]]] | None = None,
+    ) -> None:
+        """counted: what takes the value of an angle, and may not be a turn more or less; elsewhere: the values where
+        nothing is assumed, and by node the conditions of the choices in it.
+        """
         super().__init__(graph)
-        self.condition, self._counted = condition, frozenset(counted)
+        self.condition, self._counted, self._elsewhere = condition, frozenset(counted), elsewhere
         self._shifts: dict[Node, sp.Expr] = {}
+
+    def known(self, node: Node) -> Value | None:
+        """The value elsewhere of what the condition does not decide."""
+        if self._elsewhere is None or self.condition in self._elsewhere[1][node]:
+            return None
+        value, shift = self._elsewhere[0](Value(node, 1)), self._elsewhere[0].shift(Value(node, 1))
+        if shift is not _NONE:
+            self._shifts[node] = shift
+        return value
 
     def shift(self, value: Value) -> sp.Expr:
         """What has to be added to the assumed value."""
-        return value.sign * self._shifts.get(value.node, sp.Integer(0))
+        found = self._shifts.get(value.node)
+        return _NONE if found is None else value.sign * found
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
         """The value without its shift."""
         value, shift = self._apart(node, parts)
-        if shift != 0:
+        if shift is not _NONE and shift != 0:
             self._shifts[node] = shift
         return value
 
     def _apart(self, node: Node, parts: tuple[Value, ...]) -> tuple[Value, sp.Expr]:
         shifts = [self.shift(part) for part in node.parts]
+        is_shifted = any(shift is not _NONE for shift in shifts)
         if node.head is Select and node.parts[0].node is self.condition:
             return parts[1], shifts[1]
-        if node.head is Select and not any(shifts):
+        if node.head is Select and not is_shifted:
             sign = next((side.sign for side in parts[1:] if side.node.head != 0), 1)
             sides = (side if side.node.head == 0 else Value(side.node, sign * side.sign) for side in parts[1:])
             value = self.graph.apply(Select, (parts[0], *sides))
-            return Value(value.node, sign * value.sign), sp.Integer(0)
+            return Value(value.node, sign * value.sign), _NONE
         if node.head is Atan2 and node not in self._counted:
             sine, cosine = parts
             value = self.graph.apply(Atan2, (Value(sine.node, 1), Value(cosine.node, 1)))
-            away = _HALF * DEGREE if cosine.sign < 0 else sp.Integer(0)
+            away = _HALF * DEGREE if cosine.sign < 0 else _NONE
             return Value(value.node, value.sign * sine.sign * cosine.sign), away
-        if not any(shifts):
-            return super().rewritten(node, parts), sp.Integer(0)
+        if not is_shifted:
+            return super().rewritten(node, parts), _NONE
         if node.head is SUM:
             return super().rewritten(node, parts), sp.Add(*shifts)
         if node.head is PRODUCT and all(n.is_number or n.head == DEGREE or n in self._shifts for n in node.read):
@@ -130,7 +153,16 @@ class Assumed(Rewriting):
         whole = [
             p if s == 0 else self.graph.sum([p, _number(self.graph, s)]) for p, s in zip(parts, shifts, strict=True)
         ]
-        return super().rewritten(node, tuple(whole)), sp.Integer(0)
+        return super().rewritten(node, tuple(whole)), _NONE
+
+
+def _deciding(starts: Iterable[Node]) -> dict[Node, frozenset[Node]]:
+    """By everything that is read: the conditions of the choices in it."""
+    found: dict[Node, frozenset[Node]] = {}
+    for node in sorted(reached(starts), key=lambda n: n.place):
+        own = (node.parts[0].node,) if node.head is Select else ()
+        found[node] = frozenset(own).union(*(found[n] for n in node.read))
+    return found
 
 
 def _equals(candidates: Iterable[Node], assumed: Assumed) -> dict[Node, _Equal]:

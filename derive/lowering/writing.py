@@ -11,6 +11,7 @@ from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import sympy as sp
+from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
 from derive.ir.graph import ODD, PRODUCT, SUM, Node, Value, reached
@@ -209,6 +210,8 @@ class _Writer:
             and self.text(node.parts[0]).could_extract_minus_sign()
         ):
             return Atan2(self.text(-node.parts[0]), self.text(node.parts[1]))
+        if issubclass(node.head, Relational):
+            return node.head(*map(self.text, node.parts), evaluate=False)  # nothing is left to be decided: see `Graph`
         whole = node.head(*map(self.text, node.parts))
         return -whole if sign < 0 else whole
 

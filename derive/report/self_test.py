@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
-from itertools import product
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from derive.ir.constants import (
     LARGEST,
     SINGULAR,
 )
+from derive.ir.interpret import Array
 from derive.ir.program import (
     Status,
 )
@@ -228,9 +228,10 @@ class _Vectors:
         found = margins(self.machine, self._candidates)
         for row in range(len(found)):
             above, below = np.flatnonzero(found[row] > _REGULAR)[:1], np.flatnonzero(found[row] < -_REGULAR)[:20]
-            for one, other in product(above.tolist(), below.tolist()):
-                axes = self._halved(row, self._candidates[one], self._candidates[other])
-                if axes is not None:
+            if len(above) and len(below):
+                rows = np.array(self._candidates)
+                halved = self._halved(row, np.repeat(rows[above], len(below), axis=0), rows[below])
+                if (axes := next(halved, None)) is not None:
                     yield axes
                     return
 
@@ -246,13 +247,15 @@ class _Vectors:
                 if np.min(found) < _SINGULAR and not np.isnan(found).any():
                     yield axes
 
-    def _halved(self, row: int, first: Reals, second: Reals) -> Reals | None:
-        low, high = np.array(first), np.array(second)
+    def _halved(self, row: int, low: Array, high: Array) -> Iterator[Reals]:
+        """The poses between such pairs of poses where a margin vanishes."""
         for _ in range(60):
             middle = (low + high) / 2.0
-            low, high = (middle, high) if margins(self.machine, [tuple(middle)])[row, 0] > 0.0 else (low, middle)
-        axes = tuple(round(float(v), 6) for v in low)
-        return axes if abs(margins(self.machine, [axes])[row, 0]) < _SINGULAR else None
+            is_above = (margins(self.machine, [tuple(m) for m in middle.tolist()])[row] > 0.0)[:, None]
+            low, high = np.where(is_above, middle, low), np.where(is_above, high, middle)
+        found = [tuple(round(v, 6) for v in axes) for axes in low.tolist()]
+        near = np.abs(margins(self.machine, found)[row]) < _SINGULAR
+        yield from (axes for axes, is_near in zip(found, near, strict=True) if is_near)
 
     def _refusals(self) -> Iterator[Case]:
         """Refusals: a number too large, a pose too far away, no rotation, a tool pointing the opposite way, an invalid

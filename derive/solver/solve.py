@@ -308,12 +308,16 @@ def _candidates(problem: Problem, equations: tuple[Equation, ...], wanted: sp.Sy
     """What the rules find; with a wanted unknown, for that one. A step that gives a cosine alone is worked out only
     where there is no other.
     """
-    found: list[Binding] = []
-    for rules in (_BETTER, RULES):
-        found = [b for rule in rules for b in rule(problem, equations) if wanted is None or wanted in b.unknowns]
-        if not all(b.cosine_alone for b in found):
-            break
+    answers = {rule: tuple(rule(problem, equations)) for rule in _BETTER}
+    found = _of(answers.values(), wanted)
+    if all(b.cosine_alone for b in found):
+        answers[lateral] = tuple(trigonometric(problem, equations))
+        found = _of(answers.values(), wanted)
     return found
+
+
+def _of(answers: Iterable[Sequence[Binding]], wanted: sp.Symbol | None) -> list[Binding]:
+    return [b for answer in answers for b in answer if wanted is None or wanted in b.unknowns]
 
 
 def _best(tiers: Iterable[list[Binding]]) -> Binding | None:

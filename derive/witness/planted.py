@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from derive.ir.interpret import Array, run
 from derive.ir.program import Status
@@ -66,19 +67,29 @@ def _near(
     before = _indicator(closure, part, branch, joint, np.full(len(part), around[0]))
     for low, high in zip(around[:-1], around[1:], strict=True):
         after = _indicator(closure, part, branch, joint, np.full(len(part), high))
-        for k in np.flatnonzero(before * after < 0.0):
-            row = part.take(np.array([k]))
-            ends = [low, high]
-            for _ in range(_HALVED):
-                middle = 0.5 * (ends[0] + ends[1])
-                same = float(_indicator(closure, row, branch, joint, np.array([middle]))[0]) * before[k] > 0.0
-                ends = [middle, ends[1]] if same else [ends[0], middle]
+        turned = np.flatnonzero(before * after < 0.0)
+        for k, value in zip(turned, _vanishing(closure, part, branch, joint, (turned, low, high, before)), strict=True):
             for decade in range(0, _DECADES + 1, 3):
                 axes = part.axes[k].copy()
-                axes[joint] = ends[0] + 10.0**-decade * rng.choice([-1.0, 1.0])
+                axes[joint] = value + 10.0**-decade * rng.choice([-1.0, 1.0])
                 found.append((int(first[k]), axes))
         before = after
     return found
+
+
+def _vanishing(
+    closure: Closure, part: Samples, branch: int, joint: int, between: tuple[NDArray[np.intp], float, float, Array]
+) -> Array:
+    """The value of the joint at which the indicator vanishes. between: for some rows two values on either side, and the
+    indicators at the first.
+    """
+    turned, low, high, before = between
+    first, last = (np.full(len(turned), end) for end in (low, high))
+    for _ in range(_HALVED if len(turned) else 0):
+        middle = 0.5 * (first + last)
+        same = _indicator(closure, part.take(turned), branch, joint, middle) * before[turned] > 0.0
+        first, last = np.where(same, middle, first), np.where(same, last, middle)
+    return first
 
 
 def _indicator(closure: Closure, samples: Samples, branch: int, joint: int, value: Array) -> Array:

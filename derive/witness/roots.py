@@ -51,11 +51,12 @@ class Problem:
     def residual(self, unknowns: Array) -> Array:
         """Φ, and the distances of the joints that are not solved for from their values."""
         phi = self.weights * self.closure.residual(unknowns * self.units, self.pose, self.parameters)[:, :, 0]
-        return np.concatenate([phi, self._off(unknowns)[:, ~self.closure.solved]], axis=1)
+        return np.concatenate([phi, self._off(unknowns)], axis=1)
 
     def _off(self, unknowns: Array) -> Array:
-        off = unknowns - self.held
-        return np.where(self.angles, (off + np.pi) % (2 * np.pi) - np.pi, off)
+        kept = ~self.closure.solved  # most machines solve for all of them
+        off = (unknowns - self.held)[:, kept]
+        return np.where(self.angles[kept], (off + np.pi) % (2 * np.pi) - np.pi, off)
 
     def slopes(self, unknowns: Array) -> Array:
         """∂Φ by the unknowns."""

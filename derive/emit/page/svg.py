@@ -16,10 +16,10 @@ from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
 from matplotlib.figure import Figure
 
 from derive.emit.picture import style
-from derive.emit.picture.ink import Area, Line, Mark, Spot, Text
+from derive.emit.picture.ink import Mark
+from derive.emit.picture.vector import ALIKE, elements
 from derive.report.workspace_map import Slice
 
-_FAMILY = "DejaVu Sans, Verdana, sans-serif"
 _SETTINGS: Any = {
     "svg.fonttype": "none",
     "svg.hashsalt": "softkin",
@@ -36,43 +36,11 @@ _LEAST = 1e-3
 
 def drawn(marks: Iterable[Mark], width: float, height: float, title: str) -> Markup:
     """Marks as one element, in their order."""
-    inside = "".join(_element(mark, height) for mark in marks)
+    inside = "".join(elements(marks, height))
     return Markup(
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" role="img" '
-        f'font-family="{_FAMILY}"><title>{escape(title)}</title>{inside}</svg>'
+        f"{ALIKE}><title>{escape(title)}</title>{inside}</svg>"
     )
-
-
-def _element(mark: Mark, height: float) -> str:
-    if isinstance(mark, Line):
-        dashes = f' stroke-dasharray="{" ".join(f"{d:g}" for d in mark.dashes)}"' if mark.dashes else ""
-        return (
-            f'<polyline points="{_points(mark.points, height)}" fill="none" stroke="{mark.colour}" '
-            f'stroke-width="{mark.width:g}" stroke-linejoin="round" stroke-linecap="round"{dashes}/>'
-        )
-    if isinstance(mark, Area):
-        return (
-            f'<polygon points="{_points(mark.points, height)}" fill="{mark.fill}" stroke="{mark.edge}" '
-            f'stroke-width="{mark.width:g}" stroke-linejoin="round"/>'
-        )
-    return _letters(mark, height)
-
-
-def _letters(mark: Text, height: float) -> str:
-    x, y = mark.at
-    anchor = "" if mark.is_left else ' text-anchor="middle"'
-    weight = ' font-weight="bold"' if mark.is_bold else ""
-    halo = f' paint-order="stroke" stroke="{style.PAPER}" stroke-width="3"' if mark.has_ground else ""
-    # The middle of small letters: not every viewer knows dominant-baseline.
-    down = height - y + 0.35 * mark.size
-    return (
-        f'<text x="{x:g}" y="{down:.5g}" font-size="{mark.size:g}" fill="{mark.colour}"{anchor}{weight}{halo}>'
-        f"{escape(mark.text)}</text>"
-    )
-
-
-def _points(points: Iterable[Spot], height: float) -> str:
-    return " ".join(f"{x:g},{round(height - y, 1):g}" for x, y in points)
 
 
 def mapped(found: Slice, title: str) -> Markup:

@@ -1,44 +1,42 @@
-"""Marks as PNG and SVG, by matplotlib. The same marks give the same bytes: no date, a fixed font, a fixed hash salt."""
+"""Marks as PNG, by the renderer of matplotlib, and as SVG. The same marks give the same bytes."""
 
 from __future__ import annotations
 
 import io
-import re
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import matplotlib
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.figure import Figure
-from matplotlib.ft2font import FT2Font
-from matplotlib.lines import Line2D
-from matplotlib.patches import Polygon
-from matplotlib.text import Text as Letters
+import numpy as np
+from matplotlib.backend_bases import GraphicsContextBase
+from matplotlib.backends.backend_agg import RendererAgg
+from matplotlib.colors import to_rgb
+from matplotlib.ft2font import FT2Font, LoadFlags
+from matplotlib.path import Path as Outline
+from matplotlib.transforms import IdentityTransform
+from numpy.typing import NDArray
 from PIL import Image
 
 from derive.emit.picture import style
-from derive.emit.picture.ink import Area, Line, Mark, Text
+from derive.emit.picture.ink import Area, Mark, Spot, Text
+from derive.emit.picture.vector import MIDDLE, svg
 
 WIDTH = 900
 _DOTS = 72
 """Pixels in an inch: a pixel is then a point, and both formats have the same coordinates."""
-_FAMILY = b"font-family: 'DejaVu Sans'"
-_FAMILIES = _FAMILY + b", Verdana, sans-serif"
-"""A viewer that lacks the font takes one of the same width."""
-_UNREAD = re.compile(rb' id="(?:line2d|patch|text|figure)_\d+"|<!--.*?-->\n?|(?<=\n) +')
-"""What no viewer reads: names of marks that nothing refers to, comments, and spaces at the beginning of lines."""
-_COLOURS = 128
-_SETTINGS: Any = {
-    "svg.fonttype": "none",  # text stays text
-    "svg.hashsalt": "softkin",
-    "font.family": "DejaVu Sans",
-    "path.simplify": False,
-    "text.hinting": "none",
-}
+_PART = 64
+"""A pixel in the units of a font."""
+_GROUND = 0.82
+"""How much of what is below it the ground of a text covers."""
+_SHADES = 8
+"""Steps from the colour of a mark to that of the paper, for the pixels that the mark covers in part."""
+Bytes = NDArray[np.uint8]
+_RENDERER: Any = RendererAgg
+"""matplotlib types it in part."""
 
 
 @dataclass(frozen=True)
@@ -49,65 +47,131 @@ class Pictures:
     svg: bytes
 
 
-def pictures(marks: Iterable[Mark], height: int) -> Pictures:
+def pictures(marks: Sequence[Mark], height: int) -> Pictures:
     """The pictures of the marks, drawn in their order on a page of WIDTH × height pixels."""
-    with matplotlib.rc_context(_SETTINGS):
-        figure = Figure(figsize=(WIDTH / _DOTS, height / _DOTS), dpi=_DOTS, facecolor=style.PAPER)
-        for order, mark in enumerate(marks):
-            figure.add_artist(_artist(mark, order))
-        return Pictures(_png(figure), _svg(figure))
+    return Pictures(_png(marks, height), svg(marks, WIDTH, height))
 
 
-def _artist(mark: Mark, order: int) -> Any:
-    if isinstance(mark, Line):
-        columns = list(zip(*mark.points, strict=True))
-        dashes: dict[str, Any] = {"dashes": tuple(d / mark.width for d in mark.dashes)} if mark.dashes else {}
-        return Line2D(
-            *columns, color=mark.colour, linewidth=mark.width, zorder=order, transform=None,
-            solid_capstyle="round", solid_joinstyle="round", dash_capstyle="butt", **dashes,
-        )  # fmt: skip
-    if isinstance(mark, Area):
-        return Polygon(
-            mark.points, closed=True, facecolor=mark.fill, edgecolor=mark.edge, linewidth=mark.width, zorder=order,
-            transform=None, joinstyle="round",
-        )  # fmt: skip
-    return _text(mark, order)
-
-
-def _text(mark: Text, order: int) -> Any:
-    ground = {"facecolor": style.PAPER, "edgecolor": "none", "pad": 0.8, "alpha": 0.82} if mark.has_ground else None
-    return Letters(
-        *mark.at, mark.text, fontsize=mark.size, color=mark.colour, zorder=order, transform=None, parse_math=False,
-        horizontalalignment="left" if mark.is_left else "center", verticalalignment="center_baseline",
-        fontweight="bold" if mark.is_bold else "normal", bbox=ground,
-    )  # fmt: skip
-
-
-def _png(figure: Figure) -> bytes:
-    canvas: Any = FigureCanvasAgg(figure)  # matplotlib types its canvases in part
-    canvas.draw()
-    image = Image.frombuffer("RGBA", canvas.get_width_height(), canvas.buffer_rgba(), "raw", "RGBA", 0, 1)
-    few = image.convert("RGB").quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+def _png(marks: Sequence[Mark], height: int) -> bytes:
+    page = _Page(height)
+    for mark in marks:
+        page.draw(mark)
+    picture = _in_colours(page.pixels, _palette(marks))
     file = io.BytesIO()
-    few.save(file, format="PNG", compress_level=6)  # the last percent takes ten times as long
+    picture.save(file, format="PNG", compress_level=6)  # the last percent takes ten times as long
     return file.getvalue()
 
 
-def _svg(figure: Figure) -> bytes:
-    file = io.BytesIO()
-    nothing = {"Date": None, "Creator": None, "Format": None, "Type": None}
-    canvas: Any = FigureCanvasSVG(figure)
-    canvas.print_svg(file, metadata=nothing)
-    return _UNREAD.sub(b"", file.getvalue()).replace(_FAMILY, _FAMILIES)
+class _Page:
+    """A page on which matplotlib draws. Its renderer is asked without figures and artists, which take most of the time
+    of a drawing.
+    """
+
+    def __init__(self, height: int) -> None:
+        self._renderer = _RENDERER(WIDTH, height, _DOTS)
+        self._fill(((0.0, 0.0), (WIDTH, 0.0), (WIDTH, height), (0.0, height)))
+
+    @property
+    def pixels(self) -> Bytes:
+        """Its pixels: rows from above, columns, and four bytes, red first."""
+        return np.asarray(self._renderer.buffer_rgba())
+
+    def draw(self, mark: Mark) -> None:
+        """Draw a mark over those before."""
+        if isinstance(mark, Text):
+            self._write(mark)
+            return
+        pen: Any = GraphicsContextBase()
+        pen.set_linewidth(mark.width)
+        pen.set_joinstyle("round")
+        if isinstance(mark, Area):
+            pen.set_foreground(mark.edge)
+            self._outline(pen, (*mark.points, mark.points[0]), to_rgb(mark.fill))
+            return
+        pen.set_foreground(mark.colour)
+        pen.set_capstyle("butt" if mark.dashes else "round")
+        if mark.dashes:
+            pen.set_dashes(0.0, mark.dashes)
+        self._outline(pen, mark.points)
+
+    def _write(self, text: Text) -> None:
+        letters, size = _letters(text.text, text.size, text.is_bold), text.size
+        left, base = text.at[0] - (0.0 if text.is_left else letters.width / 2), text.at[1] - MIDDLE * size
+        if text.has_ground:
+            right, low, high = left + letters.width + 1.0, base - 0.25 * size, base + 0.8 * size
+            self._fill(((left - 1.0, low), (right, low), (right, high), (left - 1.0, high)), _GROUND)
+        image = np.empty((*letters.covered.shape, 4), dtype=np.uint8)
+        image[:, :, :3], image[:, :, 3] = _bytes_of(text.colour), letters.covered
+        self._renderer.draw_image(GraphicsContextBase(), round(left + letters.aside), round(base) + letters.up, image)
+
+    def _fill(self, corners: Sequence[Spot], share: float = 1.0) -> None:
+        """Cover an area with paper."""
+        pen: Any = GraphicsContextBase()
+        pen.set_linewidth(0.0)
+        pen.set_alpha(share)
+        self._outline(pen, (*corners, corners[0]), to_rgb(style.PAPER))
+
+    def _outline(self, pen: Any, points: Sequence[Spot], fill: tuple[float, float, float] | None = None) -> None:
+        self._renderer.draw_path(pen, Outline(points, closed=fill is not None), IdentityTransform(), fill)
+
+
+def _palette(marks: Iterable[Mark]) -> Bytes:
+    """The colours of a picture: that of the paper, and those of the marks in steps to it."""
+    found = (c for m in marks for c in ((m.fill, m.edge) if isinstance(m, Area) else (m.colour,)))
+    colours = np.array([_bytes_of(colour) for colour in dict.fromkeys(found)])
+    paper = np.array(_bytes_of(style.PAPER))
+    steps = [paper + (colours - paper) * (step / _SHADES) for step in range(1, _SHADES + 1)]
+    return np.round(np.vstack([paper[None], *steps])).astype(np.uint8)
+
+
+def _in_colours(pixels: Bytes, palette: Bytes) -> Image.Image:
+    """The picture with every pixel in the nearest of these colours, the first of which is that of most pixels."""
+    whole = np.ascontiguousarray(pixels).view(np.uint32)[:, :, 0]
+    is_drawn = whole != whole[0, 0]
+    found, places = np.unique(whole[is_drawn], return_inverse=True)
+    colours, known = (table[:, :3].astype(float) for table in (found.view(np.uint8).reshape(-1, 4), palette))
+    nearest = np.argmin(np.sum(known**2, axis=1) - 2.0 * colours @ known.T, axis=1)
+    numbers = np.zeros(whole.shape, dtype=np.uint8)
+    numbers[is_drawn] = nearest[places]
+    picture = Image.fromarray(numbers, "P")
+    picture.putpalette(palette.tobytes())
+    return picture
 
 
 @cache
+def _bytes_of(colour: str) -> tuple[int, int, int]:
+    """`#22272e` as numbers up to 255."""
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+
+
 def text_width(text: str, size: float, is_bold: bool = False) -> float:
     """The width of a text in pixels."""
+    return _letters(text, size, is_bold).width
+
+
+@dataclass(frozen=True)
+class _Letters:
+    """A text as pixels."""
+
+    width: float
+    covered: Bytes
+    """How much of each pixel it covers, in rows from below."""
+    aside: float
+    """Where the first column is, from the begin of its line; `up` is where the first row is."""
+    up: int
+
+
+@cache
+def _letters(text: str, size: float, is_bold: bool) -> _Letters:
+    """A text as pixels. Cached: machines share texts."""
     font = _font(is_bold)
     font.set_size(size, _DOTS)
-    font.set_text(text, 0.0)
-    return float(font.get_width_height()[0]) / 64.0
+    font.set_text(text, 0.0, flags=LoadFlags.NO_HINTING)
+    font.draw_glyphs_to_bitmap(antialiased=True)
+    width, height = font.get_width_height()
+    covered = np.array(font.get_image())[::-1]
+    top = math.ceil((height - font.get_descent()) / _PART)
+    return _Letters(width / _PART, covered, font.get_bitmap_offset()[0] / _PART, top - len(covered))
 
 
 @cache

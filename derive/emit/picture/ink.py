@@ -55,8 +55,8 @@ Mark = Line | Area | Text
 
 def spot(point: Iterable[float]) -> Spot:
     """A point of the page."""
-    x, y = (round(float(v), _DECIMALS) + 0.0 for v in point)
-    return (x, y)
+    x, y = point
+    return round(float(x), _DECIMALS) + 0.0, round(float(y), _DECIMALS) + 0.0
 
 
 def line(points: Iterable[Iterable[float]], colour: str, width: float, dashes: tuple[float, ...] = ()) -> Line:

@@ -98,36 +98,33 @@ def _lines(start: Vector, end: Vector, wide: float) -> list[Place]:
     along = (end - start) / float(np.linalg.norm(end - start))
     across = np.array([-along[1], along[0]])
     covering = _SECOND if abs(along[0]) * np.linalg.norm(end - start) < wide and abs(along[0]) > 0.5 else 0.0
-    found = []
+    found, ends = [], np.array([start, end])
     for distance in (24.0, -24.0, 38.0, -38.0, 54.0, -54.0, 72.0, -72.0):
         aside = distance * across
         for part in (0.5, 0.35, 0.65, 0.2, 0.8):
             at = start + part * (end - start) + aside
-            if part != 0.5 and min(_gap(at, tip + aside, wide) for tip in (start, end)) < _FREE:
+            if part != 0.5 and _gap(at, ends + aside, wide) < _FREE:
                 continue  # the text would hide an end of its line
             cost = 0.35 * abs(distance) + 40.0 * abs(part - 0.5) + covering
             found.append(Place(at, cost, _measured(start, end, aside)))
     return found
 
 
-def _gap(at: Vector, point: Vector, wide: float) -> float:
-    """How far a point is outside of a text that stands at a place; negative inside of it."""
-    across, up = np.abs(point - at) - np.array([wide / 2, 0.7 * style.LABEL])
-    return float(max(across, up))
+def _gap(at: Vector, points: Vector, wide: float) -> float:
+    """How far the nearest of some points is outside of a text that stands at a place; negative inside of it."""
+    return float(np.min(np.max(np.abs(points - at) - np.array([wide / 2, 0.7 * style.LABEL]), axis=1)))
 
 
 def _leaders(start: Vector, end: Vector, wide: float, is_second: bool) -> list[Place]:
     """Places with a leader: the only ones of a short length, the second choice of another."""
     middle = (start + end) / 2
+    line_of_length, dot = line([start, end], style.INK, 2.0), line([middle, middle + 0.1], style.INK, 5.0)
+    points = start + np.linspace(0, 1, 9)[:, None] * (end - start)
     found = []
     for place in around(middle, (26.0, 40.0, 58.0, 80.0, 104.0)):
-        marks = (
-            line([start, end], style.INK, 2.0),
-            line([middle, place.at], style.FAINT, 0.9),
-            line([middle, middle + 0.1], style.INK, 5.0),
-        )
+        marks = (line_of_length, line([middle, place.at], style.FAINT, 0.9), dot)
         at = place.at + _aside(place.at, middle, 0.45 * wide)
-        covering = _SECOND * any(_gap(at, start + part * (end - start), wide) < 2.0 for part in np.linspace(0, 1, 9))
+        covering = _SECOND * (_gap(at, points, wide) < 2.0)
         found.append(Place(at, 0.3 * place.cost + _SECOND * is_second + covering, marks))
     return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.emit.picture.canvas import text_width
-from derive.emit.picture.ink import Area, Line, Mark, Text, Vector, spot
+from derive.emit.picture.ink import Area, Line, Mark, Spot, Text, Vector, spot
 from derive.emit.picture.view import Box
 
 _STEP = 5.0
@@ -19,8 +20,12 @@ _OVER_TEXT, _ANY_TEXT, _OVER_INK, _THROUGH, _ON_LINE, _OUTSIDE = 3.0, 400.0, 3.0
 label's line through another label and along or across another label's line, and of a place outside the page."""
 _ROUNDS = 8
 """How often all labels are placed again."""
-
-Extent = tuple[float, float, float, float]
+_ROWS = 1 << 12
+"""More than the page has rows or columns of cells."""
+_NOWHERE = np.zeros((0, 2))
+_AROUND = np.array([(np.cos(angle), np.sin(angle)) for angle in np.arange(0.0, 2 * np.pi, np.pi / 8)])
+_WIDER = np.array([1.35, 1.0])
+"""Texts are wider than high, and so is what is around a point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,13 +53,28 @@ class _Label:
     @cached_property
     def extents(self) -> Vector:
         """The extent of its text at every place: an array of shape (places, 4)."""
-        return np.array([_extent(self.at(place)) for place in self.places])
+        wide, high = text_width(self.text, self.size, self.is_bold) + 5.0, 1.3 * self.size
+        centres = np.array([spot(place.at) for place in self.places])
+        corner = centres - np.array([wide, high]) / 2
+        return np.hstack([corner, corner + np.array([wide, high])])
+
+    @cached_property
+    def lines(self) -> tuple[Vector, ...]:
+        """The points of its lines at each place."""
+        return tuple(_points(place.marks) for place in self.places)
 
     @cached_property
     def ink(self) -> tuple[Vector, NDArray[np.intp]]:
         """The points of its lines at all places, and of which place each of them is."""
-        points = [_ink_of(place) for place in self.places]
-        return np.vstack(points), np.repeat(np.arange(len(points)), [len(p) for p in points])
+        return np.vstack(self.lines), np.repeat(np.arange(len(self.lines)), [len(points) for points in self.lines])
+
+    @cached_property
+    def cells(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The numbers of the cells of the page that its lines go through, and at which place each of them does."""
+        points, owners = self.ink
+        columns, rows = (points // _STEP).astype(np.int64).T
+        places, cells = np.divmod(np.unique((owners * _ROWS + rows) * _ROWS + columns), _ROWS**2)
+        return cells, places
 
 
 @dataclass
@@ -68,11 +88,9 @@ class Sheet:
 
     def draw(self, marks: Iterable[Mark]) -> None:
         """Add marks, which labels avoid."""
-        ink = [self._ink]
-        for mark in marks:
-            self.marks.append(mark)
-            ink.append(_sampled(mark))
-        self._ink = np.vstack(ink)
+        drawn = list(marks)
+        self.marks += drawn
+        self._ink = np.vstack([self._ink, _points(drawn)])
 
     def label(self, text: str, size: float, colour: str, places: Sequence[Place], *, is_bold: bool = False) -> None:
         """Ask for a label at the best of its places."""
@@ -81,27 +99,30 @@ class Sheet:
     def settled(self) -> list[Mark]:
         """All marks. Each label in turn takes its best place beside the others, until all of them keep theirs."""
         fixed = [self._own_costs(label) for label in self._labels]
-        chosen: list[Place] = []
+        chosen: list[int] = []
         for k, label in enumerate(self._labels):
             chosen.append(self._best(label, fixed[k], list(zip(self._labels, chosen, strict=False))))
         kept = 0
         for k, label in [*enumerate(self._labels)] * _ROUNDS:
             others = [pair for i, pair in enumerate(zip(self._labels, chosen, strict=True)) if i != k]
             best = self._best(label, fixed[k], others)
-            kept = kept + 1 if best is chosen[k] else 1
+            kept = kept + 1 if best == chosen[k] else 1
             chosen[k] = best
             if kept == len(chosen):  # each has its best place beside the others as they are
                 break
-        lines = [mark for place in chosen for mark in place.marks]
-        texts = [label.at(place) for label, place in zip(self._labels, chosen, strict=True)]
-        return [*self.marks, *lines, *texts]
+        places = [label.places[place] for label, place in zip(self._labels, chosen, strict=True)]
+        texts = [label.at(place) for label, place in zip(self._labels, places, strict=True)]
+        return [*self.marks, *(mark for place in places for mark in place.marks), *texts]
 
-    def _best(self, label: _Label, fixed: Vector, others: Sequence[tuple[_Label, Place]]) -> Place:
-        """The place of the least cost; among equals, the first."""
-        cells = frozenset().union(*(_cells_of(place) for _, place in others))
-        met = np.array([len(_cells_of(place) & cells) for place in label.places])
-        costs = fixed + sum(_beside(label, other, place) for other, place in others) + _ON_LINE * met
-        return label.places[int(np.argmin(np.round(costs, 3)))]
+    def _best(self, label: _Label, fixed: Vector, others: Sequence[tuple[_Label, int]]) -> int:
+        """The number of the place of the least cost; among equals, the first."""
+        costs = fixed + _beside(label, others) if others else fixed
+        cells, places = label.cells
+        if len(cells):
+            taken = [other.cells[0][other.cells[1] == place] for other, place in others if len(other.cells[0])]
+            met = np.isin(cells, np.concatenate([np.zeros(0, dtype=np.int64), *taken]))
+            costs = costs + _ON_LINE * np.bincount(places[met], minlength=len(label.places))
+        return int(np.argmin(np.round(costs, 3)))
 
     def _own_costs(self, label: _Label) -> Vector:
         """The cost of every place without other labels."""
@@ -111,47 +132,30 @@ class Sheet:
         return np.asarray([place.cost for place in label.places] + _OUTSIDE * outside + _OVER_INK * covered)
 
 
-@cache
-def _beside(label: _Label, other: _Label, place: Place) -> Vector:
-    """The cost of every place of a label beside another label at a place: of text on text, and of lines of the one
+def _beside(label: _Label, others: Sequence[tuple[_Label, int]]) -> Vector:
+    """The cost of every place of a label beside others at their places: of text on text, and of lines of the one
     through the text of the other.
     """
-    extent = np.array([_extent(other.at(place))])
-    wide = np.minimum(label.extents[:, 2], extent[:, 2]) - np.maximum(label.extents[:, 0], extent[:, 0])
-    high = np.minimum(label.extents[:, 3], extent[:, 3]) - np.maximum(label.extents[:, 1], extent[:, 1])
+    own, extents = label.extents[:, None], np.array([other.extents[place] for other, place in others])
+    wide = np.minimum(own[:, :, 2], extents[:, 2]) - np.maximum(own[:, :, 0], extents[:, 0])
+    high = np.minimum(own[:, :, 3], extents[:, 3]) - np.maximum(own[:, :, 1], extents[:, 1])
     covered = np.where((wide > 0) & (high > 0), wide * high, 0.0)
+    lines = np.vstack([other.lines[place] for other, place in others])
+    through = np.count_nonzero(_inside(lines, label.extents), axis=1)
     points, owners = label.ink
-    through = np.bincount(owners[_inside(points, extent)[0]], minlength=len(label.places))
-    through += np.count_nonzero(_inside(_ink_of(place), label.extents), axis=1)
-    return np.asarray(_OVER_TEXT * covered + _ANY_TEXT * (covered > 0) + _THROUGH * through)
-
-
-@cache
-def _cells_of(place: Place) -> frozenset[tuple[int, int]]:
-    return frozenset((x, y) for x, y in (_ink_of(place) // _STEP).astype(int).tolist())
-
-
-@cache
-def _ink_of(place: Place) -> Vector:
-    return np.vstack([np.zeros((0, 2)), *map(_sampled, place.marks)])
+    _, hit = np.nonzero(_inside(points, extents))
+    through += np.bincount(owners[hit], minlength=len(through))
+    return np.asarray(np.sum(_OVER_TEXT * covered + _ANY_TEXT * (covered > 0), axis=1) + _THROUGH * through)
 
 
 def around(at: Vector, distances: Sequence[float], *, toward: Vector | None = None) -> list[Place]:
     """Places around a point, preferably in a direction."""
-    found = []
-    for distance in distances:
-        for angle in np.arange(0.0, 2 * np.pi, np.pi / 8):
-            direction = np.array([np.cos(angle), np.sin(angle)])
-            away = 0.0 if toward is None else 12.0 * (1.0 - float(direction @ toward))
-            found.append(Place(at + distance * direction * np.array([1.35, 1.0]), 0.25 * distance + away))
-    return found
-
-
-def _extent(text: Text) -> Extent:
-    wide, high = text_width(text.text, text.size, text.is_bold) + 5.0, 1.3 * text.size
-    x, y = text.at
-    left = x if text.is_left else x - wide / 2
-    return left, y - high / 2, left + wide, y + high / 2
+    away = np.zeros(len(_AROUND)) if toward is None else 12.0 * (1.0 - _AROUND @ toward)
+    return [
+        Place(at + distance * direction * _WIDER, 0.25 * distance + float(further))
+        for distance in distances
+        for direction, further in zip(_AROUND, away, strict=True)
+    ]
 
 
 def _inside(points: Vector, extents: Vector) -> NDArray[np.bool_]:
@@ -161,19 +165,20 @@ def _inside(points: Vector, extents: Vector) -> NDArray[np.bool_]:
     return np.asarray((x > left) & (x < right) & (y > bottom) & (y < top))
 
 
+def _points(marks: Iterable[Mark]) -> Vector:
+    """Points along lines, and along the edges of areas."""
+    found = [point for mark in marks for point in _sampled(mark)]
+    return np.array(found) if found else _NOWHERE
+
+
 @cache
-def _sampled(mark: Mark) -> Vector:
+def _sampled(mark: Mark) -> tuple[Spot, ...]:
     """Points along a line, or along the edge of an area."""
     if isinstance(mark, Text):
-        return np.zeros((0, 2))
-    points = [np.array(p) for p in mark.points]
-    if isinstance(mark, Area):
-        points.append(points[0])
-    weight = 2 if isinstance(mark, Line) and mark.width > 4.0 else 1
-    found = [points[0][None]]
-    for a, b in zip(points, points[1:], strict=False):
-        count = max(1, int(np.linalg.norm(b - a) / _STEP))
-        found.append(a + (b - a) * np.arange(1, count + 1)[:, None] / count)
-    samples = np.vstack(found * weight)
-    samples.setflags(write=False)
-    return samples
+        return ()
+    ends = (*mark.points, mark.points[0]) if isinstance(mark, Area) else mark.points
+    found = [ends[0]]
+    for (x, y), (u, v) in zip(ends, ends[1:], strict=False):
+        count = max(1, int(math.hypot(u - x, v - y) / _STEP))
+        found += [(x + (u - x) * k / count, y + (v - y) * k / count) for k in range(1, count + 1)]
+    return tuple(found) * (2 if isinstance(mark, Line) and mark.width > 4.0 else 1)

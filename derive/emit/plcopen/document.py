@@ -6,6 +6,7 @@ for which the standard has no element stands in `addData`, in the elements that 
 
 from __future__ import annotations
 
+import re
 import uuid
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
@@ -20,6 +21,7 @@ from derive.emit.plcopen.interface import (
     add_variables,
 )
 from derive.emit.plcopen.objects import Object
+from derive.kept import kept_by_identity
 
 Folders = Mapping[str, Sequence[Object]]
 """The objects by the folder that holds them."""
@@ -30,6 +32,11 @@ _DATE = "2000-01-01T00:00:00"
 """The schema requires a date. It is constant, so that the same objects give the same file."""
 _GETTER = "VAR\nEND_VAR"
 """The declaration of a getter, as CODESYS itself writes it."""
+_IN_DATA = {"VAR_GLOBAL": "globalvars", "INTERFACE": "interface"}
+"""The objects for which the standard has no element, by the data that holds them."""
+_LEVEL = 3
+"""How deep an object is in a file, whatever its kind."""
+_PLACE = re.compile(r'<place number="(\d+)" />')
 _POU_TYPES = {"FUNCTION": "function", "FUNCTION_BLOCK": "functionBlock", "PROGRAM": "program"}
 
 
@@ -40,26 +47,40 @@ def document(title: str, remark: str, folders: Folders) -> str:
     objects = [one for inside in folders.values() for one in inside]
     types = ET.SubElement(root, "types")
     data_types, pous = ET.SubElement(types, "dataTypes"), ET.SubElement(types, "pous")
-    for one in objects:
+    for number, one in enumerate(objects):
         if one.kind == "TYPE":
-            _data_type(data_types, one)
+            _placed(data_types, number)
         elif one.kind in _POU_TYPES:
-            _pou(pous, one)
+            _placed(pous, number)
     ET.SubElement(ET.SubElement(root, "instances"), "configurations")
-    for one in objects:
-        if one.kind == "VAR_GLOBAL":
-            _global_constants(add_data(root, "globalvars"), one)
-        elif one.kind == "INTERFACE":
-            _interface(add_data(root, "interface"), one)
+    for number, one in enumerate(objects):
+        if one.kind in _IN_DATA:
+            _placed(add_data(root, _IN_DATA[one.kind]), number)
     structure = ET.SubElement(add_data(root, "projectstructure", "discard"), "ProjectStructure")
     _structure(ET.SubElement(structure, "Folder", Name=title), folders)
-    _indent(root)
-    return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+    ET.indent(root)
+    text = _PLACE.sub(lambda place: _written(objects[int(place[1])]), ET.tostring(root, encoding="unicode"))
+    return f'<?xml version="1.0" encoding="utf-8"?>\n{text}\n'
+
+
+def _placed(parent: ET.Element, number: int) -> None:
+    """Leave a place for an object: many files hold the same object, whose text is written once."""
+    ET.SubElement(parent, "place", number=str(number))
+
+
+@kept_by_identity(2000)
+def _written(one: Object) -> str:
+    """The element of an object as text."""
+    holder = ET.Element("holder")
+    {"TYPE": _data_type, "VAR_GLOBAL": _global_constants, "INTERFACE": _interface}.get(one.kind, _pou)(holder, one)
+    (element,) = holder
+    _indent(element)
+    return ET.tostring(element, encoding="unicode")
 
 
 def _indent(root: ET.Element) -> None:
-    """Indent the file: one element on each line, but a variable with all its elements on one line."""
-    ET.indent(root)
+    """Indent an object: one element on each line, but a variable with all its elements on one line."""
+    ET.indent(root, level=_LEVEL)
     for variable in root.iter("variable"):
         for element in variable.iter():
             if len(element):

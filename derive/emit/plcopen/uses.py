@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from derive.emit.plcopen.objects import Object
+from derive.kept import kept_by_identity
 
 _SILENT = re.compile(r"\(\*.*?\*\)|//[^\n]*|'[^'\n]*'", re.DOTALL)
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -24,6 +25,7 @@ def needed(path: str, files: Mapping[str, Sequence[Object]]) -> tuple[str, ...]:
     return tuple(sorted(found))
 
 
+@kept_by_identity(1000)
 def _words(objects: Sequence[Object]) -> set[str]:
     """The words of the code, except those in comments and strings."""
     texts = [text for one in objects for part in one.parts() for text in (part.declaration, part.implementation)]

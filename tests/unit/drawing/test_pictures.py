@@ -66,11 +66,10 @@ def _in_full(text: str) -> str:
 
 
 def _extent(element: ElementTree.Element) -> tuple[float, float, float, float]:
-    style = element.attrib["style"]
-    size = float(re.findall(r"font-size: ([\d.]+)px", style)[0])
-    wide = text_width(element.text or "", size, "font-weight: 700" in style)
+    size = float(element.attrib["font-size"])
+    wide = text_width(element.text or "", size, element.get("font-weight") == "bold")
     x, y = float(element.attrib["x"]), float(element.attrib["y"])
-    left = x if "text-anchor: start" in style else x - wide / 2
+    left = x - wide / 2 if element.get("text-anchor") == "middle" else x
     return left, y - 0.75 * size, left + wide, y + 0.2 * size
 
 
@@ -88,7 +87,7 @@ def test_no_text_is_cut_off_or_covers_another(mechanism: Mechanism) -> None:
 
 def test_letters_are_legible_where_a_window_shrinks_the_picture(mechanism: Mechanism) -> None:
     """At two thirds of its width every letter is still more than eight pixels high."""
-    sizes = [float(re.findall(r"font-size: ([\d.]+)px", e.attrib["style"])[0]) for e in _texts(mechanism)]
+    sizes = [float(element.attrib["font-size"]) for element in _texts(mechanism)]
     assert min(sizes) * 600 / WIDTH > 8.0
 
 
