@@ -56,7 +56,7 @@ test: $(READY)
 	$(RUN) -m pytest -n 2 --dist loadgroup
 
 quick: $(READY)
-	$(RUN) -m pytest -n 2 --dist loadgroup -m quick tests/unit tests/harness tests/catalogue tests/text
+	$(RUN) -m pytest -n 2 --dist loadgroup -m quick
 
 report: $(READY)
 	$(RUN) -m derive report

@@ -13,6 +13,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from derive.description.mechanism import Mechanism, Role
+from derive.ir.symbols import POSITION
 from tests.catalogue.closure import Array, Closure, derivative
 from tests.catalogue.machines import TURNS, Machine
 from tests.mechanisms import catalogue
@@ -45,6 +46,7 @@ class LoopClosure(Closure):
         self._side = mechanism.assembly.indicator * sp.sign(mechanism.assembly.handedness)
         self._room = tuple(b.largest - sp.Abs(b.value) for b in mechanism.bounds)
         self._indicators = tuple(b.signs[0] * b.indicator for b in mechanism.branches)
+        self._commanded = tuple(POSITION[i] for i in self.task)
         self._equations = (*(r.equation / r.length for r in mechanism.rods), *mechanism.closure)
 
     def poses(self, axes: Array) -> tuple[Array, Array]:
@@ -72,12 +74,17 @@ class LoopClosure(Closure):
             if not moving.size:
                 break
             here, there = joints[moving], positions[moving]
-            slopes = self.by_position(here, there) + 1e-15 * np.eye(len(self.task))
+            slopes = self._slopes(here, there) + 1e-15 * np.eye(len(self.task))
             step = np.linalg.solve(slopes, self._stated(here, there)[:, :, None])[:, :, 0]
             there[:, self.task] -= np.clip(step, -FAR * self.reach, FAR * self.reach)
             positions[moving] = there
             moving = moving[np.abs(step).max(axis=1) > 1e-13 * self.reach]
         return positions, np.abs(self._stated(joints, positions)).max(axis=1, initial=0.0) < 1e-10 * self.reach
+
+    def _slopes(self, joints: Array, positions: Array) -> Array:
+        """The same as `by_position`, from derivatives of the equations: Newton's method asks often."""
+        found = self.at(joints, positions, slopes_of(self._equations, self._commanded))
+        return found.reshape(len(joints), -1, len(self.task))
 
     def by_position(self, joints: Array, positions: Array) -> Array:
         """A = ∂Φ/∂x: equations by commanded coordinates."""
@@ -112,6 +119,12 @@ class LoopClosure(Closure):
 
     def _stated(self, joints: Array, positions: Array) -> Array:
         return self.at(joints, positions, self._equations)
+
+
+@cache
+def slopes_of(equations: tuple[sp.Expr, ...], commanded: tuple[sp.Symbol, ...]) -> tuple[sp.Expr, ...]:
+    """The derivatives of equations by the commanded coordinates, equation by equation."""
+    return tuple(sp.diff(e, p) for e in equations for p in commanded)
 
 
 def facing(robot: softkin.Mechanism) -> Array | None:

@@ -47,10 +47,8 @@ class Token(NamedTuple):
     start: int
     end: int
     line: int
-
-    @property
-    def word(self) -> str:
-        return self.text.upper() if self.kind == "word" else ""
+    word: str
+    """In capital letters; empty where it is none."""
 
 
 @lru_cache(maxsize=4)
@@ -61,7 +59,8 @@ def tokens(text: str) -> tuple[Token, ...]:
         start, end = match.span()
         line += text.count("\n", last, start)
         last = start
-        found.append(Token(str(match.lastgroup), match.group(), start, end, line))
+        kind, part = str(match.lastgroup), match.group()
+        found.append(Token(kind, part, start, end, line, part.upper() if kind == "word" else ""))
     return tuple(found)
 
 
@@ -69,14 +68,14 @@ def refuse_words(text: str, file: str) -> None:
     """Raise StError for what the dialect excludes whatever its place."""
     head = 0
     for token in tokens(text):
-        head = token.line if token.word == "INTERFACE" else head
-        at = Place(file, token.line)
-        if token.kind == "comment" and "(*" in token.text[2:] and token.text[0] == "(":
-            raise StError(at, "nested comment")
-        if token.kind == "power":
-            raise StError(at, "the operator ** is not part of the dialect")
-        if token.word in REFUSED_WORDS:
-            raise StError(at, f"{token.text} is not part of the dialect")
-        is_known = token.word == QUERY or (token.word == SYSTEM and token.line == head)
-        if token.word and "__" in token.word and not is_known:
-            raise StError(at, f"double underscore in the name {token.text}")
+        word = token.word
+        if word:
+            head = token.line if word == "INTERFACE" else head
+            if word in REFUSED_WORDS:
+                raise StError(Place(file, token.line), f"{token.text} is not part of the dialect")
+            if "__" in word and word != QUERY and (word != SYSTEM or token.line != head):
+                raise StError(Place(file, token.line), f"double underscore in the name {token.text}")
+        elif token.kind == "comment" and "(*" in token.text[2:] and token.text[0] == "(":
+            raise StError(Place(file, token.line), "nested comment")
+        elif token.kind == "power":
+            raise StError(Place(file, token.line), "the operator ** is not part of the dialect")

@@ -186,20 +186,23 @@ def limited(low: Any, value: Any, high: Any) -> Any:
     return maximum(low, minimum(value, high))
 
 
-def minimum(*values: Any) -> Any:
-    _refuse_nan(values)
-    return min(values)
+def minimum(first: Any, second: Any, *others: Any) -> Any:
+    if first != first or second != second:
+        _refuse_nan()
+    least = second if second < first else first
+    return minimum(least, *others) if others else least
 
 
-def maximum(*values: Any) -> Any:
-    _refuse_nan(values)
-    return max(values)
+def maximum(first: Any, second: Any, *others: Any) -> Any:
+    if first != first or second != second:
+        _refuse_nan()
+    largest = second if second > first else first
+    return maximum(largest, *others) if others else largest
 
 
-def _refuse_nan(values: tuple[Any, ...]) -> None:
+def _refuse_nan() -> NoReturn:
     """Whether MIN and MAX pass a NaN on depends on the controller, so nobody may rely on it."""
-    if any(value != value for value in values):
-        raise StFault("MIN, MAX or LIMIT of a value that is not finite")
+    raise StFault("MIN, MAX or LIMIT of a value that is not finite")
 
 
 def selected(choice: bool, if_false: Any, if_true: Any) -> Any:

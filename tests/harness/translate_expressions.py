@@ -46,7 +46,7 @@ class Expressions:
             return self._may_be_infinite(node.operand)
         if isinstance(node, ast.Call):
             callee = self.facts.calls[node].callee
-            return isinstance(callee, types.Builtin) and callee.name.upper() != "SEL"
+            return isinstance(callee, types.Builtin) and callee.name.upper() != "SEL" and not _converts(callee)
         return False
 
     def _unchecked(self, node: ast.Expression) -> str:
@@ -130,7 +130,9 @@ class Expressions:
             if isinstance(known, int):
                 part = str(known - low)
             else:
-                place = f"_i if {low} <= (_i := {self.value(index)}) <= {high} else outside(_i, {low}, {high})"
+                value = self.value(index)
+                name, bound = (value, value) if value.isidentifier() else ("_i", f"(_i := {value})")
+                place = f"{name} if {low} <= {bound} <= {high} else outside({name}, {low}, {high})"
                 part = f"({place})" if low == 0 else f"(({place}) - {low})"
             code = f"({code}) * {high - low + 1} + {part}" if code else part
         return code
@@ -244,10 +246,20 @@ class Expressions:
             source, target = (argument.value for argument in node.arguments)
             wanted = self.facts.type_of[target].name.lower()
             return f"query({self.value(source)}, {self.reference(target)}, {wanted!r})"
+        if name == "SEL" and all(self._is_plain(argument.value) for argument in node.arguments[1:]):
+            choice, if_false, if_true = (self.value(argument.value, of) for argument in node.arguments)
+            return f"({if_true} if {choice} else {if_false})"
         given = ", ".join(self.value(argument.value, of) for argument in node.arguments)
         if name == "ABS":
             return f"abs({given})" if of == types.LREAL else self._in_range(f"abs({given})", of)
         return f"{_CHOICES[name]}({given})"
+
+    def _is_plain(self, node: ast.Expression) -> bool:
+        """Is this a number or a variable, of which it makes no difference whether it is evaluated?"""
+        if isinstance(node, ast.Unary):
+            return isinstance(node.operand, ast.Literal)
+        meaning = self.facts.meanings[node] if isinstance(node, ast.Name) else None
+        return isinstance(node, ast.Literal) or (isinstance(meaning, types.Variable) and not meaning.is_reference)
 
     def _conversion(self, code: str, source: types.Type, target: types.Type) -> str:
         if target == types.BOOL:
@@ -255,3 +267,8 @@ class Expressions:
         if target == types.LREAL:
             return f"float({code})"
         return self._in_range(f"rounded({code})" if source == types.LREAL else f"int({code})", target)
+
+
+def _converts(callee: types.Builtin) -> bool:
+    """Is this a conversion? A whole number is finite as a real one."""
+    return conversion(callee.name.upper()) is not None

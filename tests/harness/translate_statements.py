@@ -139,35 +139,30 @@ class Statements:
     def _constant(self, node: ast.Expression) -> str:
         return literal(constants.evaluate(node, self.scope.meaning), types.DINT)
 
-    def _count(self, counter: str, at: Place) -> None:
+    def _passes(self, condition: str, body: tuple[ast.Statement, ...], at: Place, last: str = "") -> None:
+        """The passes of a loop, the last line of each, and the fault of one that does not end."""
+        self.source.add(f"for _ in range({LOOP_CAP + 1}):", at)
         self.source.depth += 1
-        self.source.add(f"{counter} += 1", at)
-        self.source.add(f"if {counter} > {LOOP_CAP}: unbounded()", at)
+        self.source.add(f"if not {condition}: break", at)
         self.source.depth -= 1
+        self.body(body)
+        if last:
+            self.source.add(f"    {last}", at)
+        self.source.add("else: unbounded()", at)
 
     def _while(self, node: ast.While) -> None:
-        self.loops += 1
-        counter = f"_count{self.loops}"
-        self.source.add(f"{counter} = 0", node.at)
-        self.source.add(f"while {self.code.value(node.condition)}:", node.at)
-        self._count(counter, node.at)
-        self.body(node.body)
+        self._passes(f"({self.code.value(node.condition)})", node.body, node.at)
 
     def _for(self, node: ast.For) -> None:
         self.loops += 1
-        counter, stop = f"_count{self.loops}", f"_stop{self.loops}"
+        stop = f"_stop{self.loops}"
         of = self.facts.type_of[node.control]
         assert isinstance(of, types.Integer)
         control = self.code.value(node.control)
         step = 1 if node.step is None else constants.whole(node.step, self.scope.meaning)
         self.source.add(f"{control} = {self.code.value(node.start, of)}", node.at)
         self.source.add(f"{stop} = {self.code.value(node.stop, of)}", node.at)
-        self.source.add(f"{counter} = 0", node.at)
-        self.source.add(f"while {control} {'<=' if step > 0 else '>='} {stop}:", node.at)
-        self._count(counter, node.at)
-        self.body(node.body)
-        self.source.depth += 1
         # A control variable that cannot step past its end would run for ever on a controller.
         advanced = f"(_i if {of.low} <= (_i := {control} + {step}) <= {of.high} else overflow(_i))"
-        self.source.add(f"{control} = {advanced}", node.at)
-        self.source.depth -= 1
+        condition = f"{control} {'<=' if step > 0 else '>='} {stop}"
+        self._passes(condition, node.body, node.at, f"{control} = {advanced}")

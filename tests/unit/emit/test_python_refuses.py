@@ -10,9 +10,9 @@ import pytest
 import softkin
 from softkin import KinematicsError, Status
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism
 from tests.catalogue.references import held_at
+from tests.mechanisms import catalogue
 
 MECHANISMS = [m for _, m in catalogue()]
 LENGTHS = {"arm_length_1": 300.0, "arm_length_2": 200.0}

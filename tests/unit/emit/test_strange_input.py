@@ -11,8 +11,8 @@ import pytest
 import softkin
 from softkin import KinematicsError, Status
 
-from derive.description.catalogue import catalogue
 from derive.description.mechanism import Mechanism
+from tests.mechanisms import catalogue
 
 ROOT = Path(__file__).resolve().parents[3]
 MECHANISMS = [m for _, m in catalogue()]

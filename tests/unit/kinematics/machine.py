@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from itertools import product
 
 import numpy as np
@@ -13,8 +12,8 @@ from numpy.typing import NDArray
 from derive.description.mechanism import Mechanism
 from derive.ir.interpret import run
 from derive.ir.program import Program, Status
-from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
+from tests.mechanisms import kinematics_of
 
 Array = NDArray[np.float64]
 Values = dict[str, Array]
@@ -86,15 +85,9 @@ class Machine:
         return values
 
 
-@cache
-def derived(mechanism: Mechanism) -> Kinematics:
-    """The programs of a mechanism, derived once for all tests."""
-    return build(mechanism)
-
-
 def machine(mechanism: Mechanism, **settings: float) -> Machine:
     """Build a mechanism and set it up with its nominal parameters, or with other settings; setup must accept them."""
-    kinematics = derived(mechanism)
+    kinematics = kinematics_of(mechanism)
     parameters = {p.name: settings.pop(p.name, p.nominal) for p in kinematics.parameters}
     assert not settings, f"no such parameters: {sorted(settings)}"
     outputs, status = run(kinematics.setup, {k: np.asarray(v) for k, v in parameters.items()})

@@ -36,23 +36,28 @@ def residuals(conics: Array, angles: Array) -> Array:
 
 
 def with_roots(angles: Sequence[float]) -> list[float]:
-    """The conic that meets the circle at four angles: the product of the sines of half the distances from them."""
+    """The conic that meets the circle at four angles: the product of the sines of half the distances from them.
+
+    Of the product of z - exp(i angle), which half the sum of the angles turns until it is real on the circle.
+    """
     with mp.workdps(60):
-        at = [2 * mp.pi * k / 8 for k in range(8)]
-        values = [mp.fprod(mp.sin((t - mp.mpf(float(x))) / 2) for x in angles) for t in at]
-        waves = (lambda t: mp.cos(2 * t), lambda t: mp.sin(2 * t), mp.cos, mp.sin)
-        found = [sum(v * wave(t) for t, v in zip(at, values, strict=True)) / 4 for wave in waves]
-        return [float(v) for v in (*found, sum(values) / 8)]
+        product, turned = [mp.mpc(1)], mp.mpf(0)
+        for angle in map(float, angles):
+            root = mp.expj(angle)
+            product = [p - root * q for p, q in zip([*product, 0], [0, *product], strict=True)]
+            turned += mp.mpf(angle) / 2
+        second, first, constant = (mp.expj(-turned) * p / 8 for p in product[:3])
+        return [float(v) for v in (second.real, -second.imag, first.real, -first.imag, constant.real / 2)]
 
 
 def exact(conic: Array) -> list[float]:
-    """The angles of the roots, with sixty digits: a polynomial in exp(i t)."""
+    """The angles of the roots, with sixty digits: those of a polynomial in exp(i t), refined from what NumPy finds."""
     with mp.workdps(60):
         a, b, d, e, g = (mp.mpf(float(v)) for v in conic)
         i = mp.mpc(0, 1)
-        roots = mp.polyroots(
-            [(a - i * b) / 2, (d - i * e) / 2, g, (d + i * e) / 2, (a + i * b) / 2], 500, extraprec=400
-        )
+        coefficients = [(a - i * b) / 2, (d - i * e) / 2, g, (d + i * e) / 2, (a + i * b) / 2]
+        start = [*np.roots([complex(c) for c in coefficients])]
+        roots = mp.polyroots(coefficients, 500, extraprec=400, roots_init=start)
         return [float(mp.arg(z)) for z in roots if abs(abs(z) - 1) < mp.mpf(10) ** -25]
 
 

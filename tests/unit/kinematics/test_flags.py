@@ -7,23 +7,21 @@ from collections.abc import Iterator
 import pytest
 import sympy as sp
 
-from derive.description.catalogue import MECHANISMS, catalogue
 from derive.description.mechanism import Mechanism, Role
 from derive.equations.choices import input_of, with_choices
 from derive.ir.primitives import Select
 from derive.ir.program import FindRoot, Iterate, Let, Program, Statement
 from derive.ir.symbols import PLACE, Flag, flag, is_condition, is_count, real
-from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
+from tests.mechanisms import kinematics_of, named
 
-BY_NAME = {mechanism.name: mechanism for _, mechanism in catalogue(MECHANISMS)}
 CHOSEN = ("Kin_Scara4_CCZC_ZCcoupled", "Kin_GantryCutter2", "Kin_Hexapod")
 
 
 @pytest.fixture(scope="module", params=CHOSEN)
 def kinematics(request: pytest.FixtureRequest) -> Kinematics:
     """Machines with flags, signs, turns and loops."""
-    return build(BY_NAME[request.param])
+    return kinematics_of(named(request.param))
 
 
 def _all(kin: Kinematics) -> Iterator[tuple[Program, Statement]]:
@@ -63,7 +61,7 @@ def test_parameters_are_read_in_their_types(kinematics: Kinematics) -> None:
 
 def test_a_search_and_its_loop_count_and_ask() -> None:
     """The flags and counts of the root scan are Booleans and integers."""
-    kin = build(BY_NAME["Kin_Ac6_RZRYRYRXRYRZ_J6Offset"])
+    kin = kinematics_of(named("Kin_Ac6_RZRYRYRXRYRZ_J6Offset"))
     (search,) = (s for _, s in _all(kin) if isinstance(s, FindRoot))
     assert (
         isinstance(search.wanted, Flag)
@@ -90,7 +88,7 @@ X, Y, Z, SWAP, IS_SWAPPED = (*map(real, ("x", "y", "z", "swap_xy")), flag("swap_
 )  # fmt: skip
 def test_what_calculates_with_a_flag_becomes_a_choice(value: sp.Basic, expected: sp.Basic) -> None:
     """Arithmetic with a flag becomes a choice by that flag."""
-    mechanism: Mechanism = BY_NAME["MC_KIN_TYPE_12_XY"]
+    mechanism: Mechanism = named("MC_KIN_TYPE_12_XY")
     body = (Let(flag("f") if is_condition(value) else real("v"), value),)
     program = Program("p", tuple(sorted(value.free_symbols, key=str)), body, ())
     (let,) = with_choices(program, mechanism.parameters).lets()

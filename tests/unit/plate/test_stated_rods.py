@@ -12,7 +12,7 @@ from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, 
 from derive.description.validate import validate
 from derive.kinematics.build import build
 from derive.plate.stated_rods import with_stated_rods
-from tests.mechanisms import named
+from tests.mechanisms import kinematics_of, named
 from tests.unit.kinematics.turning_inventions import TURNING_INVENTIONS, three_prr, three_rpr
 
 MACHINES = {
@@ -47,7 +47,7 @@ def test_equations_that_are_rods_are_read_as_these(name: str) -> None:
 def test_the_programs_are_those_of_the_rods() -> None:
     """The planar 3-RRR as equations is the 3-RRR of the catalogue."""
     mechanism = named("Softkin_Planar_3RRR")
-    one, other = build(validate(stated(mechanism))), build(mechanism)
+    one, other = build(validate(stated(mechanism))), kinematics_of(mechanism)
     assert one.branch == other.branch
     assert one.forward == other.forward
     assert one.jacobian == other.jacobian

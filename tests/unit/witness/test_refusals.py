@@ -7,7 +7,6 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
-from derive.description.catalogue import MECHANISMS, load
 from derive.description.mechanism import Mechanism, Task
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
@@ -19,6 +18,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.mechanism import search
 from derive.witness import Disagreement, inverse, witness
 from derive.witness import assembly as witness_of_modes
+from tests.mechanisms import kinematics_of, named
 from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, invention
 
 
@@ -69,13 +69,13 @@ def test_a_search_that_refuses_poses_where_branches_meet(arm: Kinematics, monkey
 def test_a_home_pose_of_several_modes(monkeypatch: pytest.MonkeyPatch) -> None:
     """With its working modes not told apart, the legs at home stand in both assembly modes."""
     monkeypatch.setattr(witness_of_modes, "home_branches", lambda _: ())
-    said = said_of(build(load(MECHANISMS / "softkin_planar_3rrr.py")))
+    said = said_of(kinematics_of(named("Softkin_Planar_3RRR")))
     assert "the home pose has 2 assembly modes" in said
     assert "choose a home= at which every rod has a side" in said
 
 
 def test_an_orientation_that_is_refused() -> None:
-    kinematics = build(load(MECHANISMS / "kin_scara4_zccoupled_type1.py"))
+    kinematics = kinematics_of(named("Kin_Scara4_ZCcoupled_Type1"))
     assert kinematics.projection is not None
     condition = sp.Gt(kinematics.projection.inputs[0], 0)
     assert "the projection refuses a tilt: at A1=" in said_of(
@@ -84,7 +84,7 @@ def test_an_orientation_that_is_refused() -> None:
 
 
 def test_a_frame_that_is_elsewhere() -> None:
-    kinematics = build(load(MECHANISMS / "kin_tool.py"))
+    kinematics = kinematics_of(named("Kin_Tool"))
     (first, *rest) = kinematics.forward.outputs
     moved = replace(kinematics.forward, outputs=(Output(first.name, first.value + sp.Float(0.5)), *rest))
     said = said_of(replace(kinematics, forward=moved))

@@ -9,7 +9,6 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
-from derive.description.catalogue import MECHANISMS, load
 from derive.ir.program import (
     Let,
     Output,
@@ -20,17 +19,17 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     real,
 )
-from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from derive.witness import Disagreement, decade, witness
+from tests.mechanisms import kinematics_of, named
 
-SCARA = "kin_scara4_zccoupled_type1"
+SCARA = "Kin_Scara4_ZCcoupled_Type1"
 Change = Callable[[sp.Expr], sp.Expr]
 
 
 @pytest.fixture(scope="module")
 def scara() -> Kinematics:
-    return build(load(MECHANISMS / f"{SCARA}.py"))
+    return kinematics_of(named(SCARA))
 
 
 def changed(program: Program, name: str, change: Change) -> Program:
@@ -63,7 +62,7 @@ def test_the_scara_agrees(scara: Kinematics) -> None:
 
 def test_what_is_not_excluded_is_missed() -> None:
     """Without `positive` the mirror solutions count: radius and azimuth, and the polar angle with them."""
-    kinematics = build(load(MECHANISMS / "kin_crane.py"))
+    kinematics = kinematics_of(named("Kin_Crane"))
     mirrored = replace(kinematics, mechanism=replace(kinematics.mechanism, positive=()))
     with pytest.raises(Disagreement, match="number of solutions: the closure has 4, the slots hold 1"):
         witness(mirrored)
