@@ -9,7 +9,8 @@ import sympy as sp
 
 from derive.ir.passes import untold
 from derive.ir.program import Let, Program
-from derive.ir.symbols import Sign, branch_sign
+from derive.ir.symbols import Sign, branch_sign, symbols_of
+from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.lower import lowered
 from derive.lowering.unrolling import is_straight
@@ -71,16 +72,47 @@ def known_constants(kin: Kinematics) -> Sequence[Let]:
     return [let for let in kin.setup.lets() if let.name.name in constants(kin)]
 
 
-def every_branch(kin: Kinematics, name: str) -> EveryBranch:
-    """All branches of a machine that is unrolled, as one program of this name."""
+@dataclass(frozen=True)
+class StraightLines:
+    """The inverse away from folds, for trusted input and axes in any turn: of all branches, and of one."""
+
+    trusted: Program
+    """The one branch before it was lowered, and before its turns were let go."""
+    every: Program
+    """Its outputs are the axes of every slot, and what refuses it."""
+    one: Program
+    parts: tuple[Let, ...]
+    """What both read of constants alone."""
+
+
+@kept_by_identity(10)
+def straight_lines(kin: Kinematics) -> StraightLines:
+    """Both programs, lowered together: C takes one of them, Python both."""
     one = trusted(away_from_folds(kin))
-    program = replace(without_chosen_turns(one), name=name)
-    (done,), parts = lowered(
-        [program],
+    program = without_chosen_turns(one)
+    (every, single), parts = lowered(
+        [replace(program, name="branches"), replace(program, name="branch")],
         constants(kin),
         modulo_turns=True,
         inverts=False,
-        branches={name: signs(kin)},
+        branches={"branches": signs(kin)},
         known=known_constants(kin),
     )
-    return EveryBranch(done, parts, turns_that_count(one))
+    return StraightLines(one, every, single, parts)
+
+
+def every_branch(kin: Kinematics, name: str) -> EveryBranch:
+    """All branches of a machine that is unrolled, as one program of this name."""
+    found = straight_lines(kin)
+    program = replace(found.every, name=name)
+    return EveryBranch(program, read_of(found.parts, program), turns_that_count(found.trusted))
+
+
+def read_of(parts: Sequence[Let], program: Program) -> tuple[Let, ...]:
+    """The parts that a program reads, by way of others, too."""
+    wanted, found = set(program.inputs), list[Let]()
+    for part in reversed(parts):
+        if part.name in wanted:
+            wanted |= symbols_of(part.value)
+            found.insert(0, part)
+    return tuple(found)

@@ -18,7 +18,7 @@ from derive.emit.c.functions import read_by
 from derive.emit.c.layout import comment, commented
 from derive.emit.c.printer import C, member, spelled, type_of
 from derive.emit.c.program import function_of, without_brackets
-from derive.emit.every_branch import away_from_folds, constants, known_constants, signs
+from derive.emit.every_branch import away_from_folds, constants, known_constants, read_of, signs
 from derive.equations.rotation_repair import surely_exact
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Program, Require
@@ -74,17 +74,7 @@ def in_lanes(kin: Kinematics) -> tuple[InLanes, ...]:
         branches={EVERY: signs(kin)},
         known=known_constants(kin),
     )
-    return tuple(InLanes(program, _read_by(program, parts)) for program in programs)
-
-
-def _read_by(program: Program, parts: Sequence[Let]) -> tuple[Let, ...]:
-    """The parts that a program reads, by way of others, too."""
-    wanted, found = set(program.inputs), list[Let]()
-    for part in reversed(parts):
-        if part.name in wanted:
-            wanted |= symbols_of(part.value)
-            found.insert(0, part)
-    return tuple(found)
+    return tuple(InLanes(program, read_of(parts, program)) for program in programs)
 
 
 def constants_of_lanes(kin: Kinematics) -> set[str]:

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.emit.every_branch import (
+    StraightLines,
     away_from_folds,
     can_be_unrolled,
-    constants,
     has_folds,
-    known_constants,
     signs,
+    straight_lines,
     trusted,
 )
 from derive.emit.python.layout import assigned, repeated, tuple_of
@@ -45,7 +45,6 @@ from derive.ir.symbols import (
 )
 from derive.ir.tree import Item
 from derive.kinematics.kinematics import Kinematics
-from derive.lowering.lower import lowered
 from derive.lowering.scheduling import scheduled, without_unused
 from derive.optimize.coalesce import coalesced
 from derive.optimize.guards import guarded
@@ -99,11 +98,10 @@ def unrolled(kin: Kinematics) -> Unrolled:
     """The functions on plain numbers. Near a fold they have no answer, an empty tuple: one branch
     after the other has.
     """
-    kin = away_from_folds(kin)
-    one = trusted(kin)
-    methods, parts = _shorter(kin, _methods(kin, one))
+    lines_of, kin = straight_lines(kin), away_from_folds(kin)
+    methods, parts = _methods(kin, lines_of), lines_of.parts
     known = (*kin.setup.lets(), *parts)
-    last = finish(kin, one)
+    last = finish(kin, lines_of.trusted)
     functions = (
         _directions(kin, methods[0], known),
         _direction(kin, methods[1], known),
@@ -122,44 +120,29 @@ def unrolled(kin: Kinematics) -> Unrolled:
 def trusted_branch(kin: Kinematics) -> Function:
     """The one branch of a machine without branches and folds, for input that is trusted: a method."""
     kin = replace(kin, branch=untold(kin.branch))
-    method = _single(kin, trusted(kin))
+    method = _single(kin, without_chosen_turns(trusted(kin)))
     written = _Written.of(method, kin.setup.lets())
     values = list(written.values.values())
     lines = [*constant_lines(written.method), *item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)]
     return written.function([*lines, f"return {_texts(values)}"])
 
 
-def _shorter(kin: Kinematics, methods: Sequence[Method]) -> tuple[list[Method], tuple[Let, ...]]:
-    """The methods with fewer operations, and what they read that is computed from constants."""
-    named = [replace(m.program, name=m.name) for m in methods]
-    programs, parts = lowered(
-        named,
-        constants(kin),
-        modulo_turns=True,
-        inverts=False,
-        branches={"branches": signs(kin)},
-        known=known_constants(kin),
-    )
-    return [replace(m, program=squares_where_read(p)) for m, p in zip(methods, programs, strict=True)], parts
-
-
-def _methods(kin: Kinematics, one: Program) -> tuple[Method, Method]:
+def _methods(kin: Kinematics, found: StraightLines) -> tuple[Method, Method]:
     text = "Every slot, the axes in some turn, of input that is trusted."
+    every, one = map(squares_where_read, (found.every, found.one))
     return (
-        Method(
-            "branches", text, without_chosen_turns(one), (_FRAME, _optional(kin), _WHERE_REFUSED), "tuple[Any, ...]", ()
-        ),
+        Method("branches", text, every, (_FRAME, _optional(kin), _WHERE_REFUSED), "tuple[Any, ...]", ()),
         _single(kin, one),
     )
 
 
-def _single(kin: Kinematics, one: Program) -> Method:
+def _single(kin: Kinematics, program: Program) -> Method:
     sign_values = next(a for a in branch(kin).arguments if a.name == "signs")
     text = "One branch, the axes in some turn, of input that is trusted."
     return Method(
         "branch",
         text,
-        without_chosen_turns(one),
+        program,
         (_FRAME, sign_values, _optional(kin)),
         "Reals | None",
         (),
