@@ -18,7 +18,7 @@ from derive.emit.c.functions import read_by
 from derive.emit.c.layout import comment, commented
 from derive.emit.c.printer import C, member, spelled, type_of
 from derive.emit.c.program import function_of, without_brackets
-from derive.emit.every_branch import away_from_folds, constants, known_constants, read_of, signs
+from derive.emit.every_branch import constants, known_constants, signs
 from derive.equations.rotation_repair import surely_exact
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Program, Require
@@ -62,19 +62,21 @@ def in_lanes(kin: Kinematics) -> tuple[InLanes, ...]:
     """
     if not kin.mechanism.joints or any(joint.coupling != 0 or joint.is_geared for joint in kin.period_joints):
         return ()
-    one = specialised(away_from_folds(kin).branch, {j.turn: sp.Integer(0) for j in kin.period_joints})
+    one = specialised(kin.branch, {j.turn: sp.Integer(0) for j in kin.period_joints})
     found = regular(without_chosen_turns(one), constants(kin))
     if found is None:
         return ()
-    is_one = not kin.branches or 2 ** len(kin.branches) > MOST_SLOTS
-    programs, parts = lowered(
-        [replace(found, name=name) for name in ((ONE,) if is_one else (ONE, EVERY))],
+    own = InLanes(replace(found, name=ONE), ())
+    if not kin.branches or 2 ** len(kin.branches) > MOST_SLOTS:
+        return (own,)
+    (every,), parts = lowered(
+        [replace(found, name=EVERY)],
         constants(kin),
         modulo_turns=True,
         branches={EVERY: signs(kin)},
         known=known_constants(kin),
     )
-    return tuple(InLanes(program, read_of(parts, program)) for program in programs)
+    return own, InLanes(every, parts)
 
 
 def constants_of_lanes(kin: Kinematics) -> set[str]:

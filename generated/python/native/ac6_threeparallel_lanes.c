@@ -38,18 +38,19 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     const double distance_q1 = softkin_lane_root(wrist_x*wrist_x + wrist_y*wrist_y);
     /* Pythagoras: square of the distance ahead of the axis */
     const double ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1);
-    /* near a fold */
-    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
-    const double divisor_q1 = distance_q1*distance_q1;
+    const double distance_q1_squared = distance_q1*distance_q1;
     /* q1: out of reach */
-    missed += ahead_squared_q1 >= -1e-12*divisor_q1 - rounding_q1 ? 0.0 : 1.0;
+    missed += ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1 ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
     const double sign_shoulder = sigma_shoulder; /* shoulder: +1 left, -1 right */
     /* how far ahead of the axis the point is; negative: behind it */
     const double ahead_q1_before_q1_for_q3 = -softkin_lane_root(ahead_squared_q1)*sign_shoulder;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
-    const double cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/divisor_q1;
-    const double sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/divisor_q1;
+    const double cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)
+        /distance_q1_squared;
+    const double sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)
+        /distance_q1_squared;
     const double r21_from_q1 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3;
     const double r22_from_q1 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3;
     /* polar coordinates: the radius at angle q6 */
@@ -59,6 +60,7 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     const double cos_q5 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3;
     const double sign_wrist = sigma_wrist; /* wrist: +1 down, -1 up */
     const double q6_radius_of_q5 = radius_q6*sign_wrist;
+    const double q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33;
     /* polar coordinates: angle q6 from the r31 and r32 equations */
     const double along_q6 = -r21_from_q1*sign_wrist;
     /* where it is singular: the angle of the reference */
@@ -68,20 +70,28 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     const double r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3
         - r32*sin_q6_before_q6_of_q3;
     const double r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5
-        - q6_radius_of_q5*r33;
+        - q6_radius_of_q5_times_r33;
     const double wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3
         - d5*r21_from_q1_before_q56_before_q6_of_q3;
     const double wrist_z = z - d6*r33;
+    const double wrist_y_from_q1_fixed = wrist_z - d1;
     const double r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3
         + r31*sin_q6_before_q6_of_q3;
-    const double wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1;
-    const double sum_in_value_q6_of_q3 = wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-        + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3;
+    const double wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed
+        + d5*r22_from_q1_before_q6_before_q6_of_q3;
     /* q3 has solutions where this is within its bound */
-    const double value_q6_of_q3 = sum_in_value_q6_of_q3 - a2_squared_plus_a3_squared;
+    const double value_q6_of_q3 = wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+        + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared;
     missed += fabs(value_q6_of_q3) <= size_q1_for_q3 ? 0.0 : 1.0;
+    const double r21_from_q1_before_q6 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3;
+    const double r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5_times_r33;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56;
+    const double r22_from_q1_before_q6 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6;
     /* distance that the remaining links must span */
-    const double reach = softkin_lane_root(sum_in_value_q6_of_q3);
+    const double reach = softkin_lane_root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1);
     /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
     const double one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach);
     /* 1 + cosine, times the scale */
@@ -100,16 +110,13 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     const double arm_across_q2 = a3*sin_q3;
     /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
      * reference */
-    const double direction_x_q2 = arm_across_q2*wrist_y_from_q1_before_q6_of_q3
-        + arm_along_q2*wrist_x_from_q1_before_q6_of_q3;
-    const double direction_y_q2 = arm_along_q2*wrist_y_from_q1_before_q6_of_q3
-        - arm_across_q2*wrist_x_from_q1_before_q6_of_q3;
+    const double direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1;
+    const double direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1;
     const double angle_q2 = softkin_lane_angle(direction_y_q2, direction_x_q2);
     const double axis_a2 = offset_a2 + angle_q2*SOFTKIN_RADIAN;
     const double angle_q3 = softkin_lane_angle(sin_q3, cos_q3);
     const double axis_a3 = offset_a3 + angle_q3*SOFTKIN_RADIAN;
-    const double angle_with_q4 = softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3,
-        r22_from_q1_before_q6_before_q6_of_q3);
+    const double angle_with_q4 = softkin_lane_angle(r21_from_q1_before_q56, r22_from_q1_before_q6);
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4 = offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)*SOFTKIN_RADIAN;
     const double axis_a5 = offset_a5 + softkin_lane_angle(q6_radius_of_q5, cos_q5)*SOFTKIN_RADIAN;
@@ -163,24 +170,23 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double distance_q1 = softkin_lane_root(wrist_x*wrist_x + wrist_y*wrist_y);
     /* Pythagoras: square of the distance ahead of the axis */
     const double ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1);
-    /* near a fold */
-    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
-    const double divisor_q1 = distance_q1*distance_q1;
+    const double distance_q1_squared = distance_q1*distance_q1;
     /* q1: out of reach */
-    missed += ahead_squared_q1 >= -1e-12*divisor_q1 - rounding_q1 ? 0.0 : 1.0;
+    missed += ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1 ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
     const double d4_times_wrist_y = d4*wrist_y;
     /* how far ahead of the axis the point is; negative: behind it */
     const double ahead_q1_before_q1_for_q3_right = softkin_lane_root(ahead_squared_q1);
     const double product_in_cos_q1_before_q1_for_q3_left = ahead_q1_before_q1_for_q3_right*wrist_x;
-    const double one_by_divisor_q1 = 1.0/divisor_q1;
+    const double one_by_distance_q1_squared = 1.0/distance_q1_squared;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
     const double cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - product_in_cos_q1_before_q1_for_q3_left)
-        *one_by_divisor_q1;
+        *one_by_distance_q1_squared;
     const double d4_times_wrist_x = d4*wrist_x;
     const double product_in_sin_q1_before_q1_for_q3_left = ahead_q1_before_q1_for_q3_right*wrist_y;
     const double sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - product_in_sin_q1_before_q1_for_q3_left)
-        *one_by_divisor_q1;
+        *one_by_distance_q1_squared;
     const double r21_from_q1_left = r21*cos_q1_before_q1_for_q3_left - r11*sin_q1_before_q1_for_q3_left;
     const double r22_from_q1_left = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left;
     /* polar coordinates: the radius at angle q6 */
@@ -189,9 +195,9 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     missed += radius_q6_left > 1e-11 ? 0.0 : 1.0;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
     const double cos_q1_before_q1_for_q3_right = (product_in_cos_q1_before_q1_for_q3_left - d4_times_wrist_y)
-        *one_by_divisor_q1;
+        *one_by_distance_q1_squared;
     const double sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + product_in_sin_q1_before_q1_for_q3_left)
-        *one_by_divisor_q1;
+        *one_by_distance_q1_squared;
     const double r21_from_q1_right = r21*cos_q1_before_q1_for_q3_right - r11*sin_q1_before_q1_for_q3_right;
     const double r22_from_q1_right = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right;
     /* polar coordinates: the radius at angle q6 */
@@ -200,24 +206,25 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     missed += radius_q6_right > 1e-11 ? 0.0 : 1.0;
     /* cosine and sine of q5 from the q6 radius and r32 equations */
     const double cos_q5_left = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left;
+    const double q6_radius_of_q5_times_r33_left_down = r33*radius_q6_left;
     /* where it is singular: the angle of the reference */
     const double cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left;
     const double sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left/radius_q6_left;
     const double r21_from_q1_before_q6_before_q6_of_q3_left_down = r31*cos_q6_before_q6_of_q3_left_down
         + r32*sin_q6_before_q6_of_q3_left_up;
-    const double r21_from_q1_before_q56_before_q6_of_q3_left_up = r33*radius_q6_left
-        - r21_from_q1_before_q6_before_q6_of_q3_left_down*cos_q5_left;
+    const double r21_from_q1_before_q56_before_q6_of_q3_left_down =
+        r21_from_q1_before_q6_before_q6_of_q3_left_down*cos_q5_left - q6_radius_of_q5_times_r33_left_down;
     const double product_in_wrist_x_from_q1_before_q6_of_q3_left_down = d5
-        *r21_from_q1_before_q56_before_q6_of_q3_left_up;
-    const double wrist_x_from_q1_before_q6_of_q3_left_down =
-        product_in_wrist_x_from_q1_before_q6_of_q3_left_down - ahead_q1_before_q1_for_q3_right;
+        *r21_from_q1_before_q56_before_q6_of_q3_left_down;
+    const double wrist_x_from_q1_before_q6_of_q3_left_down = -ahead_q1_before_q1_for_q3_right
+        - product_in_wrist_x_from_q1_before_q6_of_q3_left_down;
     const double wrist_z = z - d6*r33;
-    const double wrist_z_minus_d1 = wrist_z - d1;
+    const double wrist_y_from_q1_fixed = wrist_z - d1;
     const double r22_from_q1_before_q6_before_q6_of_q3_left_up = r31*sin_q6_before_q6_of_q3_left_up
         - r32*cos_q6_before_q6_of_q3_left_down;
     const double product_in_wrist_y_from_q1_before_q6_of_q3_left_down = d5
         *r22_from_q1_before_q6_before_q6_of_q3_left_up;
-    const double wrist_y_from_q1_before_q6_of_q3_left_down = wrist_z_minus_d1
+    const double wrist_y_from_q1_before_q6_of_q3_left_down = wrist_y_from_q1_fixed
         - product_in_wrist_y_from_q1_before_q6_of_q3_left_down;
     const double sum_in_value_q6_of_q3_left_down = wrist_x_from_q1_before_q6_of_q3_left_down
         *wrist_x_from_q1_before_q6_of_q3_left_down
@@ -225,10 +232,10 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* q3 has solutions where this is within its bound */
     const double value_q6_of_q3_left_down = sum_in_value_q6_of_q3_left_down - a2_squared_plus_a3_squared;
     missed += fabs(value_q6_of_q3_left_down) <= size_q1_for_q3 ? 0.0 : 1.0;
-    const double wrist_x_from_q1_before_q6_of_q3_left_up = -ahead_q1_before_q1_for_q3_right
-        - product_in_wrist_x_from_q1_before_q6_of_q3_left_down;
+    const double wrist_x_from_q1_before_q6_of_q3_left_up =
+        product_in_wrist_x_from_q1_before_q6_of_q3_left_down - ahead_q1_before_q1_for_q3_right;
     const double wrist_y_from_q1_before_q6_of_q3_left_up =
-        product_in_wrist_y_from_q1_before_q6_of_q3_left_down + wrist_z_minus_d1;
+        product_in_wrist_y_from_q1_before_q6_of_q3_left_down + wrist_y_from_q1_fixed;
     const double sum_in_value_q6_of_q3_left_up = wrist_x_from_q1_before_q6_of_q3_left_up
         *wrist_x_from_q1_before_q6_of_q3_left_up
         + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up;
@@ -237,22 +244,23 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     missed += fabs(value_q6_of_q3_left_up) <= size_q1_for_q3 ? 0.0 : 1.0;
     /* cosine and sine of q5 from the q6 radius and r32 equations */
     const double cos_q5_right = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right;
+    const double q6_radius_of_q5_times_r33_right_down = r33*radius_q6_right;
     /* where it is singular: the angle of the reference */
     const double cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right;
     const double sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right/radius_q6_right;
     const double r21_from_q1_before_q6_before_q6_of_q3_right_down = r31*cos_q6_before_q6_of_q3_right_down
         + r32*sin_q6_before_q6_of_q3_right_up;
-    const double r21_from_q1_before_q56_before_q6_of_q3_right_up = r33*radius_q6_right
-        - r21_from_q1_before_q6_before_q6_of_q3_right_down*cos_q5_right;
+    const double r21_from_q1_before_q56_before_q6_of_q3_right_down =
+        r21_from_q1_before_q6_before_q6_of_q3_right_down*cos_q5_right - q6_radius_of_q5_times_r33_right_down;
     const double product_in_wrist_x_from_q1_before_q6_of_q3_right_down = d5
-        *r21_from_q1_before_q56_before_q6_of_q3_right_up;
+        *r21_from_q1_before_q56_before_q6_of_q3_right_down;
     const double wrist_x_from_q1_before_q6_of_q3_right_down = ahead_q1_before_q1_for_q3_right
-        + product_in_wrist_x_from_q1_before_q6_of_q3_right_down;
+        - product_in_wrist_x_from_q1_before_q6_of_q3_right_down;
     const double r22_from_q1_before_q6_before_q6_of_q3_right_up = r31*sin_q6_before_q6_of_q3_right_up
         - r32*cos_q6_before_q6_of_q3_right_down;
     const double product_in_wrist_y_from_q1_before_q6_of_q3_right_down = d5
         *r22_from_q1_before_q6_before_q6_of_q3_right_up;
-    const double wrist_y_from_q1_before_q6_of_q3_right_down = wrist_z_minus_d1
+    const double wrist_y_from_q1_before_q6_of_q3_right_down = wrist_y_from_q1_fixed
         - product_in_wrist_y_from_q1_before_q6_of_q3_right_down;
     const double sum_in_value_q6_of_q3_right_down = wrist_x_from_q1_before_q6_of_q3_right_down
         *wrist_x_from_q1_before_q6_of_q3_right_down
@@ -261,9 +269,9 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double value_q6_of_q3_right_down = sum_in_value_q6_of_q3_right_down - a2_squared_plus_a3_squared;
     missed += fabs(value_q6_of_q3_right_down) <= size_q1_for_q3 ? 0.0 : 1.0;
     const double wrist_x_from_q1_before_q6_of_q3_right_up = ahead_q1_before_q1_for_q3_right
-        - product_in_wrist_x_from_q1_before_q6_of_q3_right_down;
+        + product_in_wrist_x_from_q1_before_q6_of_q3_right_down;
     const double wrist_y_from_q1_before_q6_of_q3_right_up =
-        product_in_wrist_y_from_q1_before_q6_of_q3_right_down + wrist_z_minus_d1;
+        product_in_wrist_y_from_q1_before_q6_of_q3_right_down + wrist_y_from_q1_fixed;
     const double sum_in_value_q6_of_q3_right_up = wrist_x_from_q1_before_q6_of_q3_right_up
         *wrist_x_from_q1_before_q6_of_q3_right_up
         + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up;
@@ -318,7 +326,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double quotient_in_axis_a3_left_up_down = angle_q3_left_up_down*SOFTKIN_RADIAN;
     const double axis_a3_left_up_down = offset_a3 + quotient_in_axis_a3_left_up_down;
     const double angle_with_q4_left_down =
-        -softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3_left_up,
+        softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3_left_down,
         -r22_from_q1_before_q6_before_q6_of_q3_left_up);
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_left_up_down = offset_a4
@@ -360,7 +368,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double angle_q3_left_up_up = softkin_lane_angle(sin_q3_left_up_up, cos_q3_left_up);
     const double quotient_in_axis_a3_left_up_up = angle_q3_left_up_up*SOFTKIN_RADIAN;
     const double axis_a3_left_up_up = offset_a3 + quotient_in_axis_a3_left_up_up;
-    const double angle_with_q4_left_up = 180.0*SOFTKIN_DEGREE + angle_with_q4_left_down;
+    const double angle_with_q4_left_up = angle_with_q4_left_down - 180.0*SOFTKIN_DEGREE;
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_left_up_up = offset_a4
         + (angle_with_q4_left_up - angle_q2_left_up_up - angle_q3_left_up_up)*SOFTKIN_RADIAN;
@@ -429,7 +437,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double quotient_in_axis_a3_right_up_down = angle_q3_right_up_down*SOFTKIN_RADIAN;
     const double axis_a3_right_up_down = offset_a3 + quotient_in_axis_a3_right_up_down;
     const double angle_with_q4_right_down =
-        -softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3_right_up,
+        softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3_right_down,
         -r22_from_q1_before_q6_before_q6_of_q3_right_up);
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_right_up_down = offset_a4
@@ -472,7 +480,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double angle_q3_right_up_up = softkin_lane_angle(sin_q3_right_up_up, cos_q3_right_up);
     const double quotient_in_axis_a3_right_up_up = angle_q3_right_up_up*SOFTKIN_RADIAN;
     const double axis_a3_right_up_up = offset_a3 + quotient_in_axis_a3_right_up_up;
-    const double angle_with_q4_right_up = 180.0*SOFTKIN_DEGREE + angle_with_q4_right_down;
+    const double angle_with_q4_right_up = angle_with_q4_right_down - 180.0*SOFTKIN_DEGREE;
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_right_up_up = offset_a4
         + (angle_with_q4_right_up - angle_q2_right_up_up - angle_q3_right_up_up)*SOFTKIN_RADIAN;

@@ -39,7 +39,7 @@ void ac6_txtytzryrxrz_regular(const void *machine, const softkin_lanes *given,
     const double direction_y_a4 = r13*sign_wrist;
     const double axis_a4 = offset_a4 + softkin_lane_angle(direction_y_a4, direction_x_a4)*SOFTKIN_RADIAN;
     const double a4_radius_of_a5 = radius_a4*sign_wrist;
-    const double axis_a5 = offset_a5 - softkin_lane_angle(r23, a4_radius_of_a5)*SOFTKIN_RADIAN;
+    const double axis_a5 = offset_a5 + softkin_lane_angle(-r23, a4_radius_of_a5)*SOFTKIN_RADIAN;
     const double scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31;
     const double direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12;
     const double axis_a6 = offset_a6 + softkin_lane_angle(direction_y_a6, scaled_r11_from_a4)*SOFTKIN_RADIAN;

@@ -37,21 +37,22 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     const double distance_q1 = softkin_lane_root(wrist_x*wrist_x + wrist_y*wrist_y);
     /* Pythagoras: square of the distance ahead of the axis */
     const double ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1);
-    /* near a fold */
-    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
-    const double divisor_q1 = distance_q1*distance_q1;
+    const double distance_q1_squared = distance_q1*distance_q1;
     /* q1: out of reach */
-    missed += ahead_squared_q1 >= -1e-12*divisor_q1 - rounding_q1 ? 0.0 : 1.0;
+    missed += ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1 ? 0.0 : 1.0;
+    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
     const double wrist_z = z - d6*r33;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_y_from_q1 = wrist_z - d1;
+    const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
     const double sign_arm = sigma_arm; /* arm: +1 front, -1 back */
     /* how far ahead of the axis the point is; negative: behind it */
     const double ahead_q1_before_q1_for_q3 = softkin_lane_root(ahead_squared_q1)*sign_arm;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1;
     /* distance that the remaining links must span */
-    const double reach = softkin_lane_root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1);
+    const double reach = softkin_lane_root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1);
     /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
     const double one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach);
     /* 1 + cosine, times the scale */
@@ -59,10 +60,9 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
     missed += sum_q3 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_q3 = -(one_less_cos_q3 - one_plus_cos_q3)/sum_q3;
+    const double cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3;
     /* q3: out of reach */
     missed += fabs(cos_swing_q3) <= 1.0000000000005 ? 0.0 : 1.0;
-    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
     /* sine squared, times the squared scale */
     const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
@@ -76,8 +76,10 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     missed += across_q2_squared_plus_along_q2_squared > 0.0 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
-    const double cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/divisor_q1;
-    const double sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/divisor_q1;
+    const double cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)
+        /distance_q1_squared;
+    const double sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)
+        /distance_q1_squared;
     const double r13_from_q1 = r13*cos_q1_before_q1_for_q3 + r23*sin_q1_before_q1_for_q3;
     const double length_q2 = softkin_lane_root(across_q2_squared_plus_along_q2_squared);
     const double cos_q2 = along_q2/length_q2; /* where it is singular: the angle of the reference */
@@ -163,19 +165,19 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double distance_q1 = softkin_lane_root(wrist_x*wrist_x + wrist_y*wrist_y);
     /* Pythagoras: square of the distance ahead of the axis */
     const double ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1);
-    /* near a fold */
-    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
-    const double divisor_q1 = distance_q1*distance_q1;
+    const double distance_q1_squared = distance_q1*distance_q1;
     /* q1: out of reach */
-    missed += ahead_squared_q1 >= -1e-12*divisor_q1 - rounding_q1 ? 0.0 : 1.0;
-    /* how far ahead of the axis the point is; negative: behind it */
-    const double ahead_q1_before_q1_for_q3_front = softkin_lane_root(ahead_squared_q1);
-    /* coordinate of the point that the remaining links must reach */
-    const double wrist_x_from_q1_front = ahead_q1_before_q1_for_q3_front - a1;
+    missed += ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1 ? 0.0 : 1.0;
+    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
     const double wrist_z = z - d6*r33;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_y_from_q1 = wrist_z - d1;
     const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
+    /* how far ahead of the axis the point is; negative: behind it */
+    const double ahead_q1_before_q1_for_q3_front = softkin_lane_root(ahead_squared_q1);
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_x_from_q1_front = ahead_q1_before_q1_for_q3_front - a1;
     /* distance that the remaining links must span */
     const double reach_front = softkin_lane_root(wrist_y_from_q1_squared
         + wrist_x_from_q1_front*wrist_x_from_q1_front);
@@ -202,7 +204,6 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
     missed += sum_q3_back > 0.0 ? 0.0 : 1.0;
-    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
     const double sin_swing_q3_front_down = -2.0*softkin_lane_root(sine_square_q3_front)/sum_q3_front;
@@ -216,15 +217,16 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double product_in_across_q2_front_down = arm_across_q2_front*wrist_x_from_q1_front;
     const double product_in_across_q2_front_down_2 = arm_along_q2_front_up*wrist_y_from_q1;
     const double across_q2_front_down = -product_in_across_q2_front_down - product_in_across_q2_front_down_2;
-    const double shared_sum = across_q2_front_down*across_q2_front_down
-        + along_q2_front_down*along_q2_front_down;
+    const double across_q2_squared_plus_along_q2_squared_front_down = across_q2_front_down
+        *across_q2_front_down + along_q2_front_down*along_q2_front_down;
+    missed += across_q2_squared_plus_along_q2_squared_front_down > 0.0 ? 0.0 : 1.0;
     missed += reach_front > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += shared_sum > 0.0 ? 0.0 : 1.0;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2_front_up = product_in_along_q2_front_down + product_in_along_q2_front_down_2;
     const double across_q2_front_up = product_in_across_q2_front_down_2 - product_in_across_q2_front_down;
-    const double shared_sum_2 = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up;
-    missed += shared_sum_2 > 0.0 ? 0.0 : 1.0;
+    const double across_q2_squared_plus_along_q2_squared_front_up = across_q2_front_up*across_q2_front_up
+        + along_q2_front_up*along_q2_front_up;
+    missed += across_q2_squared_plus_along_q2_squared_front_up > 0.0 ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
     const double sin_swing_q3_back_down = -2.0*softkin_lane_root(sine_square_q3_back)/sum_q3_back;
@@ -239,27 +241,28 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double product_in_across_q2_back_down = arm_across_q2_back*wrist_x_from_q1_back;
     const double product_in_across_q2_back_down_2 = arm_along_q2_back_up*wrist_y_from_q1;
     const double across_q2_back_down = -product_in_across_q2_back_down - product_in_across_q2_back_down_2;
-    const double shared_sum_3 = across_q2_back_down*across_q2_back_down
+    const double across_q2_squared_plus_along_q2_squared_back_down = across_q2_back_down*across_q2_back_down
         + along_q2_back_down*along_q2_back_down;
+    missed += across_q2_squared_plus_along_q2_squared_back_down > 0.0 ? 0.0 : 1.0;
     missed += reach_back > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += shared_sum_3 > 0.0 ? 0.0 : 1.0;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2_back_up = arm_across_q2_back_times_wrist_y_from_q1 + product_in_along_q2_back_down;
     const double across_q2_back_up = product_in_across_q2_back_down_2 - product_in_across_q2_back_down;
-    const double shared_sum_4 = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up;
-    missed += shared_sum_4 > 0.0 ? 0.0 : 1.0;
+    const double across_q2_squared_plus_along_q2_squared_back_up = across_q2_back_up*across_q2_back_up
+        + along_q2_back_up*along_q2_back_up;
+    missed += across_q2_squared_plus_along_q2_squared_back_up > 0.0 ? 0.0 : 1.0;
     const double d3_times_wrist_y = d3*wrist_y;
     const double product_in_cos_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front*wrist_x;
-    const double one_by_divisor_q1 = 1.0/divisor_q1;
+    const double one_by_distance_q1_squared = 1.0/distance_q1_squared;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
     const double cos_q1_before_q1_for_q3_front = (product_in_cos_q1_before_q1_for_q3_front - d3_times_wrist_y)
-        *one_by_divisor_q1;
+        *one_by_distance_q1_squared;
     const double d3_times_wrist_x = d3*wrist_x;
     const double product_in_sin_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front*wrist_y;
     const double sin_q1_before_q1_for_q3_front = (d3_times_wrist_x + product_in_sin_q1_before_q1_for_q3_front)
-        *one_by_divisor_q1;
+        *one_by_distance_q1_squared;
     const double r13_from_q1_front = r13*cos_q1_before_q1_for_q3_front + r23*sin_q1_before_q1_for_q3_front;
-    const double length_q2_front_down = softkin_lane_root(shared_sum);
+    const double length_q2_front_down = softkin_lane_root(across_q2_squared_plus_along_q2_squared_front_down);
     /* where it is singular: the angle of the reference */
     const double cos_q2_front_down = along_q2_front_down/length_q2_front_down;
     const double sin_q2_front_down = across_q2_front_down/length_q2_front_down;
@@ -281,7 +284,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double radius_q4_front_down = softkin_lane_root(r23_from_q1_front_squared
         + r13_from_q123_front_down*r13_from_q123_front_down);
     missed += radius_q4_front_down > 1e-11 ? 0.0 : 1.0;
-    const double length_q2_front_up = softkin_lane_root(shared_sum_2);
+    const double length_q2_front_up = softkin_lane_root(across_q2_squared_plus_along_q2_squared_front_up);
     /* where it is singular: the angle of the reference */
     const double cos_q2_front_up = along_q2_front_up/length_q2_front_up;
     const double sin_q2_front_up = across_q2_front_up/length_q2_front_up;
@@ -297,11 +300,11 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     missed += radius_q4_front_up > 1e-11 ? 0.0 : 1.0;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
     const double cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - product_in_cos_q1_before_q1_for_q3_front)
-        *one_by_divisor_q1;
+        *one_by_distance_q1_squared;
     const double sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - product_in_sin_q1_before_q1_for_q3_front)
-        *one_by_divisor_q1;
+        *one_by_distance_q1_squared;
     const double r13_from_q1_back = r13*cos_q1_before_q1_for_q3_back + r23*sin_q1_before_q1_for_q3_back;
-    const double length_q2_back_down = softkin_lane_root(shared_sum_3);
+    const double length_q2_back_down = softkin_lane_root(across_q2_squared_plus_along_q2_squared_back_down);
     /* where it is singular: the angle of the reference */
     const double cos_q2_back_down = along_q2_back_down/length_q2_back_down;
     const double sin_q2_back_down = across_q2_back_down/length_q2_back_down;
@@ -321,7 +324,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double radius_q4_back_down = softkin_lane_root(r23_from_q1_back_squared
         + r13_from_q123_back_down*r13_from_q123_back_down);
     missed += radius_q4_back_down > 1e-11 ? 0.0 : 1.0;
-    const double length_q2_back_up = softkin_lane_root(shared_sum_4);
+    const double length_q2_back_up = softkin_lane_root(across_q2_squared_plus_along_q2_squared_back_up);
     /* where it is singular: the angle of the reference */
     const double cos_q2_back_up = along_q2_back_up/length_q2_back_up;
     const double sin_q2_back_up = across_q2_back_up/length_q2_back_up;

@@ -49,7 +49,7 @@ void dualscara_regular(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_a1 = -(one_less_cos_a1 - one_plus_cos_a1)/sum_a1;
+    const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
     /* a1: out of reach */
     missed += fabs(cos_swing_a1) <= 1.0000000000005 ? 0.0 : 1.0;
     const double span_2_x = x - half_base_distance; /* rod 2: known part of its vector */
@@ -66,7 +66,7 @@ void dualscara_regular(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_a2 = -(one_less_cos_a2 - one_plus_cos_a2)/sum_a2;
+    const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
     /* a2: out of reach */
     missed += fabs(cos_swing_a2) <= 1.0000000000005 ? 0.0 : 1.0;
     const double sign_elbow_1 = sigma_elbow_1; /* elbow_1: +1 outward, -1 inward */

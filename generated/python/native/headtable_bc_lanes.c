@@ -86,10 +86,10 @@ void headtable_bc_regular_all(const void *machine, const softkin_lanes *given,
     const double axis_b_positive = offset_b + quotient_in_axis_b_positive;
     const double axis_c_positive = offset_c
         - softkin_lane_angle(sin_c_negative, cos_c_positive)*SOFTKIN_RADIAN;
-    const double sum_in_joint_x_negative = head_offset_times_r33 + radius_c_times_pivot_length;
+    const double sum_in_joint_x_negative = -head_offset_times_r33 - radius_c_times_pivot_length;
     /* joint_x and joint_y from the x and y equations, linear in both */
-    const double joint_x_negative = (-x - sum_in_joint_x_negative*cos_c_positive)*cos_c_positive
-        + (-y - sum_in_joint_x_negative*sin_c_negative)*sin_c_negative;
+    const double joint_x_negative = cos_c_positive*(sum_in_joint_x_negative*cos_c_positive - x)
+        + sin_c_negative*(sum_in_joint_x_negative*sin_c_negative - y);
     const double axis_x_negative = joint_x_negative + offset_x;
     const double axis_y_negative = joint_y_negative + offset_y;
     /* joint_z from the z equation, which is linear in it */

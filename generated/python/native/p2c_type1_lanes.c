@@ -58,7 +58,7 @@ void p2c_type1_regular(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_a2 = -(one_less_cos_a2 - one_plus_cos_a2)/sum_a2;
+    const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
     /* a2: out of reach */
     missed += fabs(cos_swing_a2) <= 1.0000000000005 ? 0.0 : 1.0;
     const double sign_knee_1 = sigma_knee_1; /* knee_1: +1 outward, -1 inward */

@@ -28,20 +28,21 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     const double distance_q1 = softkin_lane_root(x*x + y*y);
     /* Pythagoras: square of the distance ahead of the axis */
     const double ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1);
-    /* near a fold */
-    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
-    const double divisor_q1 = distance_q1*distance_q1;
+    const double distance_q1_squared = distance_q1*distance_q1;
     /* q1: out of reach */
-    missed += ahead_squared_q1 >= -1e-12*divisor_q1 - rounding_q1 ? 0.0 : 1.0;
+    missed += ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1 ? 0.0 : 1.0;
+    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_y_from_q1 = z - d1;
+    const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
     const double sign_arm = sigma_arm; /* arm: +1 front, -1 back */
     /* how far ahead of the axis the point is; negative: behind it */
     const double ahead_q1_before_q1_for_q3 = softkin_lane_root(ahead_squared_q1)*sign_arm;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1;
     /* distance that the remaining links must span */
-    const double reach = softkin_lane_root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1);
+    const double reach = softkin_lane_root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1);
     /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
     const double one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach);
     /* 1 + cosine, times the scale */
@@ -49,14 +50,13 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
     missed += sum_q3 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_q3 = -(one_less_cos_q3 - one_plus_cos_q3)/sum_q3;
+    const double cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3;
     /* q3: out of reach */
     missed += fabs(cos_swing_q3) <= 1.0000000000005 ? 0.0 : 1.0;
-    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
-    const double cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/divisor_q1;
-    const double sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/divisor_q1;
+    const double cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/distance_q1_squared;
+    const double sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/distance_q1_squared;
     const double axis_a1 = offset_a1
         + softkin_lane_angle(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*SOFTKIN_RADIAN;
     const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
@@ -107,18 +107,18 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double distance_q1 = softkin_lane_root(x*x + y*y);
     /* Pythagoras: square of the distance ahead of the axis */
     const double ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1);
-    /* near a fold */
-    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
-    const double divisor_q1 = distance_q1*distance_q1;
+    const double distance_q1_squared = distance_q1*distance_q1;
     /* q1: out of reach */
-    missed += ahead_squared_q1 >= -1e-12*divisor_q1 - rounding_q1 ? 0.0 : 1.0;
+    missed += ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1 ? 0.0 : 1.0;
+    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_y_from_q1 = z - d1;
+    const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
     /* how far ahead of the axis the point is; negative: behind it */
     const double ahead_q1_before_q1_for_q3_front = softkin_lane_root(ahead_squared_q1);
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x_from_q1_front = ahead_q1_before_q1_for_q3_front - a1;
-    /* coordinate of the point that the remaining links must reach */
-    const double wrist_y_from_q1 = z - d1;
-    const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
     /* distance that the remaining links must span */
     const double reach_front = softkin_lane_root(wrist_y_from_q1_squared
         + wrist_x_from_q1_front*wrist_x_from_q1_front);
@@ -145,7 +145,6 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
     missed += sum_q3_back > 0.0 ? 0.0 : 1.0;
-    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += reach_front > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += reach_back > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double cos_swing_q3_front = -(one_less_cos_q3_front - one_plus_cos_q3_front)/sum_q3_front;
@@ -153,14 +152,14 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
     const double d3_times_y = d3*y;
     const double ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3_front*x;
-    const double one_by_divisor_q1 = 1.0/divisor_q1;
+    const double one_by_distance_q1_squared = 1.0/distance_q1_squared;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
     const double cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)
-        *one_by_divisor_q1;
+        *one_by_distance_q1_squared;
     const double d3_times_x = d3*x;
     const double ahead_q1_before_q1_for_q3_front_times_y = ahead_q1_before_q1_for_q3_front*y;
     const double sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_y + d3_times_x)
-        *one_by_divisor_q1;
+        *one_by_distance_q1_squared;
     const double axis_a1_front = offset_a1
         + softkin_lane_angle(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*SOFTKIN_RADIAN;
     /* sine squared, times the squared scale */
@@ -207,9 +206,9 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
     const double cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)
-        *one_by_divisor_q1;
+        *one_by_distance_q1_squared;
     const double sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_front_times_y)
-        *one_by_divisor_q1;
+        *one_by_distance_q1_squared;
     const double axis_a1_back = offset_a1
         + softkin_lane_angle(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*SOFTKIN_RADIAN;
     /* sine squared, times the squared scale */

@@ -104,7 +104,7 @@ class BipodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Bipod_Rotary"
-    KEY = "bipod_rotary 473f31408cd02ea0"
+    KEY = "bipod_rotary a8f6ed93e9d7f21f"
     AXES = (
         Axis(
             name="A1",

@@ -166,7 +166,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
-    KEY = "mc_kin_type_12_xy 435a91b066554a9e"
+    KEY = "mc_kin_type_12_xy f94135b3b76569a3"
     AXES = (
         Axis(
             name="A1",

@@ -104,7 +104,7 @@ class P2CType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type1"
-    KEY = "p2c_type1 c43c96a84af6254a"
+    KEY = "p2c_type1 5cde2895b0e0be08"
     AXES = (
         Axis(
             name="A1",

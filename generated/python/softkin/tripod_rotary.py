@@ -142,7 +142,7 @@ class TripodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
-    KEY = "tripod_rotary 26decb92a0ca6223"
+    KEY = "tripod_rotary 41a8b0f138f7785b"
     AXES = (
         Axis(
             name="A1",

@@ -94,7 +94,7 @@ def test_the_same_answers(mechanism: Mechanism) -> None:
     random poses have one.
     """
     kin = kinematics_of(mechanism)
-    one = specialised(kin.derived_branch, {j.turn: sp.Integer(0) for j in kin.period_joints})
+    one = specialised(kin.branch, {j.turn: sp.Integer(0) for j in kin.period_joints})
     found = regular(one, {o.name for o in kin.setup.outputs})
     if found is None:  # then the whole program has more than arithmetic
         assert any(isinstance(s, NEWTON_OR_SOLVE) for s in one.body) or any(let.value.has(sp.sin) for let in one.lets())
