@@ -10,6 +10,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib import import_module
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -131,8 +132,10 @@ def attempts(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES)
     # What is derived lives as long as its process: looking for garbage among it finds nothing, and takes a tenth of the
     # time.
     _load()
-    with ProcessPoolExecutor(max_workers=min(PROCESSES, len(work.missing)), initializer=gc.disable) as pool:
-        derived = pool.map(partial(_attempt, profile, wanted), work.missing)
+    first, *others = work.missing
+    made = _attempt(profile, wanted, first)  # here: what it fills, templates and caches, all processes have then
+    with ProcessPoolExecutor(max_workers=min(PROCESSES, max(1, len(others))), initializer=gc.disable) as pool:
+        derived = chain([made], pool.map(partial(_attempt, profile, wanted), others))
         try:
             for kept in work.kept:
                 yield next(derived) if kept is None else kept
