@@ -11,8 +11,8 @@ import pytest
 from softkin import Frame, Status
 
 from tests.machines.collection import MACHINES
+from tests.machines.grid import is_own
 from tests.machines.made import Array, Made, made
-from tests.machines.test_machines import is_own
 
 _POSES, _EVERY = 240, 6
 _CLOSED = 1e-9

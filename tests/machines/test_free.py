@@ -7,8 +7,8 @@ import pytest
 from softkin import Status
 
 from tests.machines.free_machines import FREED, FREED_SOLUTIONS
+from tests.machines.grid import grid
 from tests.machines.made import Array, Made, made
-from tests.machines.test_machines import grid
 from tests.text.controller import OK
 
 

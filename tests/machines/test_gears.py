@@ -12,13 +12,11 @@ from softkin import KinematicsError, Status
 from sympy import Rational
 
 from derive.description.chains.gears import in_other_joints, with_gears
-from derive.description.mechanism import DescriptionError, Mechanism
-from derive.frames import Ry, Rz, Tx, Ty, Tz
+from derive.frames import Rz, Tx, Tz
 from derive.kinematics.build import build
-from derive.mechanism import coupling, rotary
 from derive.witness import witness
 from tests.machines.made import Array, Made, made
-from tests.machines.task_machines import A1, A2, DRIVEN, G1, L1, L2, WITH_GEARS, A, B, X, Y, Z
+from tests.machines.task_machines import A1, A2, DRIVEN, L1, WITH_GEARS, Z
 from tests.mechanisms import catalogue
 from tests.text.controller import OK
 
@@ -198,16 +196,6 @@ def test_a_gear_of_any_size_and_sign(gear: float) -> None:
             assert status == OK and (np.abs(np.array(found[:3]) - axes) <= 1e-7 * scale).all()
 
 
-@pytest.mark.parametrize("gear", [0.0, float("nan"), float("inf"), 1e7, -1e7])
-def test_a_gear_that_is_none_is_refused_when_the_machine_is_set_up(gear: float) -> None:
-    machine = made("SCARA with gears of any ratio")
-    with pytest.raises(KinematicsError) as refusal:
-        type(machine.robot)(**{**machine.robot.parameters, "gear_1": gear})
-    assert refusal.value.status is Status.NOT_INITIALIZED
-    controller = machine.controller()
-    assert controller.initialise({**machine.robot.parameters, "gear_1": gear}) != OK
-
-
 def test_axes_that_do_not_repeat_after_360_degrees_are_no_modulo_axes() -> None:
     """SoftMotion's modulo axes have a period of 360 degrees: all others are declared linear, like a quill."""
     kinds = {
@@ -254,56 +242,6 @@ def test_the_limits_of_drives_choose_among_turns_of_the_joint(name: str) -> None
     assert answered >= 3
 
 
-K = coupling("ratio", "a ratio that may be zero", nominal=0.5)
-
-
-def _with(name: str, **changes: object) -> Mechanism:
-    return replace(DRIVEN[name], **changes)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(
-    ("mechanism", "message"),
-    [
-        (
-            _with("SCARA with gears", chain=Rz(A1 * K) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(Z), parameters=(L1, L2, K)),
-            "the gear of joint 'A1' is ratio, which may be zero: state it by numbers,"
-            " lengths and `transmission(...)` alone",
-        ),
-        (
-            _with(
-                "head on a differential",
-                chain=Tx(X) * Ty(Y) * Tz(Z) * Rz(A / G1 + B) * Ry(A / G1 - B),
-                parameters=(G1,),
-                branches=(),
-            ),
-            "2 turns of the chain share 2 motors so that none follows from the ones before it; state every"
-            " angle by motors of earlier axes and its own, or give the gears as numbers",
-        ),
-        (
-            _with(
-                "head on a differential",
-                chain=Tx(X) * Ty(Y) * Tz(Z) * Rz(A) * Ry(B) * Rz(A / G1),
-                parameters=(G1,),
-                branches=(),
-            ),
-            "the chain turns by (1/gear_1, 0) of its motors, which is no sum of its other turns; state every"
-            " angle by motors of earlier axes and its own, or give the gears as numbers",
-        ),
-        (
-            _with(
-                "SCARA with gears",
-                joints=(rotary("A1", "turn", domain=(-90.0, 90.0)), A2, Z),
-            ),
-            "joint 'A1' has a gear and a domain: state the domain as limits of its axis",
-        ),
-    ],
-)
-def test_what_is_no_gear_is_refused(mechanism: Mechanism, message: str) -> None:
-    with pytest.raises(DescriptionError) as refusal:
-        build(mechanism)
-    assert str(refusal.value) == message
-
-
 @pytest.mark.parametrize("name", DRIVEN)
 def test_batches_write_the_same_numbers_of_turns(name: str) -> None:
     machine = made(name)
@@ -346,7 +284,9 @@ def test_a_machine_with_gears_carries_an_orientation_kinematics() -> None:
 
 
 def test_a_gear_that_is_written_as_a_decimal_number_is_a_fraction() -> None:
-    own = with_gears(_with("SCARA with gears", chain=Rz(A1 * 0.3333333333333333) * Tx(L1) * Rz(A2 * 0.0125) * Tz(Z)))
+    own = with_gears(
+        replace(DRIVEN["SCARA with gears"], chain=Rz(A1 * 0.3333333333333333) * Tx(L1) * Rz(A2 * 0.0125) * Tz(Z))
+    )
     assert [str(joint.ratio) for joint in own.joints] == ["1/3", "1/80", "1"]
 
 

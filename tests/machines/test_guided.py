@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -12,12 +12,10 @@ import sympy as sp
 from numpy.testing import assert_allclose
 from softkin import KinematicsError, Status
 
-from derive.command.explain import explanation
-from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning, X, guide, on_plate
+from derive.description.mechanism import Mechanism, Turning
 from derive.description.validate import validate
 from derive.ir.interpret import evaluate
 from derive.ir.symbols import ROTATION_ENTRIES
-from derive.kinematics.build import build
 from derive.pipeline import Built
 from tests.machines.guided import GUIDED
 from tests.machines.made import Array, built_of, imported_class
@@ -338,55 +336,3 @@ def test_a_refused_pose_is_told_by_its_twist_or_leg() -> None:
     assert refused.value.status is Status.UNREACHABLE
     status, _ = one.controller.inverse(upside_down.position, upside_down.rotation, (1, 1, 1), [0.0] * 3)
     assert status == UNREACHABLE
-
-
-RPS = GUIDED["3-RPS on a raised base"]
-
-
-def test_the_steps_for_what_is_not_commanded_are_explained() -> None:
-    told = list(explanation(RPS))
-    first = told.index("  not commanded: x, y, twist; from the guides, on the side of the home pose")
-    assert told[first + 1].startswith("  1. twist <- trigonometric <- ")
-    assert sum(" <- " in line for line in told[first:]) == 6
-
-
-WRONG = {
-    "a guide too few": (
-        replace(RPS, guides=RPS.guides[:2]),
-        "the platform moves 6 quantities, and the task commands all but x, y, twist: as many guides without joints "
-        "must hold the others, and there are 2",
-    ),
-    "guides that leave something open": (
-        replace(RPS, guides=(*RPS.guides[:2], guide("3", (1, 0, 0), (X, 0, 0)))),
-        "guide '3': its point must be a point of the plate",
-    ),
-    "parallel guides in one place": (
-        replace(RPS, guides=tuple(guide(str(k), (0, 1, 0), on_plate(0, 0, 0)) for k in range(3))),
-        "the task commands 'z', and the loop moves x, y, twist as well: its guides do not hold that",
-    ),
-    "a guide that a joint turns": (
-        replace(RPS, guides=(*RPS.guides[:2], guide("3", (sp.sin(RPS.joints[0].symbol), 1, 0), on_plate(0, 0, 0)))),
-        "the closure has 4 equations, and the task commands only 3 quantities (z, tilt x, tilt y)",
-    ),
-    "a guide with two coordinates and three": (
-        None,
-        "guide '1': its normal and its point have 3 and 2 coordinates",
-    ),
-    "a home pose of the task alone": (replace(RPS, home=(450, 0, 0)), "needs a home pose of 6 coordinates, and has 3"),
-    "no guides": (replace(RPS, guides=()), "must be held by guides=, planes in which points of a platform that turns"),
-    "a whole rotation": (
-        replace(RPS, task=Task("z", Turning.FULL)),
-        "the task commands 4 quantities (z, turn x, turn y, turn z), and there are only 3 joints",
-    ),
-}
-
-
-@pytest.mark.parametrize("what", WRONG)
-def test_what_guides_do_not_hold_is_refused(what: str) -> None:
-    wrong, sentence = WRONG[what]
-    with pytest.raises(DescriptionError) as refused:
-        if wrong is None:
-            guide("1", (0, 0, 1), on_plate(1, 2))
-        else:
-            build(validate(wrong))
-    assert sentence in str(refused.value)

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from itertools import product
 
 import numpy as np
 import pytest
 import softkin
-from numpy.typing import NDArray
 from softkin import KinematicsError, Status
 
 from tests.machines import angle_machines
 from tests.machines.chain_machines import BENT_WRISTS, CHAIN_SOLUTIONS
-from tests.machines.collection import HELD, MACHINES, PARAMETERS_DECIDE
+from tests.machines.collection import MACHINES, PARAMETERS_DECIDE
+from tests.machines.grid import grid, is_own, margins
 from tests.machines.made import Array, Made, made
 from tests.machines.subset_machines import SUBSET_SOLUTIONS
 from tests.machines.task_machines import TASK_SOLUTIONS
@@ -66,30 +65,8 @@ EXPECTED = {
     **CHAIN_SOLUTIONS,
 }
 """The largest number of solutions, as a search of the closure from many starts finds them."""
-MOST = 300
 _CLOSED, _SAME, _NEAR_SINGULAR = 1e-9, 1e-7, 1e-3
 _DOUBLE, _NEAR_DOUBLE = 1e-6, 1e-3
-
-
-def grid(machine: Made) -> Array:
-    """Joints at multiples of a quarter turn and of a length, where every singular pose is, and anywhere."""
-    rng = np.random.default_rng(4)
-    angles, slides = (-180.0, -90.0, 0.0, 90.0, 180.0), (-0.5, 0.0, 0.3)
-    rows = np.array(list(product(*[angles if a else slides for a in machine.closure.angles])))
-    if len(rows) > MOST:
-        rows = rows[rng.choice(len(rows), MOST, replace=False)]
-    sizes = np.where(machine.closure.angles, 200.0, 0.9)
-    return machine.axes(np.concatenate([rows, rng.uniform(-1.0, 1.0, (100, rows.shape[1])) * sizes]))
-
-
-def is_own(machine: Made, axes: Array) -> NDArray[np.bool_]:
-    """Whether every positive quantity of the machine is."""
-    return np.all(machine.closure.positive(machine.closure.joints(axes)) > 1e-6, axis=1)
-
-
-def margins(machine: Made, axes: list[float]) -> list[float]:
-    """The singularity margins at axis values."""
-    return list(machine.robot.singularity(axes).margins.values())
 
 
 def is_searched(machine: Made) -> bool:
@@ -245,57 +222,6 @@ def test_a_flange_that_bars_keep_level_turns_about_one_axis() -> None:
     assert (robot.FREEDOM, image.flange_axis, image.base_axis) == ("one", (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
 
-@pytest.mark.parametrize("name", HELD)
-def test_a_held_joint_keeps_the_value_of_the_reference(name: str) -> None:
-    machine = made(name)
-    held = [machine.mechanism.joints.index(j) for j in machine.mechanism.held_joints]
-    assert machine.robot.HELD == tuple(held) != ()
-    axes = grid(machine)[-20:]
-    positions, rotations = machine.closure.poses(axes)
-    answered = 0
-    for own, position, rotation in zip(axes, positions, rotations, strict=True):
-        for turn in (0.0, 5.0):
-            reference = own.copy()
-            reference[held] += turn
-            for solution in machine.robot.inverse_all((position, rotation), reference):
-                if solution.axes is not None:
-                    answered += 1
-                    assert [solution.axes[i] for i in held] == [reference[i] for i in held]
-                    error = machine.error(np.array([solution.axes]), position[None], rotation[None])
-                    assert error.max() <= _CLOSED
-    assert answered >= 2 * len(axes)
-
-
-@pytest.mark.parametrize("name", HELD)
-def test_a_held_joint_needs_a_reference(name: str) -> None:
-    robot = made(name).robot
-    frame, _ = robot.forward(made(name).axes(np.full((1, len(robot.AXES)), 0.4))[0])
-    calls = (
-        lambda: robot.inverse(frame),
-        lambda: robot.inverse_all(frame),
-        lambda: robot.inverse_batch([frame.position], [frame.rotation]),
-        lambda: robot.inverse_all_batch([frame.position], [frame.rotation]),
-    )
-    for call in calls:
-        with pytest.raises(KinematicsError, match="a reference is needed: it holds the value of"):
-            call()
-    assert set(robot.branches((frame.position, frame.rotation))) == {None}
-
-
-@pytest.mark.parametrize("name", HELD)
-def test_the_jacobian_has_a_column_for_every_axis_and_the_margins_leave_the_held_ones_out(name: str) -> None:
-    """Where the margins vanish the axes that are solved for cannot move the flange, whatever the held ones can."""
-    machine = made(name)
-    solved = [j not in machine.mechanism.held_joints for j in machine.mechanism.joints]
-    ratios = []
-    for axes in grid(machine)[-40:].tolist():
-        jacobian = np.array(machine.robot.jacobian(axes))
-        expected = machine.closure.jacobian(np.array([axes]), machine.closure.poses(np.array([axes]))[0])[0]
-        assert np.allclose(jacobian, expected, rtol=1e-9, atol=1e-9 * machine.reach)
-        ratios.append(abs(np.linalg.det(jacobian[:, solved])) / np.prod(np.abs(margins(machine, axes))))
-    assert np.ptp(np.log(ratios)) <= 1e-6
-
-
 @pytest.mark.parametrize(("name", "lean"), [("skewed rail", 89.99999999999), ("rails in a wedge", 1e-12)])
 def test_parallel_slides_are_refused_when_the_machine_is_set_up(name: str, lean: float) -> None:
     machine = made(name)
@@ -318,29 +244,6 @@ def test_a_radius_that_an_arm_swings_has_margins_without_a_unit(unit: float) -> 
         assert found["side"] == pytest.approx(np.sin(np.radians(angle)), rel=1e-9)
     frame, configuration = robot.forward((20.0, 1e-6, 5.0 * unit))
     assert robot.inverse(frame, configuration, (0.0, 0.0, 0.0)) == pytest.approx((20.0, 1e-6, 5.0 * unit), abs=1e-6)
-
-
-def test_a_machine_with_a_held_joint_carries_an_orientation_kinematics() -> None:
-    """A coupling holds what its position kinematics holds, asks for a reference, and reaches the frame from another."""
-    robot = made("SCARA on a rail").robot
-    coupled = softkin.Coupled(robot, softkin.Tool(tool_z=-50.0))
-    axes = np.array([30.0, 20.0, 40.0, 10.0, 70.0])
-    frame, configuration = coupled.forward(axes)
-    assert coupled.HELD == robot.HELD == (0,)
-    assert np.allclose(coupled.inverse(frame, configuration, axes), axes, rtol=0.0, atol=1e-9)
-    with pytest.raises(KinematicsError, match="a reference is needed: it holds the value of X"):
-        coupled.inverse(frame, configuration)
-    elsewhere = coupled.inverse(frame, configuration, axes + np.array([50.0, 0.0, 0.0, 0.0, 0.0]))
-    assert elsewhere[0] == 80.0
-    assert np.allclose(coupled.forward(elsewhere)[0].position, frame.position, rtol=0.0, atol=1e-9)
-
-
-def test_the_limits_of_a_held_joint_refuse_the_reference() -> None:
-    """A held axis is not moved inside its limits: the pose is refused, and the refusal names the axis."""
-    robot = type(made("SCARA on a rail").robot)(**{**made("SCARA on a rail").robot.parameters, "upper_x": 50.0})
-    frame, configuration = robot.forward((30.0, 20.0, 40.0, 10.0, 70.0))
-    with pytest.raises(KinematicsError, match=r"X: above its upper limit, missing 30\.0 u"):
-        robot.inverse(frame, configuration, (80.0, 20.0, 40.0, 10.0, 70.0))
 
 
 def test_a_flange_that_turns_about_another_axis_than_z() -> None:

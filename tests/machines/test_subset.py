@@ -15,9 +15,9 @@ from derive.description.validate import validate
 from derive.drawing.drawing import drawing_of
 from derive.emit.picture.view import axes_of
 from derive.kinematics.build import build
+from tests.machines.grid import grid
 from tests.machines.made import Array, built_of, imported_class, made
 from tests.machines.subset_machines import A1, LOOPS, SUBSETS
-from tests.machines.test_machines import grid
 from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.units import compiled_text
 
