@@ -176,5 +176,6 @@ def _letters(text: str, size: float, is_bold: bool) -> _Letters:
 
 @cache
 def _font(is_bold: bool) -> FT2Font:
+    """From memory: letters are read when they are drawn, and processes that share an open file read each other's."""
     name = "DejaVuSans-Bold.ttf" if is_bold else "DejaVuSans.ttf"
-    return FT2Font(str(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / name))
+    return FT2Font(io.BytesIO((Path(matplotlib.get_data_path()) / "fonts" / "ttf" / name).read_bytes()))
