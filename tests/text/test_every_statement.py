@@ -23,6 +23,7 @@ from tests.text import (
     test_matrix_functions,
     test_not_initialised,
     test_shared_functions,
+    test_shared_matrices,
     test_singular_poses,
 )
 from tests.text.comparisons import COMPARISONS, POSELESS
@@ -127,9 +128,9 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
             compare_all(serial_pairs_of(mechanism)[0], serial_pairs_of(mechanism)[0].regular[0])
         test_self_test.every_statement_of_the_base(libraries[-1], scara)
         for size in range(1, 7):
-            test_shared_functions.test_solve(size)
-        test_shared_functions.test_solve_where_nothing_solves(np.ones((3, 3)))
-        for test in vars(test_shared_functions).values():
+            test_shared_matrices.test_solve(size)
+        test_shared_matrices.test_solve_where_nothing_solves(np.ones((3, 3)))
+        for test in (*vars(test_shared_functions).values(), *vars(test_shared_matrices).values()):
             if getattr(test, "__name__", "").startswith("test_") and not hasattr(test, "pytestmark"):
                 test()
         for order in test_matrix_functions.ORDERS:
