@@ -32,7 +32,7 @@ def key(kin: Kinematics) -> str:
 
 
 def in_lanes(kin: Kinematics) -> list[str]:
-    """The functions that compute several poses at a time: of one branch and of every branch; where there are none."""
+    """The functions that compute several poses at a time: of one branch, and of every branch; empty where none do."""
     found = c.part(kin)
     return [] if found is None else [f"{found['index']['module']}_{one.name}" for one in lanes.in_lanes(kin)]
 

@@ -8,7 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sympy import sin
 
+from derive.emit.native import sources as native_sources
+from derive.frames import Rz, Tx, Ty, Tz
+from derive.kinematics.build import build
+from derive.mechanism import Mechanism, Task, branch, length, linear, rotary
 from tests.native.build import SOURCES, STRICT, compiler
 from tests.native.machines import SOME, native
 
@@ -26,6 +31,7 @@ int main(void) {
 OPTIMIZED = ("-O3", "-fPIC")
 INFORMED = "-fopt-info-vec-optimized"
 LAST_DIGITS = 3 * 2.0**-52
+AROUND = [("lane", "missed", "misses", "statuses", "across"), ("lane", "axes", "given", "machine", "k")]
 EDGES = (0.0, -0.0, 1.0, -1.0, math.sqrt(2.0) - 1.0, 1e-300, -1e-300, 1e9, -1e9, 5e-324)
 
 
@@ -74,6 +80,24 @@ def test_no_branch(module: str, tmp_path: Path) -> None:
     )  # fmt: skip
     places = [i for i, line in enumerate(source.read_text().splitlines(), 1) if "lane < SOFTKIN_LANES" in line]
     assert places and all(f"{source.name}:{place}:" in done.stderr for place in places)
+
+
+@pytest.mark.parametrize("names", AROUND)
+def test_names_of_the_loop(names: tuple[str, ...], tmp_path: Path) -> None:
+    """A machine whose dimensions are called as what stands around its formulas: none hides another."""
+    first, second, slide = rotary("A1", "arm 1"), rotary("A2", "arm 2"), linear("Z", "slide")
+    one, other, x, y, z = own = [length(name, name, nominal=300.0) for name in names]
+    mechanism = Mechanism(
+        name="Kin_Around", family="odd", source="the tests", summary="An arm.", joints=(first, second, slide),
+        parameters=tuple(own), chain=Tx(x) * Ty(y) * Tz(z) * Rz(first) * Tx(one) * Rz(second) * Tx(other) * Tz(slide),
+        task=Task("xyz"), branches=(branch("elbow", sin(second), right=1, left=-1),),
+    )  # fmt: skip
+    for path, text in native_sources(build(mechanism)).items():
+        (tmp_path / Path(path).name).write_text(text)
+    source = tmp_path / "around_lanes.c"
+    assert [name for name in names if f"k->{name}" not in source.read_text()] == []
+    options = ["-Wshadow", f"-I{tmp_path}", f"-I{SOURCES}", "-fsyntax-only"]
+    subprocess.run([*compiler(), *STRICT, *options, str(source)], check=True)
 
 
 @pytest.mark.parametrize("name", SOME)

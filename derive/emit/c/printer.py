@@ -37,9 +37,9 @@ WORDS = frozenset(
 _RESERVED = re.compile(r"_[A-Z_]|softkin_|SOFTKIN_|(M|FP|HUGE|INT\d*|UINT\d*|SIZE|MATH)_[A-Z0-9_]+$")
 """How names begin that the compiler, its library or the shared header has."""
 _TAKEN = frozenset(
-    "arguments axes context cos fabs finish found frame given joints k machine made margins otherwise p parameters "
-    "pass place reference results root rotation rows search signs sin sizes sqrt start status system take turn turns "
-    "values wanted why".split()
+    "arguments axes context cos fabs finish found frame given joints k lane machine made margins missed misses near "
+    "otherwise p parameters pass place reference results root rotation rows search signs sin sizes sqrt start status "
+    "statuses system take turn turns values wanted why".split()
 )
 """Names that a printed function needs for its own variables, and for what it calls."""
 _TEXT = 80
