@@ -1,4 +1,21 @@
-"""The compiler of robot kinematics: from a mechanism's equations to proven Python and Structured Text."""
+"""The compiler of robot kinematics: from a mechanism's equations to proven Python and Structured Text.
+
+ARCHITECTURE.md has a row for each folder. The modules beside these folders:
+
+__main__: `python -m derive`, the same as the command `softkin`
+cache: what earlier runs derived, kept by the content of everything that it depends on
+faults: whose fault it is that a machine is not derived: its description's, or the compiler's
+frames: turns and shifts, of which a chain is made, for mechanism files to import
+kept: results that are kept by the identity of what they were computed from
+live: a description as a class of `softkin`, at once
+mechanism: the vocabulary of a description, for mechanism files to import
+output: the output folder, compared with what it should hold, or replaced as a whole
+pipeline: mechanisms through the folders: derived, measured, drawn, written
+program: one degree in radians, and a choice, for mechanism files to import
+progress: what a run says while it works
+reach: conditions that arms can reach a common point, for mechanism files to import
+vectors: vectors for closures that are not a chain, for mechanism files to import
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,17 @@
-"""The command line."""
+"""The command line.
+
+It may import every other folder.
+
+catalogue: `generate` and `check` without a file: all mechanisms, one output folder
+explain: `explain`: the derivation of a machine, step by step
+line: what may be asked, and the status of a run
+live: `live`: serve the page of a machine, and move it with the values of a controller
+new: `new`: a commented description to start from
+own: `derive` and `check` with files: machines of the user's own, each by itself
+report: `report`: a page for every mechanism, and an index; and the page of one machine
+stages: what a run says about one machine
+view: `view`: machines in one page for the browser
+"""
 
 from __future__ import annotations
 

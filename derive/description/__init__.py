@@ -1,2 +1,21 @@
-"""The vocabulary of a mechanism: joints, parameters, chains, rods, branches, the task; and the checks of a
-description."""
+"""The vocabulary of a mechanism, and the checks of a description.
+
+It may import `ir`, `algebra` and `geometry`. Mechanism files import it as `derive.mechanism` and its neighbours.
+
+branches: branches and assembly modes: two solutions that the sign of an indicator tells apart
+catalogue: the mechanism files of a folder, loaded and checked
+chains/: what may stand in a chain, and numbers and gears that do
+dimensions: the parameters of a machine by their roles, and conditions between them
+errors: the error of a description that cannot be right
+fields: the kinds of values that the fields of a mechanism hold
+inner_names: the names that the inputs of a machine have inside a derivation
+joints: how joints move, what their values mean, and their ranges
+kinds: the message where a part of a description is of another kind than it must be
+loops: what is stated of a closed loop: rods, planes that guide points, bounds and limits of quantities
+mechanism: the mechanism with its task, and all names that a description uses
+places: where in its file a description is wrong
+quantity: joints and parameters as symbols in equations
+reach: conditions that arms can reach a common point
+remedies: what to do about a refusal whose own sentence does not say it
+validate: a description that cannot be right, refused before anything is derived
+"""

@@ -1,1 +1,26 @@
-"""Output languages: a printer writes expressions, a template arranges text, and neither computes."""
+"""Output languages: a printer writes expressions, a template arranges text, and neither computes.
+
+It may import the folders from `ir` to `drawing`. Nothing outside of it knows a language, but for `view`. The folders in
+it form layers, each of which may import those before it: first `c`, `javascript`, `plcopen` and `picture`, then
+`python`, then `st` and `linuxcnc`, then `softmotion`, then `page`.
+
+What no mechanism changes stands in `templates/`, in a folder for each language; `templates/native` has what joins the C
+of machines with Python, as an extension beside the package.
+
+braces: the layout of languages with braces
+c/: C99
+every_branch: all branches of the inverse as one straight line, for Python and C
+expression: the walk over an expression that all languages share
+inputs: what the inputs of a machine are called in a language
+javascript/: JavaScript
+language: what an output language is
+linuxcnc/: kinematics modules of LinuxCNC
+named_package: the Python package under another name
+native: the native core of the Python package: the C of its machines
+page/: the derivation of a machine as HTML
+picture/: the drawing of a machine as PNG and SVG
+plcopen/: objects of a Structured Text project, and PLCopenXML
+python/: the Python package
+softmotion/: function blocks for SoftMotion
+st/: Structured Text
+"""

@@ -1,1 +1,15 @@
-"""From a robot file (URDF, MJCF, a table of Denavit-Hartenberg parameters) to a description to be read and edited."""
+"""From a robot file (URDF, MJCF, a table of Denavit-Hartenberg parameters) to a description to be read and edited.
+
+It may import the folders from `ir` to `mechanisms`.
+
+arms/: the robot as lines in space, and its chain in the simple form
+branches: the branches of common arms: shoulder, elbow, wrist
+expressions: amounts of a chain as Python text
+formats/: the readers of robot files
+importing: the whole import: read, put back what was rounded, bring into the simple form, write, tell
+line: the command line of an import
+naming: names of axes, parameters and blocks, made of the names in the file
+report: what an import tells its user
+robot: what a robot file says, as data in which no file format shows
+writing: a description as text
+"""

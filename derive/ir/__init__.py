@@ -1,2 +1,20 @@
-"""A program as data: symbols, numerical constants, primitives, statements; how it is checked, interpreted and
-assembled."""
+"""A program as data: symbols, statements and values, and how a program is checked, executed and rearranged.
+
+It may import `kept`, and no other folder. `cells` and `roots` are also the text of two modules of the Python package.
+
+cells: the cells of a root scan, on arrays: how many roots a cell may hold, and where it is cut
+constants: the numerical constants of the product, but for those of the root scan
+graph: values as a graph, in which equal values are one node
+interpret: the reference interpreter, which executes a program over arrays
+names: names that are free
+passes: passes over programs: aliases folded, statements in the order of their use, constants hoisted
+primitives: the functions that every language implements
+program: programs, their statements and their statuses
+reason: why a program refuses: what is at fault, what is wrong with it, and how much is missing
+roots: all roots of a trial along one joint, on arrays, found with `cells`
+symbols: every name that programs share, and the signs of branches
+tree: a program as a structured tree, with choices of which only one side is run
+typed: the check of the types of a whole program
+types: the types of values, and the operations on each
+verify: the verifier, which finds a broken program at once
+"""

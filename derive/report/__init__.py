@@ -1,1 +1,17 @@
-"""Reports on a mechanism: reasons of refusals, costs, and reference calls for the self-test on the controller."""
+"""Reports on a mechanism, for emitted files and for readers: reasons, costs, self-tests, the derivation step by step.
+
+It may import the folders from `ir` to `kinematics`.
+
+branch_meanings: what derived branches and assembly modes mean, in words and at one pose
+branch_stretches: parts of a branch that other branches share
+cost: the operations of a call in the worst case
+derived: the derivation again, as it is told to a reader
+effort: the operations of one call of the self-test
+reasons: the reasons of refusals in words
+reference_calls: the answers of the methods of a block, by the reference interpreter
+self_test: the calls of the self-test, with their answers
+singular_poses: poses in which one margin vanishes
+used: which equations a step was made of
+workspace_map: slices through the workspace: solutions and margins at each point
+zero_directions: how each axis points in the zero pose, in words
+"""

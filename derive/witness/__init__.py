@@ -2,6 +2,21 @@
 
 CasADi functions are built from a mechanism's description alone, never from a derived formula. They give the
 residual, the Jacobian by automatic differentiation, and the number of solutions by multi-start root finding.
+
+It may import the folders from `ir` to `kinematics`.
+
+assembly: the assembly mode of a loop that turns its platform, from the closure alone
+checks: the checks of forward kinematics, Jacobian and margins, and how errors are measured
+closure: the closure equations as CasADi functions
+disagreement: the error where a derived formula is wrong
+home_samples: axis values of a loop that turns its platform, around its home pose
+inverse: the checks of the inverse: every slot, the way back, no solution missing
+jointless: the check of a mechanism without joints
+orientation: the check of the orientations that a flange can have
+planted: poses close to where branches of a root scan meet
+roots: all solutions of the closure for a pose, from many starts
+samples: machines and regular poses, drawn from a fixed seed
+terms: expressions of a description as CasADi expressions
 """
 
 from __future__ import annotations

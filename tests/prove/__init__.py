@@ -1,1 +1,1 @@
-"""The proof on LinuxCNC, as far as it can be tested without LinuxCNC."""
+"""The proof on LinuxCNC without LinuxCNC: its verdict on records with planted faults, and where it cannot run."""

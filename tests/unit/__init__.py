@@ -1,1 +1,1 @@
-"""A folder for each folder of the compiler, tested piece by piece and on mechanisms that it was not written for."""
+"""Folders of the compiler, tested piece by piece and on mechanisms that it was not written for."""

@@ -1,1 +1,1 @@
-"""The viewer in a real browser."""
+"""The viewer, driven in a real browser; what it shows is held against Python."""

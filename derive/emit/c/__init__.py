@@ -1,1 +1,16 @@
-"""C99: a header and a source a mechanism, on the one source that all share in `templates/c`."""
+"""C99: a header and a source a mechanism, on the one source that all share in `templates/c`.
+
+It may import no other folder of `emit`. It writes these files on demand, and the native core of the Python package.
+
+arc_tangent: the arc tangent as a polynomial, for several poses at a time
+description: the tables of a machine: axes, parameters, configuration, limits, margins
+every_branch: all branches as one function
+functions: which program becomes which function: what it is given, and where its results go
+lanes: several poses at a time, for the native core alone
+layout: indents, comments and long statements
+package: the files of a mechanism, and those that all share
+printer: expressions
+program: a program as a function with early returns
+refusal: how a function refuses
+setup: the function that computes the constants of a machine
+"""

@@ -1,1 +1,25 @@
-"""Structured Text: expressions, statements, refusals, names, and the contract of SoftMotion as data."""
+"""Structured Text: expressions, statements, refusals, names, and the contract of SoftMotion.
+
+It may import the folders of `emit` but `page`, `softmotion` and `linuxcnc`.
+
+`templates/st/softmotion.toml` is the contract as data: type names, signatures, error names, profiles of libraries. What
+no document settles stands there alone, with a comment that says so. Its enumerators become constants of one list,
+`Softkin_Names`, and blocks use those. `templates/st/reserved.toml` holds the names that nothing may be given. A flag is
+a BOOL; a sign, the number of a turn and a count are an INT; a sign becomes a number once, where it multiplies.
+
+contract: the contract of SoftMotion, read from its file
+expression: expressions
+layout: indents, and breaks in long statements
+limits: the function that combines the limits of a block and of a drive
+loops: systems of linear equations, and bounded iterations
+names: names as Structured Text writes them, no two of which differ in case alone
+program: a program as statements
+projection: the part of a commanded rotation that a flange follows
+refusal: how a method refuses
+refused_inputs: how the inputs of a block are refused, each with a text
+reserved: names that may not be declared
+rotation: the repair of the commanded rotation
+scan: the root scan: a method that calls the programs of a trial
+shared: programs that several methods share, each as a private method
+stretches: what one branch has computed, read by the next one
+"""

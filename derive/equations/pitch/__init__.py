@@ -4,4 +4,10 @@ The joints before them turn the plane in which the pitch moves the tool, and the
 known, the commanded direction is seen in that plane and taken to length one: that is the nearest direction that the
 machine can reach. The roll then is the turn nearest to what is left of the commanded rotation. For a rotation that the
 machine can reach both are exact.
+
+Like `equations`, it may import the folders from `ir` to `mechanisms`.
+
+chain: which turns of a chain follow the commanded rotation
+equations: the equations of the pitch and of the roll
+heading: the joint that turns the plane of the arm, where the position leaves it free
 """
