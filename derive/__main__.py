@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from derive.command.catalogue import OUTPUT
-from derive.command.line import main
-
-__all__ = ["OUTPUT", "main"]
+from derive.command.process import run
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run())

@@ -15,9 +15,10 @@ import pytest
 import sympy as sp
 
 from derive import cache as caching
-from derive.__main__ import OUTPUT, main
 from derive.cache import Cache, canonical, entry_key, foundation, key_of
 from derive.command import catalogue as command_line
+from derive.command.catalogue import OUTPUT
+from derive.command.line import main
 from derive.description.catalogue import MECHANISMS, load
 from derive.output import differences
 from derive.progress import Progress

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from derive.__main__ import OUTPUT, main
+from derive.command.catalogue import OUTPUT
+from derive.command.line import main
 from derive.description.catalogue import MECHANISMS, catalogue, load
 from derive.output import differences
 from derive.pipeline import derive_one

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from derive.__main__ import OUTPUT
+from derive.command.catalogue import OUTPUT
 from derive.description.catalogue import Entry
 from derive.output import differences
 from tests.fresh import Generation

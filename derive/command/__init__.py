@@ -8,6 +8,7 @@ line: what may be asked, and the status of a run
 live: `live`: serve the page of a machine, and move it with the values of a controller
 new: `new`: a commented description to start from
 own: `derive` and `check` with files: machines of the user's own, each by itself
+process: the process of a command: without a search for garbage, which finds nothing
 report: `report`: a page for every mechanism, and an index; and the page of one machine
 stages: what a run says about one machine
 view: `view`: machines in one page for the browser

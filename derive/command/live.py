@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import asyncio
+import gc
 import ipaddress
 import sys
 from pathlib import Path
@@ -61,6 +62,7 @@ def _trust(parser: argparse._ArgumentGroup) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Serve until it is interrupted; 2, with one sentence, where that cannot be."""
+    gc.enable()  # this serves for days
     try:
         asyncio.run(_live(options))
     except Refused as problem:

@@ -26,6 +26,7 @@ from derive.ir.program import (
 )
 from derive.ir.reason import Why, about_input
 from derive.ir.symbols import (
+    compared,
     cosine,
     flag,
     real,
@@ -46,7 +47,7 @@ def finite(symbols: Sequence[sp.Symbol]) -> tuple[Require, ...]:
 @cache
 def _is_reasonable(symbol: sp.Symbol) -> sp.Basic:
     """The condition for one of them. Cached: machines share the names of their inputs."""
-    return sp.Le(sp.Abs(symbol), LARGEST)
+    return compared(sp.Le, sp.Abs(symbol), LARGEST)
 
 
 def joint_lets(mechanism: Mechanism) -> tuple[Let, ...]:

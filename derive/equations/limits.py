@@ -15,6 +15,7 @@ from derive.ir.passes import normalise
 from derive.ir.program import Let, Program, Require, Statement, Status
 from derive.ir.reason import OtherTurn, Reason, Unit, Why, about, about_joint
 from derive.ir.symbols import (
+    compared,
     real,
 )
 
@@ -51,8 +52,8 @@ def _inside(key: str, value: sp.Symbol, reason: Reason, note: str) -> tuple[Requ
         replace(reason, why=Why.ABOVE, amount=value - highest),
     )
     return (
-        Require(sp.Ge(value, lowest), Status.UNREACHABLE, note, below),
-        Require(sp.Le(value, highest), Status.UNREACHABLE, note, above),
+        Require(compared(sp.Ge, value, lowest), Status.UNREACHABLE, note, below),
+        Require(compared(sp.Le, value, highest), Status.UNREACHABLE, note, above),
     )
 
 

@@ -22,7 +22,7 @@ from derive.ir.passes import plain, renamed
 from derive.ir.primitives import Select
 from derive.ir.program import Let, Output, Program, Require, Statement, Status, rewritten
 from derive.ir.reason import Reason, Why, about_input, about_parameters
-from derive.ir.symbols import called, flag, real
+from derive.ir.symbols import called, compared, flag, real
 from derive.ir.verify import verify
 from derive.kept import kept_by_identity
 
@@ -55,7 +55,7 @@ class Window:
     def ordered(self) -> Require:
         """The condition on them."""
         lower, upper = map(real, self.given)
-        condition = sp.Or(sp.Lt(lower, upper), sp.Le(sp.Abs(lower) + sp.Abs(upper), 0))
+        condition = sp.Or(compared(sp.Lt, lower, upper), compared(sp.Le, sp.Abs(lower) + sp.Abs(upper), 0))
         return Require(condition, Status.NOT_INITIALIZED, reason=self.refusal)
 
     @cached_property
@@ -63,9 +63,9 @@ class Window:
         """The limits that hold, given or not."""
         lower, upper = map(real, self.given)
         low, high, unlimited = self._effective
-        low_value, high_value, free = lower, upper, sp.Le(sp.Abs(lower) + sp.Abs(upper), 0)
+        low_value, high_value, free = lower, upper, compared(sp.Le, sp.Abs(lower) + sp.Abs(upper), 0)
         for condition, bottom, top in self.fallback:
-            given = sp.Gt(sp.Abs(lower) + sp.Abs(upper), 0)
+            given = compared(sp.Gt, sp.Abs(lower) + sp.Abs(upper), 0)
             low_value = Select(
                 given, lower, Select(condition, bottom, sp.Integer(0)) if condition != sp.true else bottom
             )
@@ -101,7 +101,7 @@ class Window:
         )
         if not self.has_turns:
             return widened
-        one_turn = sp.And(sp.Not(unlimited), sp.Le(high - low, ONE_TURN + tolerance))
+        one_turn = sp.And(sp.Not(unlimited), compared(sp.Le, high - low, ONE_TURN + tolerance))
         if self.turns != 1:
             lowest, highest = (real(f"{word}_{self.key}") for word in ("lowest", "highest"))
             one_turn = sp.And(sp.Lt(highest, UNLIMITED / 2), sp.Le((highest - lowest) * self.turns, GEARED_TURN))

@@ -43,6 +43,7 @@ from derive.ir.symbols import (
     called,
     is_decided,
     names_in,
+    replaced,
     symbols_of,
 )
 from derive.ir.verify import RepeatedName, verify
@@ -106,7 +107,7 @@ def renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> Sta
 def _fold(body: Sequence[Statement], outputs: Sequence[Output]) -> tuple[tuple[Statement, ...], tuple[Output, ...]]:
     aliases: dict[sp.Symbol, sp.Expr] = {}
     kept = _without_aliases(body, aliases, {}, set())
-    return tuple(kept), tuple(replace(o, value=o.value.xreplace(aliases)) for o in outputs)
+    return tuple(kept), tuple(replace(o, value=replaced(o.value, aliases)) for o in outputs)
 
 
 def _without_aliases(
@@ -118,7 +119,7 @@ def _without_aliases(
     kept: list[Statement] = []
     for s in body:
         if isinstance(s, Let):
-            value = s.value.xreplace(aliases)
+            value = replaced(s.value, aliases)
             if bound.setdefault(s.name, s.value) != s.value:
                 message = f"{s.name} is bound twice, to {bound[s.name]} and to {s.value}"
                 raise RepeatedName(message, s.name.name)
@@ -263,7 +264,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
             if not isinstance(s, Let):
                 body.append(_with_names(calling(s, lowered), names))
                 continue
-            value = s.value.xreplace(names)
+            value = replaced(s.value, names)
             if not {v.name for v in symbols_of(value)} <= known:
                 body.append(replace(s, value=value))
                 continue
@@ -274,7 +275,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
                 by_value[value] = name
                 hoisted.append(replace(s, name=name, value=value))
             names[s.name] = by_value[value]
-        outputs = tuple(replace(o, value=o.value.xreplace(names)) for o in program.outputs)
+        outputs = tuple(replace(o, value=replaced(o.value, names)) for o in program.outputs)
         lowered[program.name] = with_inputs(replace(program, body=tuple(body), outputs=outputs))
     return tuple(lowered.values()), tuple(hoisted)
 
@@ -287,7 +288,7 @@ def calling(statement: Statement, programs: Mapping[str, Program]) -> Statement:
 
 
 def _with_names(statement: Statement, names: Mapping[sp.Symbol, sp.Expr]) -> Statement:
-    return rewritten(statement, lambda e: e.xreplace(dict(names)))
+    return rewritten(statement, lambda e: replaced(e, names))
 
 
 def _varying(program: Program, constants: set[str]) -> list[sp.Symbol]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
 
 import sympy as sp
+from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean, BooleanAtom
 
 from derive.ir.constants import DEGREE
@@ -43,6 +44,18 @@ def is_count(symbol: sp.Basic) -> bool:
 def is_condition(value: sp.Basic) -> bool:
     """Whether a value is true or false: a comparison, what is made of such, or a flag."""
     return isinstance(value, Flag) or (isinstance(value, Boolean) and not value.is_Symbol)
+
+
+def compared(kind: type[Relational], left: sp.Expr, right: sp.Expr | int) -> Relational:
+    """A comparison as it is written. SymPy would first ask whether it is decided, which takes long, and of names whose
+    values may be any number it never is.
+    """
+    return kind(left, right, evaluate=False)
+
+
+def replaced(expression: sp.Basic, names: Mapping[sp.Basic, sp.Basic]) -> sp.Basic:
+    """The expression with other values for some names; asked first whether it reads any, which takes less time."""
+    return expression if names.keys().isdisjoint(names_in(expression)) else expression.xreplace(names)
 
 
 def is_decided(value: object) -> bool:

@@ -16,7 +16,7 @@ from derive.ir.verify import BrokenProgram
 from derive.kinematics.differential import jacobian_rows
 from derive.kinematics.flange_rotation import freedom_of
 from derive.kinematics.kinematics import Kinematics, Margin
-from derive.kinematics.parameters import machine_parameters, setup_program
+from derive.kinematics.parameters import constants_of, machine_parameters, setup_program
 from derive.kinematics.shared_names import refuse_names
 from derive.lowering.lower import lowered
 
@@ -36,7 +36,7 @@ def _hoisted(
     mechanism: Mechanism, parameters: tuple[Parameter, ...], programs: Sequence[Program], at_home: Sequence[Statement]
 ) -> _Hoisted:
     """The programs as they are lowered; refuses what none of them may read or answer."""
-    constants = [o.name for o in setup_program(mechanism, parameters, at_home=at_home).outputs]
+    constants = constants_of(mechanism, parameters, at_home)
     unsettled = {o.name for window in windows(mechanism) for o in window.outputs}  # drives may change these later
     settled = [name for name in constants if name not in unsettled]
     whole, first = hoist([with_choices(p, parameters) for p in (*shared(programs), *programs)], settled)

@@ -32,6 +32,7 @@ from derive.ir.reason import Reason, about_parameters
 from derive.ir.symbols import (
     MIN_TYPE2_MARGIN,
     SCALE,
+    compared,
     flag,
     is_count,
     real,
@@ -132,6 +133,23 @@ def setup_program(
     has_settings: drives hand over limits, so that the outputs of `limits_of_axis` are left to it. at_home: the joints
     at the home pose of a loop that turns its platform.
     """
+    body, outputs = _of_machine(mechanism, parameters, has_settings, at_home)
+    body += hoisted
+    outputs += [Output(let.name.name, let.name) for let in hoisted if let.name in read]
+    inputs = tuple(input_of(p) for p in parameters)
+    typed = tuple(converted(s, parameters) for s in without_assumptions(body))
+    return verify(Program("setup", inputs, typed, tuple(outputs)))
+
+
+def constants_of(mechanism: Mechanism, parameters: tuple[Parameter, ...], at_home: Sequence[Statement]) -> list[str]:
+    """The outputs of the setup before anything is hoisted into it."""
+    return [output.name for output in _of_machine(mechanism, parameters, False, at_home)[1]]
+
+
+def _of_machine(
+    mechanism: Mechanism, parameters: tuple[Parameter, ...], has_settings: bool, at_home: Sequence[Statement]
+) -> tuple[list[Statement], list[Output]]:
+    """Statements and outputs of the setup without what is hoisted."""
     body: list[Statement] = [condition for p in parameters for condition in _range_of(p)]
     numbers = [Let(real(p.name), p.fixed, p.meaning) for p in mechanism.parameters if p.fixed is not None]
     body += numbers
@@ -156,11 +174,7 @@ def setup_program(
     if chooses_by_lengths(mechanism):
         body.append(Let(TIE_OF_LENGTHS, TIE_SHARE**2 * SCALE**2, "squared distances closer than this are equal"))
         outputs.append(Output(TIE_OF_LENGTHS.name, TIE_OF_LENGTHS))
-    body += hoisted
-    outputs += [Output(let.name.name, let.name) for let in hoisted if let.name in read]
-    inputs = tuple(input_of(p) for p in parameters)
-    typed = tuple(converted(s, parameters) for s in without_assumptions(body))
-    return verify(Program("setup", inputs, typed, tuple(outputs)))
+    return body, outputs
 
 
 def _gears(mechanism: Mechanism) -> tuple[list[Let], list[Output]]:
@@ -225,18 +239,18 @@ def _range_of(parameter: Parameter) -> tuple[Require, ...]:
     if parameter.role is Role.FLAG:
         return ()
     if parameter.role is Role.SIGN:
-        condition = sp.Or(sp.Eq(input_of(parameter), 1), sp.Eq(input_of(parameter), -1))
+        condition = sp.Or(*(compared(sp.Eq, input_of(parameter), sign) for sign in (1, -1)))
         return (_needed(condition, note),)
     value = real(parameter.name)  # without assumptions: SymPy must not decide `length > 0` by itself
     low = sp.Float(parameter.low) if parameter.low % 1 else sp.Integer(int(parameter.low))
     high = sp.Float(parameter.high) if parameter.high % 1 else sp.Integer(int(parameter.high))
     if parameter.role in (Role.SIGNED_LENGTH, Role.TRANSMISSION):
         # NaN fails a comparison; the absolute value of NaN is an error
-        nonzero = sp.Or(sp.Gt(value, LEAST), sp.Lt(value, -LEAST))
-        inside = sp.And(nonzero, sp.Ge(value, low), sp.Le(value, min(high, LARGEST)))
+        nonzero = sp.Or(compared(sp.Gt, value, LEAST), compared(sp.Lt, value, -LEAST))
+        inside = sp.And(nonzero, compared(sp.Ge, value, low), compared(sp.Le, value, min(high, LARGEST)))
         return (_needed(inside, note),)
-    above = sp.Gt(value, sp.Max(low, LEAST)) if parameter.low_open else sp.Ge(value, low)
-    return (_needed(sp.And(above, sp.Le(value, min(high, LARGEST))), note),)
+    above = compared(sp.Gt, value, sp.Max(low, LEAST)) if parameter.low_open else compared(sp.Ge, value, low)
+    return (_needed(sp.And(above, compared(sp.Le, value, min(high, LARGEST))), note),)
 
 
 def ranges(parameters: Iterable[Parameter]) -> frozenset[Reason | None]:

@@ -12,7 +12,7 @@ from sympy.logic.boolalg import Boolean
 
 from derive.ir.primitives import Select
 from derive.ir.program import Let
-from derive.ir.symbols import is_condition, names_in
+from derive.ir.symbols import is_condition, names_in, replaced
 from derive.ir.tree import If, Item
 
 _BOTH = (sp.true, sp.false)
@@ -26,8 +26,10 @@ def _conditions(expression: sp.Basic) -> frozenset[sp.Basic]:
 
 def gathered(lets: Sequence[Let], later: frozenset[sp.Symbol]) -> list[Item]:
     """A stretch without conditions: `later` is what is read behind it. First the first choice that is in no other."""
-    stretch = _Stretch(lets, later)
     conditions = dict.fromkeys(let.value.args[0] for let in lets if isinstance(let.value, Select))
+    if not conditions:
+        return list(lets)
+    stretch = _Stretch(lets, later)
     worthwhile = [c for c in (_Choice(condition, stretch) for condition in conditions) if c.is_worthwhile]
     if not worthwhile:
         return list(lets)
@@ -50,6 +52,14 @@ class _Stretch:
                 self.readers[source].append(place)
             for condition in _conditions(let.value):
                 self.deciding.setdefault(condition, []).append(place)
+        self._on: dict[sp.Basic, list[sp.Basic]] = {}
+        for condition in self.deciding:
+            if isinstance(condition, sp.StrictGreaterThan):
+                self._on.setdefault(condition.lhs, []).append(condition)
+
+    def beside(self, condition: sp.Basic) -> list[sp.Basic]:
+        """The conditions on the value that a condition is on."""
+        return self._on.get(condition.lhs, []) if isinstance(condition, sp.StrictGreaterThan) else []
 
     def upstream(self, places: Iterable[int]) -> set[int]:
         """What these statements need, with them."""
@@ -103,7 +113,7 @@ class _Choice:
         """The values that change where the condition is known; a number that this gives is known, too."""
         stretch = self.stretch
         known: dict[sp.Basic, sp.Basic] = {self.condition: truth}
-        known |= {other: truth for other in stretch.deciding if follows(other, self.condition, truth)}
+        known |= {other: truth for other in stretch.beside(self.condition) if follows(other, self.condition, truth)}
         pending, changed = {p for condition in known for p in stretch.deciding.get(condition, ())}, dict[int, sp.Expr]()
         while pending:
             place = min(pending)
@@ -200,7 +210,7 @@ def _simplified(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:
     known: dict[sp.Basic, sp.Symbol] = {}
     kept: list[Let] = []
     for let in lets:
-        value = let.value.xreplace(aliases)
+        value = replaced(let.value, aliases)
         if value in known:
             value = known[value]
         elif not is_condition(value) and -value in known:
@@ -229,7 +239,8 @@ def _without_copies(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:
     for let in lets:
         if names.get(let.value) != let.name:
             name = names.get(let.name, let.name)
-            found.append(replace(let, name=name, value=let.value.xreplace(names), note=let.note or notes.get(name, "")))
+            value, note = replaced(let.value, names), let.note or notes.get(name, "")
+            found.append(replace(let, name=name, value=value, note=note))
     return found
 
 

@@ -22,6 +22,7 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     Sign,
     called,
+    replaced,
     symbols_of,
     without_words,
 )
@@ -80,6 +81,6 @@ def _renamed(item: Item, names: Mapping[sp.Symbol, sp.Symbol]) -> Item:
     if isinstance(item, If):
         sides = {side: tuple(_renamed(i, names) for i in getattr(item, side)) for side in ("holds", "fails")}
         called = tuple(names.get(n, n) for n in item.names)
-        return replace(item, condition=item.condition.xreplace(dict(names)), names=called, **sides)
-    changed = rewritten(item, lambda e: e.xreplace(dict(names)))
+        return replace(item, condition=replaced(item.condition, names), names=called, **sides)
+    changed = rewritten(item, lambda e: replaced(e, names))
     return renamed(changed, lambda n: names.get(n, n))

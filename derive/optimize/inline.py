@@ -31,6 +31,7 @@ from derive.ir.program import (
     expressions,
     rewritten,
 )
+from derive.ir.symbols import replaced
 from derive.ir.tree import If, Item, bindings_in, expressions_in
 
 LONGEST = 5
@@ -51,11 +52,11 @@ def squares_where_read(program: Program) -> Program:
     own = {let.name: let.value for let in program.lets() if isinstance(let.value, sp.Pow) and let.value.base.is_Symbol}
     squares = {name: value for name, value in own.items() if value.exp == 2}
     body = [
-        rewritten(s, lambda e: e.xreplace(squares))
+        rewritten(s, lambda e: replaced(e, squares))
         for s in program.body
         if not (isinstance(s, Let) and s.name in squares)
     ]
-    outputs = tuple(replace(o, value=o.value.xreplace(squares)) for o in program.outputs)
+    outputs = tuple(replace(o, value=replaced(o.value, squares)) for o in program.outputs)
     return with_inputs(replace(program, body=tuple(body), outputs=outputs))
 
 
@@ -75,11 +76,11 @@ def _shortened(items: Sequence[Item], once: set[sp.Symbol], values: dict[sp.Basi
     kept: list[Item] = []
     for item in items:
         if isinstance(item, If):
-            condition = item.condition.xreplace(values)
+            condition = replaced(item.condition, values)
             holds, fails = (_shortened(side, once - set(item.names), values) for side in (item.holds, item.fails))
             kept.append(replace(item, condition=condition, holds=holds, fails=fails))
             continue
-        changed = rewritten(item, lambda e: e.xreplace(values))
+        changed = rewritten(item, lambda e: replaced(e, values))
         if isinstance(changed, Let) and changed.name in once and not changed.comment and _is_short(changed.value):
             values[changed.name] = Grouped(changed.value)
         else:

@@ -30,6 +30,7 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.symbols import (
+    replaced,
     symbols_of,
 )
 from derive.ir.typed import check_statement
@@ -46,8 +47,8 @@ def angles_modulo_turns(program: Program) -> frozenset[sp.Symbol]:
 
 def specialised(program: Program, values: Mapping[sp.Symbol, sp.Expr]) -> Program:
     """The program with some inputs given: choices that this decides disappear."""
-    body = [rewritten(s, lambda e: e.xreplace(dict(values))) for s in program.body]
-    return normalise(program.name, body, [Output(o.name, o.value.xreplace(dict(values))) for o in program.outputs])
+    body = [rewritten(s, lambda e: replaced(e, values)) for s in program.body]
+    return normalise(program.name, body, [Output(o.name, replaced(o.value, values)) for o in program.outputs])
 
 
 def without_chosen_turns(program: Program) -> Program:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from derive.__main__ import OUTPUT
+from derive.command.catalogue import OUTPUT
 
 FILES = {
     str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from softkin import ArticulatedRobot6DOF, Scara2Z
 
-from derive.__main__ import OUTPUT
+from derive.command.catalogue import OUTPUT
 from derive.description.mechanism import Role
 from derive.emit.st.contract import load
 from derive.emit.st.names import input_name

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.__main__ import OUTPUT
+from derive.command.catalogue import OUTPUT
 from tests.codesys.parts import FILES, all_parts
 from tests.codesys.python27 import beyond_python27
 from tests.codesys.scriptengine_stand_in import Code, Dut, Engine, Folder, LibraryManager, Node, Project, Property

@@ -12,7 +12,7 @@ from lxml import etree
 from xsdata.formats.dataclass.parsers import XmlParser
 from xsdata.formats.dataclass.parsers.config import ParserConfig
 
-from derive.__main__ import OUTPUT
+from derive.command.catalogue import OUTPUT
 from derive.emit.plcopen.document import document
 from derive.emit.plcopen.objects import Object, objects_of
 from tests.codesys.parts import FILES, Part, all_parts, parts_of

@@ -81,4 +81,4 @@ def test_the_command_is_that_of_the_module() -> None:
     """The console script of the distribution is the function that `python -m derive` calls."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     module, _, function = project["scripts"]["softkin"].partition(":")
-    assert getattr(import_module(module), function) is import_module("derive.__main__").main
+    assert getattr(import_module(module), function) is import_module("derive.__main__").run

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.__main__ import main
+from derive.command.line import main
 from derive.importing.importing import Options, import_robot
 from derive.importing.robot import UnreadableRobot
 from tests.importing.robots import joint, urdf

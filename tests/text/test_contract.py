@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import pytest
 
-from derive.__main__ import OUTPUT
+from derive.command.catalogue import OUTPUT
 from derive.emit.st.contract import load
 from tests.harness import ast
 from tests.harness.contract import INTERFACES, header, plain

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.__main__ import main
+from derive.command.line import main
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
 from derive.emit.language import TEMPLATES

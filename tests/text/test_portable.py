@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import pytest
 
-from derive.__main__ import OUTPUT
+from derive.command.catalogue import OUTPUT
 from tests.harness import ast, stubs
 from tests.harness.contract import INTERFACES
 from tests.harness.parse import parse

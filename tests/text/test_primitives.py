@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
-from derive.__main__ import OUTPUT
+from derive.command.catalogue import OUTPUT
 from derive.ir import interpret as run
 from derive.ir.constants import (
     EDGE,

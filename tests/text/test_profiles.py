@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.__main__ import main
+from derive.command.line import main
 from derive.description.catalogue import MECHANISMS, load
 from derive.emit.softmotion.library import StructuredTextFiles
 from derive.emit.st.contract import _FILE

@@ -34,6 +34,7 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     PLACE,
+    replaced,
     symbols_of,
 )
 from derive.ir.tree import If, Item, grouped
@@ -165,8 +166,9 @@ def without_conversions(program: Program) -> Program:
     own = {
         let.name: let.value for let in program.lets() if isinstance(let.value, ToReal) and let.value.args[0].is_Symbol
     }
-    body = [rewritten(s, lambda e: e.xreplace(own)) for s in program.body if not (isinstance(s, Let) and s.name in own)]
-    outputs = tuple(replace(o, value=o.value.xreplace(own)) for o in program.outputs)
+    others = (s for s in program.body if not (isinstance(s, Let) and s.name in own))
+    body = [rewritten(s, lambda e: replaced(e, own)) for s in others]
+    outputs = tuple(replace(o, value=replaced(o.value, own)) for o in program.outputs)
     return verify(replace(program, body=tuple(body), outputs=outputs)) if own else program
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import sympy as sp
+from sympy.core.relational import Relational
 
 from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter, is_never_negative
 from derive.ir.constants import (
@@ -48,7 +49,7 @@ def is_size_test(condition: sp.Basic) -> bool:
 
 def is_larger(expression: sp.Basic) -> bool:
     """Whether a choice takes the larger of two values."""
-    return isinstance(expression, Select) and expression.args[0] == sp.Gt(*expression.args[1:])
+    return isinstance(expression, Select) and _is_comparison(expression.args[0], sp.Gt, *expression.args[1:])
 
 
 def limits_of(expression: sp.Basic) -> tuple[sp.Expr, sp.Expr, sp.Expr] | None:
@@ -56,8 +57,12 @@ def limits_of(expression: sp.Basic) -> tuple[sp.Expr, sp.Expr, sp.Expr] | None:
     if not (isinstance(expression, Select) and isinstance(expression.args[2], Select)):
         return None
     (above, high, _), (below, low, value) = expression.args, expression.args[2].args
-    is_limited = above == sp.Gt(value, high) and below == sp.Lt(value, low)
+    is_limited = _is_comparison(above, sp.Gt, value, high) and _is_comparison(below, sp.Lt, value, low)
     return (low, value, high) if is_limited and low.is_number and high.is_number else None
+
+
+def _is_comparison(condition: sp.Basic, kind: type[Relational], left: sp.Expr, right: sp.Expr) -> bool:
+    return isinstance(condition, kind) and condition.args == (left, right)
 
 
 class StructuredText(ExpressionPrinter):

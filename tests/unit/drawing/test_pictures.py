@@ -10,7 +10,7 @@ from itertools import combinations
 import pytest
 from PIL import Image
 
-from derive.__main__ import OUTPUT
+from derive.command.catalogue import OUTPUT
 from derive.description.mechanism import Mechanism
 from derive.emit.picture.canvas import WIDTH, pictures, text_width
 from derive.emit.picture.page import page

@@ -40,6 +40,7 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     REFUSAL,
     choices,
+    replaced,
     suffixed,
     symbols_of,
 )
@@ -167,7 +168,7 @@ def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Functi
     refusals = _refusals(lambda status: repeated(f"{_REFUSED}[{status_of(status)}]", count))
     written = _Written.of(method, known)
     items, shorter = coalesced(written.items, list(written.values.values()), signs(kin))
-    values = {name: value.xreplace(dict(shorter)) for name, value in written.values.items()}
+    values = {name: replaced(value, dict(shorter)) for name, value in written.values.items()}
     return written.function([*item_lines(items, refusals, _DIRECTIONS), f"return {_slots(kin, values)}"])
 
 
@@ -176,8 +177,8 @@ def _direction(kin: Kinematics, method: Method, known: Sequence[Let]) -> Functio
     written = _Written.of(method, known)
     lines = item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)
     zero = {joint.offset: sp.Integer(0) for joint in kin.mechanism.joints}
-    zero |= {let.name: value for let in known for value in [let.value.xreplace(zero)] if value.is_number}
-    values, without = list(written.values.values()), [value.xreplace(zero) for value in written.values.values()]
+    zero |= {let.name: value for let in known for value in [replaced(let.value, zero)] if value.is_number}
+    values, without = list(written.values.values()), [replaced(value, zero) for value in written.values.values()]
     if without != values:
         lines += [f"if {NO_OFFSETS}:", f"    return {_texts(without)}"]
     return written.function([*lines, f"return {_texts(values)}"])
@@ -203,7 +204,7 @@ class _Written:
         wanted = [o.value for o in method.program.outputs]
         items = without_unused(scheduled(guarded(method.program.body, known), wanted), wanted)
         items, values = inlined(items, wanted)
-        return cls(method, items, {o.name: o.value.xreplace(dict(values)) for o in method.program.outputs})
+        return cls(method, items, {o.name: replaced(o.value, values) for o in method.program.outputs})
 
     def function(self, body: list[str]) -> Function:
         """The function with this body."""
