@@ -146,21 +146,17 @@ class ExpressionPrinter(ABC):
     def _product(self, node: sp.Expr) -> tuple[str, int]:
         coefficient, rest = node.as_coeff_Mul()
         above, below = _fraction(rest)
-        numerator, denominator = sp.Rational(1), sp.Rational(1)
-        if isinstance(coefficient, sp.Rational):
-            numerator, denominator = sp.Integer(abs(coefficient.p)), sp.Integer(coefficient.q)
-            if denominator in (2, 4, 8, 16):
-                numerator, denominator = numerator / denominator, sp.Integer(1)
-        else:
-            numerator = abs(coefficient)
-        head = [] if numerator == 1 and above else [self.number(_plain(float(numerator)))]
+        numerator, denominator = abs(float(coefficient)), 1
+        if isinstance(coefficient, sp.Rational) and coefficient.q not in (1, 2, 4, 8, 16):
+            numerator, denominator = float(abs(coefficient.p)), coefficient.q
+        head = [] if numerator == 1.0 and above else [self.number(_plain(numerator))]
         text = "*".join(head + [self._text(f, _UNARY) for f in above])
         bottom = ([] if denominator == 1 else [self.number(float(denominator))]) + [
             self._text(f, _UNARY) for f in below
         ]
         if bottom:
             text += "/" + (bottom[0] if len(bottom) == 1 else f"({'*'.join(bottom)})")
-        return (f"-{text}", _SUM) if coefficient < 0 else (text, PRODUCT)
+        return (f"-{text}", _SUM) if coefficient.is_negative else (text, PRODUCT)
 
 
 def _plain(value: float) -> float:
@@ -230,8 +226,8 @@ def _fraction(node: sp.Expr) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
     for factor in sorted(factors, key=factor_order) if len(factors) > 1 else factors:
         base, exponent = factor.as_base_exp()
         if isinstance(factor, sp.Pow):
-            side = above if exponent > 0 else below
+            side = above if exponent.is_positive else below
             side.extend([base] * abs(int(exponent)))
-        elif factor != 1:
+        elif factor is not sp.S.One:
             above.append(factor)
     return tuple(above), tuple(below)

@@ -72,20 +72,20 @@ class Graph:
 
     def leaf(self, head: sp.Basic) -> Value:
         """A name, a truth value, or the absolute value of a number with its sign beside it."""
-        if isinstance(head, sp.Number) and head < 0:
+        if isinstance(head, sp.Number) and head.is_negative:
             return Value(self._node(-head, -head), -1)
         return Value(self._node(head, head), 1)
 
     def sum(self, terms: Iterable[Value]) -> Value:
         """The sum; equal terms are counted, opposite ones cancel, numbers are added."""
-        number, counts = sp.Integer(0), dict[Node, int]()
-        for term in terms:
-            if term.node.is_number:
-                number += term.sign * term.node.head
+        number, counts = sp.S.Zero, dict[Node, int]()
+        for node, sign in terms:
+            if node.is_number:
+                number += sign * node.head
             else:
-                counts[term.node] = counts.get(term.node, 0) + term.sign
+                counts[node] = counts.get(node, 0) + sign
         kept = [self._times(count, node) for node, count in counts.items() if count]
-        kept += [self.leaf(number)] if number != 0 else []
+        kept += [] if number.is_zero else [self.leaf(number)]
         if len(kept) < 2:
             return kept[0] if kept else self.leaf(number)
         sign = min(kept, key=lambda v: v.node.place).sign
@@ -96,7 +96,7 @@ class Graph:
         """The product of factors over the product of divisors; numbers are multiplied, and signs
         moved to the reader.
         """
-        number, sign = sp.Integer(1), 1
+        number, sign = sp.S.One, 1
         above, below = list[Node](), list[Node]()
         for value, side in (*((f, above) for f in factors), *((d, below) for d in divisors)):
             sign *= value.sign
@@ -104,9 +104,9 @@ class Graph:
                 number *= value.node.head if side is above else 1 / value.node.head
             else:
                 side.append(value.node)
-        if number == 0:
-            return self.leaf(sp.Integer(0))
-        if number != 1:
+        if number.is_zero:
+            return self.leaf(sp.S.Zero)
+        if number is not sp.S.One:
             above.insert(0, self.leaf(number).node)
         if not below and len(above) < 2:
             return Value(above[0], sign) if above else self.leaf(sp.Integer(sign))

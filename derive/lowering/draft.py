@@ -149,7 +149,7 @@ class _Reading:
             above, below = list[Value](), list[Value]()
             for factor in sp.Mul.make_args(e):
                 base, exponent = factor.as_base_exp() if isinstance(factor, sp.Pow) else (factor, _ONE)
-                (above if exponent > 0 else below).extend([self.value(base)] * abs(int(exponent)))
+                (above if exponent.is_positive else below).extend([self.value(base)] * abs(int(exponent)))
             return self.graph.product(above, below)
         return self.graph.apply(e.func, [self.value(a) for a in e.args])
 
@@ -187,17 +187,17 @@ class Rewriting:
 
     def __call__(self, value: Value) -> Value:
         """What becomes of a value."""
-        pending = [] if value.node in self._done else [value.node]
+        done, pending = self._done, [] if value.node in self._done else [value.node]
         while pending:
             node = pending[-1]
-            if node not in self._done and (known := self.known(node)) is not None:
-                self._done[node] = known
-            missing = [] if node in self._done else [n for n in node.read if n not in self._done]
-            pending += missing
-            if not missing:
+            if node in done:
                 pending.pop()
-                if node not in self._done:
-                    self._done[node] = self.rewritten(node, tuple([self._read(p) for p in node.parts]))
+            elif (known := self.known(node)) is not None:
+                done[node] = known
+            elif missing := [n for n in node.read if n not in done]:
+                pending += missing
+            else:
+                done[node] = self.rewritten(node, tuple([self._read(p) for p in node.parts]))
         return self._read(value)
 
     def known(self, node: Node) -> Value | None:

@@ -60,7 +60,8 @@ def _shortest(
     """The variants of a name with as few words as tell those apart that are needed at a time: the
     first words go first.
     """
-    others = taken | {name.name for name in lives if name not in variants}
+    own = set(variants)
+    others = taken | {name.name for name in lives if name not in own}
     for kept in range(len(signs) + 1):
         names = {v: _with_last_words(v, signs, kept) for v in variants}
         apart = all(

@@ -255,7 +255,7 @@ def _product(node: sp.Expr) -> Cost:
     for factor in sp.Mul.make_args(rest):
         base, exponent = factor.as_base_exp() if isinstance(factor, sp.Pow) else (factor, sp.Integer(1))
         times = abs(int(exponent))
-        is_above = exponent > 0 or base == DEGREE  # one radian in degrees is a constant, too
+        is_above = exponent.is_positive or base == DEGREE  # one radian in degrees is a constant, too
         above, below = (above + times, below) if is_above else (above, below + times)
         inner += expression_cost(base) * times
     numerator = abs(coefficient)

@@ -18,6 +18,7 @@ from derive.emit.st.program import Printed
 from derive.emit.st.refusal import Refusal
 from derive.equations.windows import Window
 from derive.ir.constants import LARGEST, LEAST
+from derive.ir.passes import plain
 from derive.ir.program import Let, Program, Require
 
 REFUSAL = "refusal"
@@ -115,9 +116,9 @@ def conditions_first(program: Program) -> Program:
 
 def pairs_of_limits(program: Program, windows: Sequence[Window]) -> dict[sp.Basic, tuple[Window, int]]:
     """The pairs of limits, by the conditions on them, and the axes whose limits they are."""
-    conditions = {str(s.condition): s.condition for s in program.requires()}
-    pairs = ((str(window.ordered.condition), window, place) for place, window in enumerate(windows))
-    return {conditions[text]: (window, place) for text, window, place in pairs if text in conditions}
+    conditions = {s.condition for s in program.requires()}
+    pairs = ((plain(window.ordered.condition), window, place) for place, window in enumerate(windows))
+    return {condition: (window, place) for condition, window, place in pairs if condition in conditions}
 
 
 def without_limits(program: Program, limits: Mapping[sp.Basic, tuple[Window, int]]) -> Program:
