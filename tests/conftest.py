@@ -57,6 +57,7 @@ SWEEPS = (
     "unit/kinematics/test_turning_inventions.py",
     "unit/lowering/test_unrolling.py",
     "unit/witness/test_conditioning.py",
+    "text/contract",
     "text/coupling/test_every_statement.py",
     "text/test_flat.py",
     "text/loops/test_branches.py",
@@ -64,7 +65,6 @@ SWEEPS = (
     "text/loops/test_refusals.py",
     "text/loops/test_wrong_text.py",
     "text/selftest",
-    "text/test_contract.py",
     "text/test_cost.py",
     "text/test_every_statement.py",
     "text/test_pairs_of_singularities.py",
@@ -89,13 +89,14 @@ SWEEPS = (
 SHARED_BY_A_FILE = (
     "codesys/",
     "text/selftest/",
-    "text/test_contract.py",
     "text/test_portable.py",
     "text/test_second_grammar.py",
     "unit/",
 )
 """Tests that share more with those of their file than with those of their mechanism: all units compiled together, a
 grammar."""
+SHARED_BY_A_FOLDER = ("text/contract/",)
+"""Folders whose files share all units compiled together: their tests run in one process."""
 OF_A_GENERATION = ("test_generated_is_fresh.py", "view/")
 """Tests that share a fresh generation of the whole catalogue, or the browser that shows it."""
 WITH_THEIR_MECHANISM = ("unit/drawing/", "unit/optimize/test_regular.py")
@@ -162,11 +163,18 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if (is_quick and not is_long) or (IS_NATIVE and folders[:1] in ASKED_WHOLE):
             item.add_marker("quick")
         if is_shared_out:
-            if place.startswith(OF_A_GENERATION):
-                item.add_marker(pytest.mark.xdist_group(OF_A_GENERATION[0]))
-                continue
-            shared = [] if not folders or _is_shared_by_its_file(place) else names or machines_of(item, folders)
-            item.add_marker(pytest.mark.xdist_group(shared[0] if shared else file))
+            item.add_marker(pytest.mark.xdist_group(_group_of(item, place, folders, names)))
+
+
+def _group_of(item: pytest.Item, place: str, folders: tuple[str, ...], names: list[str]) -> str:
+    """The name of what a test shares with others, which run in the same process."""
+    if place.startswith(OF_A_GENERATION):
+        return OF_A_GENERATION[0]
+    folder = next((folder for folder in SHARED_BY_A_FOLDER if place.startswith(folder)), None)
+    if folder is not None:
+        return folder
+    shared = [] if not folders or _is_shared_by_its_file(place) else names or machines_of(item, folders)
+    return shared[0] if shared else place.partition("::")[0]
 
 
 @cache

@@ -31,6 +31,8 @@ SCREEN = 80
 """The most lines of the map: a newcomer reads it without stopping."""
 LISTED = re.compile(r"^([a-z_]\w*/?): \S", re.MULTILINE)
 """A line of a docstring that says what a module holds, or a folder."""
+LENGTH = 350
+"""A file with more lines than this holds more than one idea."""
 
 
 @pytest.mark.parametrize("tool", TOOLS)
@@ -110,6 +112,14 @@ def test_a_folder_lists_its_modules(room: Path) -> None:
 def test_a_folder_holds_one_idea(room: Path) -> None:
     """No folder holds more modules than a reader can survey."""
     assert len(list((ROOT / room).glob("*.py"))) <= ROOM
+
+
+@pytest.mark.parametrize("folder", ["derive", "tests"])
+def test_a_file_holds_one_idea(folder: str) -> None:
+    """No module of the compiler or of its tests is longer than a reader can survey."""
+    lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in (ROOT / folder).rglob("*.py")}
+    long = [f"{path.relative_to(ROOT)}: {length}" for path, length in sorted(lengths.items()) if length > LENGTH]
+    assert lengths and not long, long
 
 
 def test_tests_are_shared_out_by_group(request: pytest.FixtureRequest) -> None:

@@ -12,7 +12,7 @@ from .faults import StError
 WRITERS = ("Initialize", "AxisSettings")
 """The methods that may change an instance: all others are called by several tasks at once."""
 READERS = ("ReadInputs", "Check", "ReadLimits")
-"""What Initialize alone calls, and what that calls: see `test_contract`."""
+"""What Initialize alone calls, and what that calls: see `tests/text/contract/test_writes.py`."""
 
 
 def root(node: ast.Expression, facts: Facts) -> types.Variable | None:

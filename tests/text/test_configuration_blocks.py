@@ -10,7 +10,7 @@ import pytest
 from derive.description.mechanism import Mechanism
 from tests.text import values
 from tests.text.closeness import asked, assert_same
-from tests.text.comparisons import padded
+from tests.text.comparisons.configurations import padded
 from tests.text.controller import BAD_INPUT
 from tests.text.pairs import POSITION_KINEMATICS, Pair, pairs_of
 

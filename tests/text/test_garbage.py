@@ -14,7 +14,8 @@ import numpy as np
 from tests.text import values
 from tests.text.any_method import Call, call_of, methods_of
 from tests.text.closeness import asked, assert_same
-from tests.text.comparisons import COMPARISONS, padded
+from tests.text.comparisons import COMPARISONS
+from tests.text.comparisons.configurations import padded
 from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK
 from tests.text.limits import has_limits
 from tests.text.pairs import Pair

@@ -13,7 +13,7 @@ from derive.ir.program import Status
 from tests.harness import ast
 from tests.harness.library import Library, compile_st
 from tests.text import values
-from tests.text.test_contract import FILES, UNITS
+from tests.text.contract.blocks import FILES, UNITS
 
 LIST = "softkin/Softkin_Names.st"
 CONSTANTS = {one.name: one for group in load().names for one in group.constants}

@@ -13,7 +13,9 @@ import pytest
 from tests.catalogue.machines import bare_machine
 from tests.catalogue.test_offset import beside_the_first_axis, on_the_axis, turns_the_flange
 from tests.text.closeness import asked, assert_same
-from tests.text.comparisons import COMPARISONS, assert_same_pose, point_at
+from tests.text.comparisons import COMPARISONS
+from tests.text.comparisons.offsets import point_at
+from tests.text.comparisons.poses import assert_same_pose
 from tests.text.controller import OK, UNREACHABLE
 from tests.text.samples import NO_TURN, Sample, coinciding, near
 from tests.text.serial_pairs import SerialPair, serial_pair

@@ -9,7 +9,7 @@ import pytest
 from tests.harness import ast
 from tests.harness.parse import parse
 from tests.harness.unused import unused
-from tests.text.test_contract import FILES
+from tests.text.contract.blocks import FILES
 
 
 @pytest.mark.parametrize("file", FILES)

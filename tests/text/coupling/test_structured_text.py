@@ -16,7 +16,7 @@ from tests.harness.instance import Entry
 from tests.text import values
 from tests.text.closeness import asked, assert_same, is_close
 from tests.text.comparisons import COMPARISONS as COMMON
-from tests.text.comparisons import initialize
+from tests.text.comparisons.initialization import initialize
 from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE
 from tests.text.coupling.blocks import IDENTITY, ORIENTATIONS, Image, OrientationPair, orientation_pairs_of
 from tests.text.samples import HALF_TURN, Rows, Sample, tilted

@@ -1,0 +1,170 @@
+"""The programs of the guide for an axis group, executed on stand-ins: moves, queries, and a coupled kinematics."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from softkin import Scara2Z
+
+from tests.codesys.guide import PROGRAMS, closed, renamed
+from tests.codesys.parts import FILES
+from tests.harness.library import Library, compile_st
+from tests.text.values import plain
+
+ROBOTICS = (Path(__file__).parent / "robotics.st").read_text(encoding="utf-8")
+SMC_ERROR_OF_THE_GROUP = "SMC_TRAFO_INVALID_CONSTELLATION"
+COUPLED = (Path(__file__).parent / "coupled.st").read_text(encoding="utf-8")
+
+
+def _demo() -> tuple[Any, Any]:
+    """The program of the guide and its group, on stand-ins."""
+    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Demo"))
+    needed = {name: text for name, text in FILES.items() if name.startswith("softkin/") or "/Softkin_Scara2_Z." in name}
+    texts = {
+        "robotics": ROBOTICS,
+        "Groups": "VAR_GLOBAL\n  Scara : AXIS_GROUP_REF_SM3;\nEND_VAR\n",
+        "PRG_Demo": program,
+    }
+    library = compile_st({**needed, **renamed(texts)})
+    return library.new("PRG_Demo"), library.constant("Scara")
+
+
+def test_the_demo_moves_a_group() -> None:
+    """Its program, executed on stand-ins that are always done: power, then the moves in order, the other elbow, then
+    jogging.
+    """
+    demo, group = _demo()
+    done: list[tuple[int, float, float, int]] = []
+    for _ in range(60):
+        demo()
+        place = group.position.c
+        elbow = group.kinConfig.abyData[0]
+        if (now := (group.moved, place.X, place.Y, elbow)) not in done[-1:]:
+            done.append(now)
+    assert done == [
+        (0, 0.0, 0.0, 0), (1, 400.0, 100.0, 0), (2, 400.0, -100.0, 0), (2, 400.0, -100.0, 2), (1, 400.0, -100.0, 2)
+    ]  # fmt: skip
+    arms = Scara2Z(arm_length_1=300.0, arm_length_2=250.0)
+    for _, x, y, byte in done[1:]:  # within reach of the arms that the guide names
+        arms.inverse(((x, y, 0.0), np.eye(3)), (byte or 1, 0, 0))
+    assert not group.refused and demo.iStep == 100 and not demo.jog.Busy
+    demo.xJog = True
+    demo.axForward[0] = True
+    demo()
+    assert demo.jog.Busy and group.moved == 3
+
+
+STEPS = (0, 10, 20, 30, 40, 100)
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_the_demo_ends_in_its_error_step_and_begins_again(step: int) -> None:
+    """A fault in any step stops every block; a reset begins from power again, and the moves are made."""
+    demo, group = _demo()
+    for _ in range(80):
+        demo()
+        if demo.iStep == step:
+            break
+    group.fault, demo.xJog = SMC_ERROR_OF_THE_GROUP, step == 100
+    for _ in range(6):
+        demo()
+    moved = group.moved
+    assert demo.iStep == 900 and demo.iFailed == step and demo.eError == SMC_ERROR_OF_THE_GROUP and not demo.xJog
+    for _ in range(20):
+        demo()
+    assert demo.iStep == 900 and group.moved == moved, "it waits, and moves nothing"
+    demo.xReset = True
+    for _ in range(80):
+        demo()
+    assert demo.iStep == 100 and not demo.xReset and demo.eError == "SMC_NO_ERROR" and not group.refused
+
+
+def _asking(*blocks: str, **texts: str) -> tuple[Library, Any, Any]:
+    """The program that asks a group, its library, and the group, which has these blocks and is enabled."""
+    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Ask"))
+    wanted = tuple(f"/{name}." for name in blocks)
+    needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or any(name in n for name in wanted)}
+    group = "VAR_GLOBAL\n  Scara : AXIS_GROUP_REF_SM3;\nEND_VAR\n"
+    own = {"robotics": ROBOTICS, "Groups": group, "PRG_Ask": program, **texts}
+    library = compile_st({**needed, **renamed(own)})
+    found = library.constant("Scara")
+    found.isEnabled = True
+    return library, library.new("PRG_Ask"), found
+
+
+def test_a_program_asks_the_instance_of_the_group() -> None:
+    """The program of the guide, at a point that the arms miss by 50: of the instance that the group has, with its
+    dimensions; and nothing is found in a group that has none, or whose block is replaced.
+    """
+    library, ask, group = _asking("Softkin_Scara2_Z")
+    ask()
+    assert ask.xFound is False and ask.sWhy == ""
+    arms = library.new("Softkin_Scara2_Z")
+    arms.dArmLength1, arms.dArmLength2 = 300.0, 250.0
+    assert arms.call("Initialize") == "SMC_NO_ERROR"
+    group.kinematics = arms
+    ask.frame.vT.dX, ask.axes.a1, ask.axes.a0 = 600.0, 30.0, 10.0
+    ask.data.abyData[0] = 1
+    ask()
+    assert ask.xFound and ask.sWhy == "A2: out of reach [u]" and ask.dMissing == pytest.approx(50.0) and ask.iTurn == 0
+    in_python = Scara2Z(arm_length_1=300.0, arm_length_2=250.0).singularity((10.0, 30.0, 0.0))
+    margins = list(in_python.margins.values())
+    assert ask.status == "SMC_NO_ERROR" and ask.aMargins[: ask.iMargins] == pytest.approx(margins)
+    group.isEnabled = False
+    ask.sWhy = "old"
+    ask()
+    assert ask.xFound is False and ask.sWhy == "old"
+
+
+def test_what_it_asks_changes_nothing() -> None:
+    """The instance of the group is the same after it as before."""
+    library, ask, group = _asking("Softkin_Scara2_Z")
+    arms = group.kinematics = library.new("Softkin_Scara2_Z")
+    arms.dArmLength1, arms.dArmLength2 = 300.0, 250.0
+    arms.call("Initialize")
+    names = [name for made in type(arms).__mro__ for name in getattr(made, "__slots__", ())]
+    state = [plain(getattr(arms, name)) for name in names]
+    ask()
+    assert ask.xFound and len(names) > 10 and [plain(getattr(arms, name)) for name in names] == state
+
+
+def test_a_coupled_group_is_asked_by_its_parts() -> None:
+    """The query fails in a group whose kinematics is a coupling; the block of the guide gives out its parts."""
+    (coupled,) = (p for p in PROGRAMS if p.startswith("FUNCTION_BLOCK ScaraWithTool"))
+    texts = {"coupled": COUPLED, "ScaraWithTool": coupled.replace("TRAFO.Kin_Coupled", "Kin_Coupled")}
+    library, ask, group = _asking("Softkin_Scara2_Z", "Softkin_CAxis", **texts)
+    machine = group.kinematics = library.new("ScaraWithTool")
+    machine.dArmLength1, machine.dArmLength2 = 300.0, 250.0
+    assert machine.call("Initialize") == "SMC_NO_ERROR"
+    ask()
+    assert ask.xFound is False and ask.robot is None
+    assert machine.itfArms is machine.arms and machine.itfTool is machine.tool
+    assert machine.itfArms.call("InitializeReason") == machine.itfTool.call("InitializeReason") == ""
+
+
+def test_a_coupled_block_initialises_its_parts() -> None:
+    """The block of the guide, executed on a stand-in of its base, which wants both parts."""
+    (program,) = (p for p in PROGRAMS if p.startswith("FUNCTION_BLOCK ScaraWithTool"))
+    user = """PROGRAM User
+VAR
+  machine : ScaraWithTool;
+  status : SM3_Error.SMC_ERROR;
+  length : LREAL;
+END_VAR
+machine(dArmLength1 := length, dArmLength2 := length);
+status := machine.Initialize();
+END_PROGRAM
+"""
+    wanted = ("/Softkin_Scara2_Z.", "/Softkin_CAxis.")
+    needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or any(name in n for name in wanted)}
+    texts = {"base": COUPLED, "coupled": program.replace("TRAFO.Kin_Coupled", "Kin_Coupled"), "user": user}
+    made = compile_st({**needed, **texts}).new("User")
+    made()
+    assert made.status == "SMC_TRAFO_NOT_INITIALIZED" and made.machine.calls == 0
+    made.length = 250.0
+    made()
+    assert made.status == "SMC_NO_ERROR" and made.machine.calls == 1
+    assert made.machine.arms.initialized and made.machine.tool.initialized

@@ -1,0 +1,32 @@
+"""Whether a block is initialised, why it is not, and its name."""
+
+from __future__ import annotations
+
+from tests.text.closeness import assert_same
+from tests.text.controller import NOT_INITIALIZED, OK, Controller
+from tests.text.samples import Sample
+from tests.text.serial_pairs import SerialPair
+
+
+def initialize(pair: SerialPair, sample: Sample) -> None:
+    """Fresh, refused without parameters or with the last one, and again accepted."""
+    one = Controller(pair.library, pair.mechanism)
+    assert not one.block.call("IsInitialized")
+    assert one.initialise(pair.robot.parameters) == OK
+    assert one.block.call("IsInitialized")
+    one.set_inputs({"offset_" + pair.mechanism.joints[0].key: float("nan")})
+    assert one.block.call("Initialize") == NOT_INITIALIZED
+    assert not one.block.call("IsInitialized")
+    assert one.initialise(pair.robot.parameters) == OK
+    assert_same(one.forward(sample.axes), pair.controller.forward(sample.axes), pair, sample)
+
+
+def why_initialize(pair: SerialPair, sample: Sample) -> None:
+    """InitializeReason is empty after success."""
+    assert pair.controller.block.call("InitializeReason") == ""
+
+
+def name(pair: SerialPair, sample: Sample) -> None:
+    """GetKinematicsName returns the title of the mechanism."""
+    expected = pair.mechanism.title or pair.mechanism.block_name
+    assert pair.controller.block.call("GetKinematicsName") == expected

@@ -1,0 +1,28 @@
+"""All emitted files, and their blocks, compiled together."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from derive.command.catalogue import OUTPUT
+from derive.emit.st.contract import load
+from tests.harness import ast
+from tests.harness.library import Library, compile_st
+
+FILES = {
+    str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))
+}
+UNITS = [name for name in FILES if not name.startswith(("softkin/", "selftest/"))]
+CONTRACT = load()
+
+
+@lru_cache
+def library() -> Library:
+    """All units together: parsed, with their types, names, writes and interfaces checked."""
+    return compile_st(FILES)
+
+
+def blocks() -> dict[str, ast.Block]:
+    """The function blocks of mechanisms by file."""
+    found = {name.split("/")[-1].removesuffix(".st"): name for name in UNITS}
+    return {found[d.name]: d for d in library().objects.values() if isinstance(d, ast.Block) and d.name in found}

@@ -1,0 +1,103 @@
+"""Every block implements the interfaces of SoftMotion that its kind needs, method for method."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.harness.contract import INTERFACES, plain
+from tests.text.contract.blocks import CONTRACT, UNITS, blocks, library
+
+PRIVATE = {"FindPlatform", "EndPointOnFlange"}
+PRIVATE |= {"FindRoot", "TryAt", "TryJoint", "FinishRoot"}
+ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2")
+
+
+def test_every_mechanism_has_its_block() -> None:
+    """Every mechanism has a function block."""
+    assert len(blocks()) == len(UNITS) >= 20
+
+
+@pytest.mark.parametrize("name", CONTRACT.interfaces)
+def test_the_contract_data_agrees_with_the_stand_ins(name: str) -> None:
+    """Two files condensed from the documentation, one for the emitter and one for the harness."""
+    emitted, independent = CONTRACT.interfaces[name], INTERFACES[name]
+    assert list(emitted.extends) == independent["extends"]
+    assert dict(emitted.properties) == independent["properties"]
+    assert set(emitted.methods) == set(independent["methods"])
+    for method, signature in emitted.methods.items():
+        wanted = independent["methods"][method]
+        assert plain(signature.returns or None) == plain(wanted["returns"])
+        given = [(p.scope, p.name, plain(p.type)) for p in signature.parameters]
+        assert given == [(scope, parameter, plain(kind)) for scope, parameter, kind in wanted["params"]]
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_methods_are_those_of_the_contract(file: str) -> None:
+    """A block has exactly the methods of its interfaces and its own, with the documented signatures."""
+    block = blocks()[file]
+    assert block.implements[-1] == "ISoftkin"
+    interfaces = list(CONTRACT.closure([name.removeprefix("TRAFO.") for name in block.implements[:-1]]))
+    wanted = {m: s for i in interfaces for m, s in i.methods.items()} | dict(CONTRACT.own)
+    base = library().objects["Softkin_Kinematics"]
+    inherited = {m.name: m for m in base.methods if m.access == "PUBLIC"}
+    own = {m.name: m for m in block.methods if m.access == "PUBLIC"}
+    assert not set(own) & set(inherited)
+    found = {name: method for name, method in (inherited | own).items() if name in wanted}
+    assert set(found) == set(wanted) and set(own) <= set(wanted)
+    for name, method in found.items():
+        signature = wanted[name]
+        assert ("" if method.returns is None else method.returns.text) == signature.returns
+        given = [(p.scope, p.name, p.type) for p in method.params]
+        assert given == [(p.scope, p.name, p.type) for p in signature.parameters]
+    assert {m.name for m in block.methods if m.access == "PRIVATE"} <= PRIVATE
+    assert {(p.name, p.type.text) for p in block.properties} == {("NumAxes", "UDINT")}
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_the_newest_interfaces_that_fit(file: str) -> None:
+    """A block implements the newest interfaces that fit its configuration and its kind."""
+    block = blocks()[file]
+    names = [name.removeprefix("TRAFO.") for name in block.implements]
+    has_configuration = f"{block.name}_Config" in library().objects
+    assert {"ISMKinematicWithInfo2", "ISMKinematicWithInitialization"} <= set(names)
+    assert ("ISMKinematicWithConfigurations4" in names) == has_configuration
+    assert f"{block.name}_ReadConfig" in library().objects or not has_configuration
+    is_orientation = file.startswith("orientation/")
+    is_position = "Position kinematics for a SoftMotion axis group." in block.comment
+    offset = "ISMPositionKinematics_Offset2" if has_configuration else "ISMPositionKinematics_Offset"
+    assert sum(name in ("ISMPositionKinematics2", offset) for name in names) == is_position
+    assert sum(name in ORIENTATION for name in names) == (3 if is_orientation else 0)
+    assert is_position or is_orientation or "ISMKinematicsWithOrientationImage2" in names
+    assert "ISMKinPeriodHandling" not in names or has_configuration
+    assert (
+        "ISMOrientationKinematicsWithOriImage" not in names
+    )  # it declares another GetOrientationImage than a position does
+    assert not (is_orientation and (is_position or "ISMKinematicsWithOrientationImage2" in names))
+
+
+def test_the_kinds_of_the_vendors_parts() -> None:
+    """A position part whose flange turns freely is one still; a complete robot is none."""
+    kinds = {
+        "articulated/Softkin_Pos_RRR.st": "ISMPositionKinematics_Offset2",
+        "articulated/Softkin_5Axes.st": "ISMKinematicsWithOrientationImage2",
+        "articulated/Softkin_ArticulatedRobot_6DOF.st": "ISMKinematicsWithOrientationImage2",
+        "orientation/Softkin_Wrist3.st": "ISMOrientationKinematics3",
+    }
+    for file, interface in kinds.items():
+        assert f"TRAFO.{interface}" in blocks()[file].implements
+
+
+def test_two_blocks_implement_everything() -> None:
+    """Two blocks together implement every interface of the contract."""
+    files = ("scara/Kin_Scara4_ZCcoupled_Type1.st", "orientation/Softkin_Wrist3.st")
+    names = [name.removeprefix("TRAFO.") for file in files for name in blocks()[file].implements[:-1]]
+    assert set(CONTRACT.interfaces) == {i.name for i in CONTRACT.closure(names)}
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_blocks_with_turns_take_the_limits_of_the_drives(file: str) -> None:
+    """Exactly the blocks with turns implement the interface for the limits of drives."""
+    block = blocks()[file]
+    has_turns = "TRAFO.ISMKinPeriodHandling" in block.implements
+    assert ("TRAFO.ISMKinematicAxisSettings" in block.implements) == has_turns
+    assert ("narrow those of the block" in " ".join(block.comment.split())) == has_turns
