@@ -98,6 +98,8 @@ SHARED_BY_A_FILE = (
 grammar."""
 OF_A_GENERATION = ("test_generated_is_fresh.py", "view/")
 """Tests that share a fresh generation of the whole catalogue, or the browser that shows it."""
+OF_A_TYPE_CHECKER = ("test_style.py", "typing/")
+"""Tests that share what mypy keeps of the types that it read, where two processes must not write at once."""
 WITH_THEIR_MECHANISM = ("unit/drawing/", "unit/optimize/test_regular.py")
 """Units that need all programs of a mechanism, which its other tests have built."""
 PATHS = {
@@ -162,8 +164,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if (is_quick and not is_long) or (IS_NATIVE and folders[:1] in ASKED_WHOLE):
             item.add_marker("quick")
         if is_shared_out:
-            if place.startswith(OF_A_GENERATION):
-                item.add_marker(pytest.mark.xdist_group(OF_A_GENERATION[0]))
+            together = next((t for t in (OF_A_GENERATION, OF_A_TYPE_CHECKER) if place.startswith(t)), None)
+            if together is not None:
+                item.add_marker(pytest.mark.xdist_group(together[0]))
                 continue
             shared = [] if not folders or _is_shared_by_its_file(place) else names or machines_of(item, folders)
             item.add_marker(pytest.mark.xdist_group(shared[0] if shared else file))
