@@ -99,6 +99,8 @@ SHARED_BY_A_FOLDER = ("text/contract/",)
 """Folders whose files share all units compiled together: their tests run in one process."""
 OF_A_GENERATION = ("test_generated_is_fresh.py", "view/")
 """Tests that share a fresh generation of the whole catalogue, or the browser that shows it."""
+OF_A_TYPE_CHECKER = ("test_style.py", "typing/")
+"""Tests that share what mypy keeps of the types that it read, where two processes must not write at once."""
 WITH_THEIR_MECHANISM = ("unit/drawing/", "unit/optimize/test_regular.py")
 """Units that need all programs of a mechanism, which its other tests have built."""
 PATHS = {
@@ -168,11 +170,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 def _group_of(item: pytest.Item, place: str, folders: tuple[str, ...], names: list[str]) -> str:
     """The name of what a test shares with others, which run in the same process."""
-    if place.startswith(OF_A_GENERATION):
-        return OF_A_GENERATION[0]
-    folder = next((folder for folder in SHARED_BY_A_FOLDER if place.startswith(folder)), None)
-    if folder is not None:
-        return folder
+    for together in (OF_A_GENERATION, OF_A_TYPE_CHECKER, SHARED_BY_A_FOLDER):
+        if place.startswith(together):
+            return together[0]
     shared = [] if not folders or _is_shared_by_its_file(place) else names or machines_of(item, folders)
     return shared[0] if shared else place.partition("::")[0]
 

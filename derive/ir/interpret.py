@@ -14,15 +14,17 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from derive.ir.cells import At
-from derive.ir.constants import DEGREE, EDGE, PIVOT, SOLVABLE
-from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
+from derive.ir.constants import DEGREE, PIVOT, SOLVABLE
+from derive.ir.primitives import VALUES
 from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, Statement, Status
 from derive.ir.roots import nearest, nearest_listed
 from derive.ir.symbols import PLACE, Flag, is_condition, is_count, is_decided
 from derive.kept import kept_by_identity
 
 Array = NDArray[np.float64]
-_SHIFT = 180.0 + float(EDGE)
+_PIVOT, _SOLVABLE = float(PIVOT), float(SOLVABLE)
+_FEW = 8
+"""So many systems of equations are solved one by one: arrays cost more than what they compute."""
 
 
 @dataclass
@@ -51,46 +53,6 @@ def repeats_counted() -> Iterator[Repeats]:
         _REPEATS.reset(token)
 
 
-def nearest_period(value: Array, centre: Array) -> Array:
-    """value + 360 k in [centre - 180 - EDGE, centre + 180 - EDGE)."""
-    return value - 360.0 * np.floor((value - centre + _SHIFT) / 360.0)
-
-
-def wrap(angle: Array) -> Array:
-    """The value of an angle in (-pi, pi]."""
-    return np.asarray(angle - 2 * np.pi * np.ceil((angle - np.pi) / (2 * np.pi)))
-
-
-def nearest_on_arc(angle: Array, centre: Array, half: Array) -> Array:
-    """The angle of the arc centre ± half nearest to `angle`, counted from the centre."""
-    delta = angle - centre - 2 * np.pi * np.floor((angle - centre + np.pi) / (2 * np.pi))
-    return centre + np.clip(delta, -half, half)
-
-
-_FUNCTIONS: dict[type[sp.Basic], Callable[..., Array]] = {
-    sp.sin: np.sin,
-    sp.cos: np.cos,
-    sp.Abs: np.abs,
-    Root: lambda x: np.sqrt(np.maximum(x, 0.0)),
-    Atan2: lambda y, x: np.arctan2(y + 0.0, x + 0.0),  # a zero has no sign
-    Select: np.where,
-    ToReal: lambda n: np.asarray(n, dtype=float),
-    Wrap: wrap,
-    NearestPeriod: nearest_period,
-    NearestOnArc: nearest_on_arc,
-    sp.Le: np.less_equal,
-    sp.Lt: np.less,
-    sp.Ge: np.greater_equal,
-    sp.Gt: np.greater,
-    sp.Eq: np.equal,
-    sp.Ne: np.not_equal,
-    sp.And: np.logical_and,
-    sp.Or: np.logical_or,
-    sp.Not: np.logical_not,
-    sp.Add: np.add,
-    sp.Mul: np.multiply,
-    sp.Pow: np.power,
-}
 _Values = Mapping[str, Array]
 _Evaluator = Callable[[_Values], Array]
 
@@ -109,7 +71,7 @@ def _evaluator(expression: sp.Basic) -> _Evaluator:
         return _constant(expression == sp.true)
     if expression == DEGREE or isinstance(expression, sp.Number | sp.NumberSymbol):
         return _constant(np.pi / 180.0 if expression == DEGREE else float(expression))
-    function, first, *others = _FUNCTIONS[type(expression)], *map(_evaluator, expression.args)
+    function, first, *others = VALUES[type(expression)], *map(_evaluator, expression.args)
     if others and isinstance(expression, sp.Add | sp.Mul | sp.And | sp.Or):
         return _chained(function, first, others)
     if not others:
@@ -200,10 +162,10 @@ def _step(statement: Statement) -> _Step:
         condition, otherwise = _evaluator(statement.condition), statement.otherwise
         return lambda known, status: _require(condition(known), otherwise, status)
     if isinstance(statement, Solve):
-        return lambda known, status: _solve(statement, known, status.shape)
+        return _system(statement)
     if isinstance(statement, Call):
         return partial(_call, statement)
-    return partial(_find, statement) if isinstance(statement, FindRoot) else partial(_iterate, statement)
+    return partial(_find, statement) if isinstance(statement, FindRoot) else _loop(statement)
 
 
 def _let(let: Let) -> _Step:
@@ -271,48 +233,67 @@ def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]
         known[name.name][looked] = column
 
 
-def _iterate(loop: Iterate, known: dict[str, Array], status: NDArray[np.object_]) -> None:
+def _loop(loop: Iterate) -> _Step:
     """Run a loop: rows that are done keep their state and the names of the step, while the others go on."""
-    start = [_as_declared(evaluate(value, known), name) for name, value in zip(loop.state, loop.start, strict=True)]
-    known.update(zip((name.name for name in loop.state), start, strict=True))
-    done = np.zeros(status.shape, dtype=bool)
-    counted = _REPEATS.get() or Repeats()
-    for _ in range(loop.limit):
-        counted.passes += int(np.sum(~done & (status == Status.OK)))
-        _execute(loop.step, known, status)
-        done = np.broadcast_to(evaluate(loop.done, known), status.shape)
-        if np.all(done | (status != Status.OK)):
-            break
-        following = [_as_declared(evaluate(v, known), n) for n, v in zip(loop.state, loop.following, strict=True)]
-        known.update({n.name: np.where(done, known[n.name], v) for n, v in zip(loop.state, following, strict=True)})
-    _require(done, loop.otherwise, status)
-
-
-def _solve(system: Solve, known: dict[str, Array], shape: tuple[int, ...]) -> None:
-    matrix, right = (
-        np.array([np.broadcast_to(evaluate(e, known), shape) for e in entries], dtype=float).reshape(
-            system.size, -1, *shape
-        )
-        for entries in (system.matrix, system.right)
+    is_done, names = _evaluator(loop.done), [name.name for name in loop.state]
+    starts, followings = (
+        [(_evaluator(value), _declared(name)) for name, value in zip(loop.state, values, strict=True)]
+        for values in (loop.start, loop.following)
     )
-    determinant, solution = solve(matrix, right)
-    known.update(zip((n.name for n in system.names), solution.reshape(-1, *shape), strict=True))
-    if system.determinant is not None:
-        known[system.determinant.name] = determinant
+
+    def iterate(known: _State, status: _Statuses) -> None:
+        start: list[Array] = [np.asarray(value(known), declared) for value, declared in starts]
+        known.update(zip(names, start, strict=True))
+        done = np.zeros(status.shape, dtype=bool)
+        counted = _REPEATS.get() or Repeats()
+        for _ in range(loop.limit):
+            counted.passes += int(np.sum(~done & (status == Status.OK)))
+            _execute(loop.step, known, status)
+            done = _broadcast(is_done(known), status.shape)
+            if np.all(done | (status != Status.OK)):
+                break
+            following: list[Array] = [np.asarray(value(known), declared) for value, declared in followings]
+            known.update({n: np.where(done, known[n], v) for n, v in zip(names, following, strict=True)})
+        _require(done, loop.otherwise, status)
+
+    return iterate
+
+
+def _system(system: Solve) -> _Step:
+    tables = [[_evaluator(e) for e in entries] for entries in (system.matrix, system.right)]
+
+    def bind(known: _State, status: _Statuses) -> None:
+        matrix, right = (_table(entries, known, system.size, status.shape) for entries in tables)
+        determinant, solution = solve(matrix, right)
+        known.update(zip((n.name for n in system.names), solution.reshape(-1, *status.shape), strict=True))
+        if system.determinant is not None:
+            known[system.determinant.name] = determinant
+
+    return bind
+
+
+def _table(entries: Sequence[_Evaluator], known: _State, rows: int, shape: tuple[int, ...]) -> Array:
+    """Entries by rows: rows, columns, then the shape."""
+    found = np.empty((len(entries), *shape))
+    for place, entry in enumerate(entries):
+        found[place] = entry(known)
+    return found.reshape(rows, len(entries) // rows, *shape)
 
 
 def solve(matrix: Array, right: Array) -> tuple[Array, Array]:
     """Determinant and solution by LU decomposition with partial pivoting: rows, columns, then any shape. Unsolvable:
     zeros.
     """
+    if 0 < matrix[0, 0].size <= _FEW:
+        return _solved_one_by_one(matrix, right)
     matrix, right, size = matrix.copy(), right.copy(), len(matrix)
-    largest, most = np.max(np.abs(matrix), axis=(0, 1)), float(SOLVABLE)
-    tiny = float(PIVOT) * largest
+    largest, most = np.max(np.abs(matrix), axis=(0, 1)), _SOLVABLE
+    tiny = _PIVOT * largest
     regular = (largest >= 1.0 / most) & (largest <= most) & np.all(np.abs(right) <= most, axis=(0, 1))
     determinant = np.ones(matrix.shape[2:])
     for k in range(size):
         best = k + np.argmax(np.abs(matrix[k:, k]), axis=0)
-        for table in (matrix, right):
+        for table in (matrix, right) if np.any(best != k) else ():
             table[k], lifted = np.take_along_axis(table, best[None, None], axis=0)[0], table[k].copy()
             np.put_along_axis(table, np.broadcast_to(best[None, None], (1, *lifted.shape)), lifted[None], axis=0)
         determinant = np.where(best == k, determinant, -determinant) * matrix[k, k]
@@ -327,3 +308,38 @@ def solve(matrix: Array, right: Array) -> tuple[Array, Array]:
             right[k] -= matrix[k, i] * right[i]
         right[k] *= matrix[k, k]
     return np.where(regular, determinant, 0.0), np.where(regular, right, 0.0)
+
+
+def _solved_one_by_one(matrix: Array, right: Array) -> tuple[Array, Array]:
+    """The same with Python's numbers, of which every operation rounds as those of arrays do."""
+    size, columns, *shape = right.shape
+    count = matrix[0, 0].size
+    systems = np.concatenate([matrix, right], axis=1).reshape(size, size + columns, count)
+    answers = [_solved(systems[:, :, k].tolist(), size) for k in range(count)]
+    solution = np.array([rows for _, rows in answers]).reshape(count, size, columns)
+    return np.array([d for d, _ in answers]).reshape(shape), np.moveaxis(solution, 0, -1).reshape(right.shape)
+
+
+def _solved(rows: list[list[float]], size: int) -> tuple[float, list[list[float]]]:
+    """Determinant and solution of one system, whose rows have their right sides behind them."""
+    nothing, most = (0.0, [[0.0] * len(row[size:]) for row in rows]), _SOLVABLE
+    largest, determinant = max(abs(v) for row in rows for v in row[:size]), 1.0
+    if largest < 1.0 / most or not all(abs(v) <= most for row in rows for v in row):  # nor where one is no number
+        return nothing
+    for k in range(size):
+        best = max(range(k, size), key=lambda i: abs(rows[i][k]))
+        if best != k:
+            rows[k], rows[best], determinant = rows[best], rows[k], -determinant
+        top, pivot = rows[k], rows[k][k]
+        determinant *= pivot
+        if not abs(pivot) > _PIVOT * largest:
+            return nothing
+        top[k] = 1.0 / pivot
+        for row in rows[k + 1 :]:
+            factor = row[k] * top[k]
+            row[k + 1 :] = [v - factor * t for v, t in zip(row[k + 1 :], top[k + 1 :], strict=True)]
+    for k in reversed(range(size)):
+        for i in range(k + 1, size):
+            rows[k][size:] = [v - rows[k][i] * t for v, t in zip(rows[k][size:], rows[i][size:], strict=True)]
+        rows[k][size:] = [v * rows[k][k] for v in rows[k][size:]]
+    return determinant, [row[size:] for row in rows]

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 from sympy.logic.boolalg import Boolean
 
+from derive.ir.constants import EDGE
 from derive.ir.symbols import is_decided
+
+Array = NDArray[np.float64]
+_SHIFT = 180.0 + float(EDGE)
 
 
 class Root(sp.Function):
@@ -105,3 +113,46 @@ PRIMITIVES: tuple[type[sp.Function], ...] = (
     NearestPeriod,
     NearestOnArc,
 )
+
+
+def nearest_period(value: Array, centre: Array) -> Array:
+    """value + 360 k in [centre - 180 - EDGE, centre + 180 - EDGE)."""
+    return value - 360.0 * np.floor((value - centre + _SHIFT) / 360.0)
+
+
+def wrap(angle: Array) -> Array:
+    """The value of an angle in (-pi, pi]."""
+    return np.asarray(angle - 2 * np.pi * np.ceil((angle - np.pi) / (2 * np.pi)))
+
+
+def nearest_on_arc(angle: Array, centre: Array, half: Array) -> Array:
+    """The angle of the arc centre ± half nearest to `angle`, counted from the centre."""
+    delta = angle - centre - 2 * np.pi * np.floor((angle - centre + np.pi) / (2 * np.pi))
+    return centre + np.clip(delta, -half, half)
+
+
+VALUES: dict[type[sp.Basic], Callable[..., Array]] = {
+    sp.sin: np.sin,
+    sp.cos: np.cos,
+    sp.Abs: np.abs,
+    Root: lambda x: np.sqrt(np.maximum(x, 0.0)),
+    Atan2: lambda y, x: np.arctan2(y + 0.0, x + 0.0),  # a zero has no sign
+    Select: np.where,
+    ToReal: lambda n: np.asarray(n, dtype=float),
+    Wrap: wrap,
+    NearestPeriod: nearest_period,
+    NearestOnArc: nearest_on_arc,
+    sp.Le: np.less_equal,
+    sp.Lt: np.less,
+    sp.Ge: np.greater_equal,
+    sp.Gt: np.greater,
+    sp.Eq: np.equal,
+    sp.Ne: np.not_equal,
+    sp.And: np.logical_and,
+    sp.Or: np.logical_or,
+    sp.Not: np.logical_not,
+    sp.Add: np.add,
+    sp.Mul: np.multiply,
+    sp.Pow: np.power,
+}
+"""What primitives and operations are on arrays: the reference of every language."""

@@ -117,6 +117,7 @@ def at_the_pose(mechanism: Mechanism) -> tuple[Let, ...]:
     )
 
 
+@cache
 def guides_determinant(mechanism: Mechanism) -> sp.Expr:
     """The determinant of the planes by what the task does not command, moments divided by the platform's radius: in the
     names of their rows, at a pose.

@@ -13,7 +13,8 @@ import pytest
 
 HERE = Path(__file__).resolve().parent
 PACKAGE = HERE.parents[1] / "generated/python"
-MYPY = ("mypy", "--strict", "--no-error-summary", "--cache-dir")
+MYPY = ("mypy", "--strict", "--no-error-summary", "--cache-dir", str(HERE.parents[1] / ".mypy_cache"))
+"""With what the checks of the style have read already: NumPy and the package."""
 SETTINGS = {
     "include": [str(HERE / "uses.py"), str(HERE / "wrong.py")],
     "extraPaths": [str(PACKAGE)],
@@ -32,9 +33,9 @@ def said(*command: str, **more: str) -> str:
     return done.stdout
 
 
-def by_mypy(folder: Path) -> set[tuple[str, int]]:
+def by_mypy(_: Path) -> set[tuple[str, int]]:
     """The file and the line of every error of mypy."""
-    text = said(*MYPY, str(folder), "uses.py", "wrong.py", MYPYPATH=str(PACKAGE))
+    text = said(*MYPY, "uses.py", "wrong.py", MYPYPATH=str(PACKAGE))
     return {(name, int(line)) for name, line in re.findall(r"^(\w+\.py):(\d+): error", text, re.MULTILINE)}
 
 

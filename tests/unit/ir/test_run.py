@@ -13,11 +13,13 @@ from hypothesis import strategies as st
 from derive.ir.constants import (
     DEGREE,
 )
-from derive.ir.interpret import evaluate, nearest_on_arc, nearest_period, run
+from derive.ir.interpret import evaluate, run
 from derive.ir.primitives import (
     Atan2,
     Root,
     Select,
+    nearest_on_arc,
+    nearest_period,
 )
 from derive.ir.program import (
     Let,

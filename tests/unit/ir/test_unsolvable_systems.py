@@ -20,16 +20,16 @@ NO_NUMBERS = [np.nan, np.inf, -np.inf, 1e31, -1e31, 1.7e308]
 
 
 def answers(matrix: Array, right: Array) -> list[tuple[float, list[float]]]:
-    """Determinant and solution: the reference, both runtimes of Python, and Structured Text, which faults where a PLC
-    would.
+    """Determinant and solution: the reference, of one system and of many, both runtimes of Python, and Structured Text,
+    which faults where a PLC would.
     """
     rows, sides = matrix.tolist(), right.tolist()
     with np.errstate(all="ignore"):
-        reference = solve(matrix[..., None], right[..., None])
+        references = [solve(*(np.repeat(t[..., None], count, axis=2) for t in (matrix, right))) for count in (1, 20)]
         batch = _array.solve(*([tuple(np.array([v]) for v in row) for row in table] for table in (rows, sides)))
     scalar = _scalar.solve(rows, sides)
     return [
-        (float(reference[0][0]), reference[1].ravel().tolist()),
+        *((float(d[0]), solution[..., 0].ravel().tolist()) for d, solution in references),
         (float(batch[0][0]), [float(v[0]) for v in batch[1:]]),
         (scalar[0], list(scalar[1:])),
         controller(rows, sides),
@@ -37,7 +37,7 @@ def answers(matrix: Array, right: Array) -> list[tuple[float, list[float]]]:
 
 
 def assert_nothing(matrix: Array, right: Array = SIDES) -> None:
-    assert answers(matrix, right) == [(0.0, [0.0] * right.size)] * 4
+    assert answers(matrix, right) == [(0.0, [0.0] * right.size)] * 5
 
 
 @pytest.mark.parametrize("wrong", NO_NUMBERS)
@@ -85,4 +85,4 @@ def test_the_worst_that_is_solved_stays_finite(seed: int, size: int) -> None:
     matrix, right = generator.choice([-1.0, 1.0, 0.999999999999], (2, size, size)) * 10.0**exponents
     found = answers(matrix, right)
     assert np.isfinite(found[0][0]) and np.isfinite(found[0][1]).all()
-    assert found == [found[0]] * 4
+    assert found == [found[0]] * 5
