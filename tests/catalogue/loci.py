@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import combinations, product
 
 import numpy as np
@@ -115,7 +115,8 @@ class Locus:
         return self.machine.closure.at_joints([self.quantity], joints)[:, 0]
 
 
-def loci(machine: Machine) -> list[Locus]:
+@cache
+def loci(machine: Machine) -> tuple[Locus, ...]:
     """Every place where some quantity of the description vanishes; no two branches' by the same joint, where that can
     be.
     """
@@ -126,7 +127,7 @@ def loci(machine: Machine) -> list[Locus]:
         taken = {locus.joint for locus in chosen.values()}
         chosen[number] = _first(machine, *quantities[number], taken)
     pairs = [(chosen[n], replace(chosen[n], second=True)) for n in sorted(chosen)]
-    return [locus for pair in pairs for locus in (pair[:1] if pair[0].is_length else pair)]
+    return tuple(locus for pair in pairs for locus in (pair[:1] if pair[0].is_length else pair))
 
 
 def coinciding(one: Machine) -> Iterator[Array]:
