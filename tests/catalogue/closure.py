@@ -210,10 +210,10 @@ class Closure:
 
     def _evaluate(self, formula: Formula, values: Array) -> Array:
         columns = formula(*values.T, *self.constants, ONE_DEGREE)
-        found = np.empty((len(values), len(columns)), dtype=values.dtype)
+        found = np.empty((len(columns), len(values)), dtype=values.dtype)  # its rows: one is a place of all poses
         for place, column in enumerate(columns):
-            found[:, place] = column
-        return found
+            found[place] = column
+        return found.T
 
 
 Formula = Callable[..., Sequence[Array]]

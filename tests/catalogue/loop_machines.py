@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from derive.description.mechanism import Mechanism, Role
 from derive.ir.symbols import POSITION
-from tests.catalogue.closure import Array, Closure, derivative
+from tests.catalogue.closure import Array, Closure, Formula, derivative
 from tests.catalogue.machines import TURNS, Machine
 from tests.mechanisms import catalogue
 
@@ -74,17 +74,23 @@ class LoopClosure(Closure):
             if not moving.size:
                 break
             here, there = joints[moving], positions[moving]
-            slopes = self._slopes(here, there) + 1e-15 * np.eye(len(self.task))
-            step = np.linalg.solve(slopes, self._stated(here, there)[:, :, None])[:, :, 0]
+            stated, slopes = self._with_slopes(here, there)
+            step = np.linalg.solve(slopes + 1e-15 * np.eye(len(self.task)), stated[:, :, None])[:, :, 0]
             there[:, self.task] -= np.clip(step, -FAR * self.reach, FAR * self.reach)
             positions[moving] = there
             moving = moving[np.abs(step).max(axis=1) > 1e-13 * self.reach]
         return positions, np.abs(self._stated(joints, positions)).max(axis=1, initial=0.0) < 1e-10 * self.reach
 
-    def _slopes(self, joints: Array, positions: Array) -> Array:
-        """The same as `by_position`, from derivatives of the equations: Newton's method asks often."""
-        found = self.at(joints, positions, slopes_of(self._equations, self._commanded))
-        return found.reshape(len(joints), -1, len(self.task))
+    def _with_slopes(self, joints: Array, positions: Array) -> tuple[Array, Array]:
+        """The equations, and the same as `by_position`, from their derivatives: Newton's method asks often."""
+        count = len(self._equations)
+        found = self._evaluate(self._formula_with_slopes, np.hstack([joints, positions]))
+        return found[:, :count], found[:, count:].reshape(len(joints), -1, len(self.task))
+
+    @cached_property
+    def _formula_with_slopes(self) -> Formula:
+        slopes = slopes_of(self._equations, self._commanded)
+        return self._formulas.at_pose((*self._equations, *slopes))
 
     def by_position(self, joints: Array, positions: Array) -> Array:
         """A = ∂Φ/∂x: equations by commanded coordinates."""

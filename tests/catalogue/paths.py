@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from tests.catalogue.closure import Array
@@ -42,6 +44,7 @@ def tour(machine: Machine, steps: int, turns: int = 0) -> Array:
     return axes
 
 
+@cache
 def start(machine: Machine) -> Array:
     """Axis values on the first turn, every elbow bent a little, from which every axis can go some way."""
     axes = machine.draw(1000, np.random.default_rng(12), farthest=100.0)
@@ -63,9 +66,11 @@ def _bending(machine: Machine) -> list[Locus]:
     return sorted(first, key=lambda locus: locus.joints)
 
 
+@cache
 def straight(machine: Machine, axis: int, steps: int, far: float = 400.0) -> Array:
     """From the start with one axis some way (degrees or lengths), as far as the way is regular."""
     axes = np.repeat(start(machine)[None], steps, axis=0)
     axes[:, axis] += np.linspace(0.0, far, steps)
     regular = machine.is_regular(axes)
+    axes.flags.writeable = False  # all who ask for this motion get the same array
     return axes if regular.all() else axes[: int(regular.argmin())]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 import softkin
@@ -24,8 +22,8 @@ TOLERANCE = 1e-8
 
 def follow(
     robot: softkin.Mechanism, machine: Machine, axes: Array, branches: tuple[int, ...] | None = None
-) -> Iterator[tuple[int, Array | None]]:
-    """Every step's result: axis values, or None where it was refused. The reference is the last result.
+) -> tuple[Array, Array]:
+    """The axis values of every step, and whether it was answered. The reference is the last result.
 
     A held axis is commanded along the way by its reference.
     Branches are those of the first pose, where they are not given.
@@ -33,17 +31,20 @@ def follow(
     if branches is None:
         branches = robot.forward(axes[0])[1][: robot.BRANCHES]
     positions, rotations = machine.closure.poses(axes)
-    frames = list(zip(positions.tolist(), rotations.tolist(), strict=True))
+    frames = zip(positions.tolist(), rotations.tolist(), strict=True)
     configuration = branches + (0,) * len(robot.PERIOD_AXES)
-    last = tuple(axes[0])
-    for k, frame in enumerate(frames):
+    last = tuple(axes[0].tolist())
+    found = np.full(axes.shape, np.nan)
+    for k, (position, rows) in enumerate(frames):
+        reference = held_at(robot, axes[k], last) if robot.HELD else last
         try:
-            last = robot.inverse(frame, configuration, held_at(robot, axes[k], last))
+            last = robot.inverse((tuple(position), tuple(map(tuple, rows))), configuration, reference)
         except KinematicsError as error:
             assert error.status is Status.UNREACHABLE
-            yield k, None
         else:
-            yield k, np.array(last)
+            found[k] = last
+    assert not np.isnan(last).any()
+    return found, ~np.isnan(found[:, 0])
 
 
 def chosen(machines: tuple[Machine, ...], label: str) -> Machine:
@@ -56,9 +57,9 @@ def test_many_turns(machines: tuple[Machine, ...]) -> None:
     """Across every ±180 degrees, forward and back, turns counted; with branches named."""
     machine = chosen(machines, "random 1")
     axes = tour(machine, STEPS)
-    for k, found in follow(machine.robot, machine, axes):
-        assert found is not None
-        assert np.abs(found - axes[k]).max() < TOLERANCE
+    found, answered = follow(machine.robot, machine, axes)
+    assert answered.all()
+    assert np.abs(found - axes).max() < TOLERANCE
     turning = [i for i, j in enumerate(machine.mechanism.joints) if j.multi_turn]
     periods = machine.robot.forward_batch(axes)[2][:, machine.robot.BRANCHES :]
     assert all(np.ptp(axes[:, i]) > 1000.0 for i in turning) or machine.robot.BRANCHES
@@ -69,9 +70,9 @@ def test_an_automatic_branch_stays_on_a_regular_way(machines: tuple[Machine, ...
     """On a regular path an automatic choice stays on its branch."""
     for machine in machines:
         axes = tour(machine, 1200, turns=-1)
-        for k, found in follow(machine.robot, machine, axes, (0,) * machine.robot.BRANCHES):
-            assert found is not None
-            assert np.abs(found - axes[k]).max() < TOLERANCE
+        found, answered = follow(machine.robot, machine, axes, (0,) * machine.robot.BRANCHES)
+        assert answered.all()
+        assert np.abs(found - axes).max() < TOLERANCE
 
 
 @pytest.mark.parametrize("direction", [1, -1])
@@ -89,19 +90,17 @@ def test_through_a_limit(mechanism: Mechanism, machines: tuple[Machine, ...], wi
         lower, upper = sorted((end, min(max(end - width * direction, low), high)))
         robot = machine.changed(**{f"lower_{joint.key}": lower, f"upper_{joint.key}": upper})
         assert (lower <= axes[0, i] <= upper) and not (lower - 10.0 <= axes[-1, i] <= upper + 10.0)
-        refused = False
-        for k, found in follow(robot, machine, axes):
-            if not refused:
-                inside = lower <= axes[k, i] <= upper
-                assert (found is not None) == inside
-                refused = not inside
-                if inside:
-                    assert np.abs(found - axes[k]).max() < TOLERANCE
-            elif found is not None:  # a turn back it is inside again
-                assert joint.multi_turn
-                assert lower - 1e-6 <= found[i] <= upper + 1e-6
-                assert abs(found[i] - axes[k, i] + 360.0 * direction) < TOLERANCE
-        assert refused
+        found, answered = follow(robot, machine, axes)
+        outside = (axes[:, i] < lower) | (axes[:, i] > upper)
+        assert outside.any()
+        first = int(outside.argmax())
+        assert answered[:first].all() and not answered[first]
+        assert np.abs(found[:first] - axes[:first]).max() < TOLERANCE
+        later = first + np.flatnonzero(answered[first:])  # a turn back it is inside again
+        assert joint.multi_turn or not len(later)
+        again = found[later, i]
+        assert ((lower - 1e-6 <= again) & (again <= upper + 1e-6)).all()
+        assert (np.abs(again - axes[later, i] + 360.0 * direction) < TOLERANCE).all()
 
 
 def test_a_range_of_exactly_one_turn(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
@@ -115,9 +114,9 @@ def test_a_range_of_exactly_one_turn(mechanism: Mechanism, machines: tuple[Machi
         robot = machine.changed(**{f"lower_{joint.key}": -180.0, f"upper_{joint.key}": 180.0})
         axes = straight(machine, i, 500)
         last = axes[0, i]
-        for k, found in follow(robot, machine, axes):
-            turns = 0.0 if axes[k, i] < last + 180.0 else 360.0
-            assert (found is None) == (axes[k, i] - turns > 180.0)
-            if found is not None:
-                assert abs(found[i] - (axes[k, i] - turns)) < TOLERANCE
-                last = axes[k, i] - turns
+        for value, found, is_answered in zip(axes[:, i], *follow(robot, machine, axes), strict=True):
+            turns = 0.0 if value < last + 180.0 else 360.0
+            assert is_answered == (value - turns <= 180.0)
+            if is_answered:
+                assert abs(found[i] - (value - turns)) < TOLERANCE
+                last = value - turns

@@ -66,20 +66,21 @@ def test_a_singular_pose_is_an_answer(machines: tuple[Machine, ...], around: str
         for locus in loci(machine):
             there = np.concatenate([locus.moved(axes, shift) for shift in shifts(locus)])
             near = held_at(robot, there, np.tile(references[around], (len(shifts(locus)), 1)))
-            positions, rotations = machine.closure.poses(there)
-            answers = []
-            for configuration in configurations(machine, there):
-                found, statuses = robot.inverse_batch(positions, rotations, configuration, near)
-                answered = machine.answers(statuses)
-                answers.append(answered)
-                assert machine.miss(found[answered], positions[answered], rotations[answered]).max(initial=0.0) < NEAR
-                rows = [i for i in range(0, len(there), len(axes) + 1) if answered[i]]
-                if rows:
-                    scalar = [
-                        robot.inverse((positions[i], rotations[i]), configuration[i].tolist(), near[i]) for i in rows
-                    ]
-                    assert machine.miss(np.array(scalar), positions[rows], rotations[rows]).max() < NEAR
-            assert all(answers[i].all() for i in (0, -2, -1))  # as reported, and the two that leave every branch open
+            asked = configurations(machine, there)
+            count, often = len(there), len(asked)
+            positions, rotations = (np.concatenate([part] * often) for part in machine.closure.poses(there))
+            every, references_of_all = np.concatenate(asked), np.concatenate([near] * often)
+            found, statuses = robot.inverse_batch(positions, rotations, every, references_of_all)
+            answered = machine.answers(statuses)
+            assert machine.miss(found[answered], positions[answered], rotations[answered]).max(initial=0.0) < NEAR
+            chosen = np.tile(np.arange(count) % (len(axes) + 1) == 0, often)
+            rows = np.flatnonzero(chosen & answered)
+            scalar = [
+                robot.inverse((positions[i], rotations[i]), every[i].tolist(), references_of_all[i]) for i in rows
+            ]
+            assert machine.miss(np.array(scalar), positions[rows], rotations[rows]).max() < NEAR
+            by_configuration = answered.reshape(often, count)
+            assert by_configuration[[0, -2, -1]].all()  # as reported, and the two that leave every branch open
 
 
 def test_regular_poses_are_met_to_rounding(machines: tuple[Machine, ...]) -> None:

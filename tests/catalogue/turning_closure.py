@@ -246,5 +246,5 @@ def _about(axis: int, angle: Array) -> Array:
 @cache
 def _compiled(expressions: tuple[sp.Expr, ...], names: tuple[sp.Symbol, ...]) -> Formula:
     """Expressions as a function of NumPy arrays."""
-    formula: Formula = sp.lambdify(names, list(expressions), modules="numpy")
+    formula: Formula = sp.lambdify(names, list(expressions), modules="numpy", cse=True)
     return formula

@@ -18,6 +18,7 @@ from tests.corpus.robots import Robot
 Question = dict[str, Any]
 Answer = dict[str, Any]
 
+_AS_THEY_ARE = (str, bool)
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.]*\w)")
 
 
@@ -52,12 +53,12 @@ def facts(one: Robot) -> Answer:
 
 def plain(value: Any) -> Any:
     """Lists, dictionaries, text and numbers; of a real the digits that matter."""
-    if isinstance(value, dict):
-        return {key: plain(part) for key, part in value.items()}
-    if isinstance(value, str | bool | None):
-        return value
     if isinstance(value, float):
         return round(float(f"{value:.12g}"), 12) + 0.0 if isfinite(value) else value
+    if isinstance(value, dict):
+        return {key: plain(part) for key, part in value.items()}
+    if value is None or isinstance(value, _AS_THEY_ARE):
+        return value
     if isinstance(value, int):
         return int(value)
     return [plain(part) for part in value]

@@ -99,7 +99,8 @@ class Instance:
 
     def call(self, name: str, /, **given: Any) -> Any:
         """Call a method; in-outs are changed in place, outputs are dropped."""
-        return self.call_with_outputs(name, **given)[0]
+        arguments, _ = self.routines[name.lower()].arguments(given)
+        return self.origin.run(getattr(self, python_names.method(name)), arguments)
 
     def call_with_outputs(self, name: str, /, **given: Any) -> tuple[Any, dict[str, Any]]:
         """Call a method; the dict holds its outputs and scalar in-outs."""

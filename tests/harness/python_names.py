@@ -1,6 +1,7 @@
 """The names of declared objects and variables in the translated Python source."""
 
 import keyword
+from functools import cache
 
 from . import st_types as types
 
@@ -21,6 +22,7 @@ def function(routine: types.Routine) -> str:
     return "function_" + routine.name.lower()
 
 
+@cache
 def method(name: str) -> str:
     return "method_" + name.lower()
 

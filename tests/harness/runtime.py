@@ -112,8 +112,8 @@ class Matrix(StructValue):
         self.memory[:] = other.memory
 
     def _copy(self) -> Matrix:
-        new = type(self)()
-        new.memory[:] = self.memory
+        new = object.__new__(type(self))
+        new.memory = self.memory[:]
         return new
 
 

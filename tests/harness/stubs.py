@@ -106,18 +106,16 @@ class MatrixAccess:
     def __init__(self, order: str) -> None:
         if order not in ("rows", "columns"):
             raise ValueError(f"order must be rows or columns, not {order}")
-        by_rows = [3 * row + column for row in range(3) for column in range(3)]
-        by_columns = [3 * column + row for row in range(3) for column in range(3)]
-        self.positions = by_rows if order == "rows" else by_columns
+        self.is_by_rows = order == "rows"
 
     def get(self, matrix: Matrix) -> Rows:
-        m = [matrix.memory[position] for position in self.positions]
-        return (tuple(m[0:3]), tuple(m[3:6]), tuple(m[6:9]))
+        a, b, c, d, e, f, g, h, i = matrix.memory[:9]
+        return ((a, b, c), (d, e, f), (g, h, i)) if self.is_by_rows else ((a, d, g), (b, e, h), (c, f, i))
 
     def set(self, matrix: Matrix, rows: Rows) -> None:
-        flat = [float(value) for row in rows for value in row]
-        for position, value in zip(self.positions, flat, strict=True):
-            matrix.memory[position] = value
+        (a, b, c), (d, e, f), (g, h, i) = rows
+        flat = (a, b, c, d, e, f, g, h, i) if self.is_by_rows else (a, d, g, b, e, h, c, f, i)
+        matrix.memory[:9] = map(float, flat)
 
 
 def natives(access: MatrixAccess) -> dict[str, Callable[..., Any]]:

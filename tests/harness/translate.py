@@ -74,8 +74,10 @@ class _Translator:
             add(f"    {_assignment(f'self.{field}', f'other.{field}', variable.type)}")
         add("    pass")
         add("def _copy(self):")
-        add(f"    new = {name}()")
-        add("    new._assign(self)")
+        add(f"    new = object.__new__({name})")
+        for field, variable in zip(names, struct.fields.values(), strict=True):
+            own = f"self.{field}"
+            add(f"    new.{field} = {own if types.is_scalar(variable.type) else _copied(own, variable.type)}")
         add("    return new")
         self.source.depth -= 1
 
@@ -167,5 +169,5 @@ def _assignment(target: str, value: str, of: types.Type) -> str:
 
 def _copied(name: str, of: types.Type) -> str:
     if isinstance(of, types.Array):
-        return f"list({name})" if types.is_scalar(of.element) else f"copy_elements({name})"
+        return f"{name}[:]" if types.is_scalar(of.element) else f"copy_elements({name})"
     return f"{name}._copy()"

@@ -14,6 +14,7 @@ from .conversions import conversion
 from .facts import BoundCall, Facts, Scope
 from .faults import StError
 from .initial_values import initial, is_inlined, literal
+from .intervals import Interval, Known, interval
 from .lexical import QUERY
 
 _COMPARISONS = {"=": "==", "<>": "!=", "<": "<", "<=": "<=", ">": ">", ">=": ">="}
@@ -25,6 +26,8 @@ class Expressions:
     def __init__(self, scope: Scope, facts: Facts) -> None:
         self.scope = scope
         self.facts = facts
+        self.known: Known = {}
+        """The values that control variables can have, in the bodies of their loops."""
 
     def value(self, node: ast.Expression, wanted: types.Type | None = None) -> str:
         """Source of the value; whole numbers take the shape of the wanted type."""
@@ -124,18 +127,34 @@ class Expressions:
         """The position in the flat list, tested against the bounds of every dimension."""
         array = self.facts.type_of[node.object]
         assert isinstance(array, types.Array)
-        code = ""
+        parts, constant, stride = list[str](), 0, array.count
         for index, (low, high) in zip(node.indices, array.bounds, strict=True):
+            stride //= high - low + 1
             known = constants.evaluate(index, self.scope.meaning)
             if isinstance(known, int):
-                part = str(known - low)
+                constant += stride * (known - low)
             else:
-                value = self.value(index)
-                name, bound = (value, value) if value.isidentifier() else ("_i", f"(_i := {value})")
-                place = f"{name} if {low} <= {bound} <= {high} else outside({name}, {low}, {high})"
-                part = f"({place})" if low == 0 else f"(({place}) - {low})"
-            code = f"({code}) * {high - low + 1} + {part}" if code else part
-        return code
+                part = self._within(index, low, high)
+                parts.append(part if stride == 1 else f"{part} * {stride}")
+                constant -= stride * low
+        if not parts:
+            return str(constant)
+        shift = "" if constant == 0 else f" {'+' if constant > 0 else '-'} {abs(constant)}"
+        return " + ".join(parts) + shift
+
+    def _within(self, index: ast.Expression, low: int, high: int) -> str:
+        """An index, tested against those bounds that it might be beyond."""
+        value, (least, most) = self.value(index), self.interval(index)
+        is_above, is_below = least is not None and least >= low, most is not None and most <= high
+        if is_above and is_below:
+            return value if value.isidentifier() else f"({value})"
+        name, bound = (value, value) if value.isidentifier() else ("_i", f"(_i := {value})")
+        test = f"{'' if is_above else f'{low} <= '}{bound}{'' if is_below else f' <= {high}'}"
+        return f"({name} if {test} else outside({name}, {low}, {high}))"
+
+    def interval(self, node: ast.Expression) -> Interval:
+        """The least and the largest value that an integer expression can have here."""
+        return interval(node, self.known, self.facts, self.scope.meaning)
 
     def reference(self, node: ast.Expression) -> str:
         """Source of what a VAR_IN_OUT gets: the object itself, or a cell of a scalar."""
@@ -184,7 +203,10 @@ class Expressions:
             return self._in_range(f"quotient({left}, {right})", of)
         if node.operator == "MOD":
             return self._in_range(f"remainder({left}, {right})", of)
-        return self._in_range(f"{left} {node.operator} {right}", of)
+        code, (least, most) = f"{left} {node.operator} {right}", self.interval(node)
+        assert isinstance(of, types.Integer)
+        is_inside = least is not None and most is not None and of.low <= least and most <= of.high
+        return f"({code})" if is_inside else self._in_range(code, of)
 
     def _left_operand(self, node: ast.Binary) -> str:
         """Without needless brackets: Python allows only 200 of them inside each other."""

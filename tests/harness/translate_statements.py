@@ -9,6 +9,7 @@ from . import st_types as types
 from .facts import Facts, Scope
 from .faults import Place
 from .initial_values import literal
+from .intervals import is_written, of_loop
 from .runtime import LOOP_CAP
 from .translate_expressions import Expressions
 
@@ -165,4 +166,25 @@ class Statements:
         # A control variable that cannot step past its end would run for ever on a controller.
         advanced = f"(_i if {of.low} <= (_i := {control} + {step}) <= {of.high} else overflow(_i))"
         condition = f"{control} {'<=' if step > 0 else '>='} {stop}"
-        self._passes(condition, node.body, node.at, f"{control} = {advanced}")
+        if of.high - of.low >= LOOP_CAP or not self._is_counted(node):
+            self._passes(condition, node.body, node.at, f"{control} = {advanced}")
+            return
+        past = f"{stop} {'+' if step > 0 else '-'} 1"
+        self.source.add(f"for {control} in range({control}, {past}{'' if step == 1 else f', {step}'}):", node.at)
+        self._counted(node, step)
+        self.source.add(f"else: {control} = {advanced} if {condition} else {control}", node.at)
+
+    def _is_counted(self, node: ast.For) -> bool:
+        """Whether nothing but the loop itself writes its control variable, which nobody else sees."""
+        variable = self.facts.meanings[node.control]
+        assert isinstance(variable, types.Variable)
+        is_local = self.scope.locals.get(variable.name.lower()) is variable and not self.code.is_cell(variable)
+        return is_local and not is_written(variable, node.body, self.facts)
+
+    def _counted(self, node: ast.For, step: int) -> None:
+        """The body of such a loop: the control variable stays between the ends."""
+        variable = self.facts.meanings[node.control]
+        assert isinstance(variable, types.Variable)
+        self.code.known[variable] = of_loop(self.code.interval(node.start), self.code.interval(node.stop), step)
+        self.body(node.body)
+        del self.code.known[variable]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from math import nan
 from typing import Any
 
@@ -62,7 +62,7 @@ def vector(library: Library, values: Numbers) -> Any:
 def matrix(library: Library, rows: Iterable[Numbers]) -> Any:
     """A rotation."""
     made = new(library, MATRIX_TYPE)
-    library.set_rotation(made, tuple(tuple(row) for row in rows))
+    library.set_rotation(made, tuple(rows))
     return made
 
 
@@ -70,12 +70,17 @@ def frame(library: Library, position: Numbers, rows: Iterable[Numbers]) -> Any:
     """A frame."""
     made = new(library, FRAME_TYPE)
     made.vT.dX, made.vT.dY, made.vT.dZ = position
-    library.set_rotation(made.mR, tuple(tuple(row) for row in rows))
+    library.set_rotation(made.mR, tuple(rows))
     return made
 
 
 def configuration(library: Library, values: Iterable[int]) -> Any:
     """Configuration bytes, signed or not. The bytes beyond them are not zero: nobody may read them."""
+    return _configuration(library, tuple(values))._copy()
+
+
+@lru_cache(maxsize=2000)
+def _configuration(library: Library, values: tuple[int, ...]) -> Any:
     made = new(library, BYTES_TYPE)
     given = [value % 256 for value in values]
     made.abyData[:] = given + [MEANINGLESS_BYTE] * (len(made.abyData) - len(given))

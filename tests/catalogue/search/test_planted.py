@@ -155,53 +155,55 @@ def test_plain_numbers_and_batches_agree(kind: str, lateral: float) -> None:
 def test_nothing_is_missed_that_a_scan_finds(kind: str, lateral: float) -> None:
     """All solutions that a fine scan of the closure finds are found."""
     case = planted(kind, lateral, 12, 15)
+    frames = [case.robot.forward(tuple(axes))[0] for axes in case.axes]
     seen = 0
-    for axes in case.axes:
-        frame, _ = case.robot.forward(tuple(axes))
+    for frame, roots in zip(frames, scanned(case.robot, frames), strict=True):
         solutions = [
             np.array(a) for s in case.robot.inverse_all(frame) if s.axes is not None for a in (s.axes, *s.others)
         ]
-        for root in scanned(case.robot, frame):
+        for root in roots:
             seen += 1
             assert min(abs(np.exp(1j * np.radians(s[5])) - np.exp(1j * root)) for s in solutions) < 1e-5
     assert seen > 30
 
 
-def scanned(robot: softkin.Ac6RZRYRYRXRYRZJ6Offset, frame: softkin.Frame, trials: int = 6000) -> list[float]:
-    """A6 (radians) at every simple root that changes the sign of the trial between neighbours of a scan."""
-    joint = np.linspace(0.0, 2 * np.pi, trials, endpoint=False)
-    found: list[float] = []
-    for shoulder, side in product((1.0, -1.0), repeat=2):
+def scanned(
+    robot: softkin.Ac6RZRYRYRXRYRZJ6Offset, frames: list[softkin.Frame], trials: int = 6000
+) -> list[list[float]]:
+    """A6 (radians) at every simple root that changes the sign of the trial between neighbours of a scan, by frame.
 
-        def value(t: Array, shoulder: float = shoulder, side: float = side) -> tuple[Array, Array]:
-            pose = dict(zip("xyz", frame.position, strict=True)) | {
-                f"r{i + 1}{j + 1}": frame.rotation[i][j] for i, j in product(range(3), repeat=2)
-            }
-            given = {
-                "reference_a1": 0.0,
-                "reference_a2": 0.0,
-                "freed": -1.0,
-                "freed_angle": 0.0,
-                "side": side,
-                "tried": t,
-            }
-            given |= {f"goal_{n}": v for n, v in pose.items()} | {"wanted_elbow": 1.0, "wanted_shoulder": shoulder}
-            values = tuple(given[name] for name in sorted(given))
-            with np.errstate(all="ignore"):
-                said = robot._array_programs().try_joint(values, np.zeros(len(t), np.uint8))
-            return np.asarray(said[0]), np.asarray(said[2])
+    The roots of all frames are closed in together.
+    """
+    joint = np.linspace(0.0, 2 * np.pi, trials + 1)
+    goals = np.array([[*frame.position, *np.ravel(frame.rotation)] for frame in frames])
+    starts = []
+    for number, shoulder, side in product(range(len(frames)), (1.0, -1.0), (1.0, -1.0)):
+        f, g = tried(robot, goals[number], shoulder, side, joint)
+        is_smooth = np.abs(np.diff(f)) < 0.2  # more is a jump
+        chosen = (f[:-1] * f[1:] < 0.0) & (g[:-1] > 1e-9) & (g[1:] > 1e-9) & is_smooth
+        starts += [(number, shoulder, side, f[k], joint[k], joint[k + 1]) for k in np.flatnonzero(chosen)]
+    owner, shoulders, sides, f, low, high = np.array(starts).reshape(-1, 6).T
+    owner = owner.astype(int)
+    for _ in range(60):
+        middle = (low + high) / 2
+        same = tried(robot, goals[owner].T, shoulders, sides, middle)[0] * f > 0.0
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    left = np.abs(tried(robot, goals[owner].T, shoulders, sides, low)[0]) < 1e-10
+    return [low[left & (owner == number)].tolist() for number in range(len(frames))]
 
-        low, high = joint, joint + joint[1]
-        (f, g), (f1, g1) = value(low), value(high)
-        chosen = (f * f1 < 0.0) & (g > 1e-9) & (g1 > 1e-9) & (np.abs(f - f1) < 0.2)  # more is a jump
-        low, high, f = low[chosen], high[chosen], f[chosen]
-        for _ in range(60):
-            middle = (low + high) / 2
-            same = value(middle)[0] * f > 0.0
-            low, high = np.where(same, middle, low), np.where(same, high, middle)
-        left = np.abs(value(low)[0]) < 1e-10
-        found += low[left].tolist()
-    return found
+
+def tried(
+    robot: softkin.Ac6RZRYRYRXRYRZJ6Offset, goals: Array, shoulder: float | Array, side: float | Array, joint: Array
+) -> tuple[Array, Array]:
+    """The trial and its guard at values of the last joint (radians), of one goal or of one for each."""
+    names = [*"xyz", *(f"r{i + 1}{j + 1}" for i, j in product(range(3), repeat=2))]
+    given: dict[str, float | Array] = {f"goal_{n}": v for n, v in zip(names, goals, strict=True)}
+    given |= {"reference_a1": 0.0, "reference_a2": 0.0, "freed": -1.0, "freed_angle": 0.0, "tried": joint}
+    given |= {"side": side, "wanted_elbow": 1.0, "wanted_shoulder": shoulder}
+    values = tuple(given[name] for name in sorted(given))
+    with np.errstate(all="ignore"):
+        said = robot._array_programs().try_joint(values, np.zeros(len(joint), np.uint8))
+    return np.asarray(said[0]), np.asarray(said[2])
 
 
 def is_regular(robot: softkin.Ac6RZRYRYRXRYRZJ6Offset, axes: Array) -> bool:

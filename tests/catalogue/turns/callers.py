@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 import numpy as np
@@ -53,10 +54,7 @@ class InPython:
     def __init__(self, mechanism: Mechanism, given: Mapping[str, float]) -> None:
         self.robot = robot_of(mechanism, given)
         self.answers: list[tuple[Asked, Axes | None]] = []
-
-    def forward(self, axes: Axes) -> tuple[Frame, Bytes]:
-        """The frame, and its configuration."""
-        return self.robot.forward(axes)
+        self.forward = cache(self.robot.forward)  # the same pose is asked for with many references
 
     def inverse(self, asked: Asked) -> Axes | None:
         """The axes, by a call that says the same of the turn as `diagnose` does."""

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
 from softkin import Frame
 
 from derive.description.mechanism import Mechanism
@@ -107,8 +106,10 @@ def _answered(axis: TurningAxis, caller: Caller, asked: Asked, turn: int, value:
 def assert_reaches(caller: Caller, axes: Axes, frame: Frame) -> None:
     """Forward kinematics gives the frame again."""
     found, _ = caller.forward(axes)
-    assert np.abs(np.subtract(found.rotation, frame.rotation)).max() < 1e-8
-    assert np.abs(np.subtract(found.position, frame.position)).max() < 1e-8 * (1e3 + np.abs(frame.position).max())
+    rows = zip(found.rotation, frame.rotation, strict=True)
+    assert all(abs(a - b) < 1e-8 for one, other in rows for a, b in zip(one, other, strict=True))
+    allowed = 1e-8 * (1e3 + max(map(abs, frame.position)))
+    assert all(abs(a - b) < allowed for a, b in zip(found.position, frame.position, strict=True))
 
 
 def _is_on_an_edge(value: float) -> bool:
