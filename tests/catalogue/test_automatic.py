@@ -39,11 +39,11 @@ def squared(machine: Machine, axes: Array, references: Array) -> Array:
 def by_slot(machine: Machine, frames: tuple[Array, Array], references: Array) -> list[Array]:
     """The axes of every slot with all periods open; not a number where a slot does not answer."""
     robot = machine.changed(check_limits=False)
-    every, statuses = robot.inverse_all_batch(*frames, references)
-    assert every.shape[1] == len(slots(machine))
-    found = list(every.transpose(1, 0, 2))
-    for axes, outcomes in zip(found, statuses.T, strict=True):
-        assert np.isnan(axes[~machine.answers(outcomes)]).all()
+    found = []
+    for slot in slots(machine):
+        axes, statuses = robot.inverse_batch(*frames, slot + (0,) * len(robot.PERIOD_AXES), references)
+        assert np.isnan(axes[~machine.answers(statuses)]).all()
+        found.append(axes)
     return found
 
 
