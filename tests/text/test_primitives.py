@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as some
 
 from derive.command.catalogue import OUTPUT
-from derive.ir import interpret as run
+from derive.ir import primitives
 from derive.ir.constants import (
     EDGE,
     FREE_ANGLE,
@@ -66,13 +66,13 @@ def test_floor(value: float) -> None:
 @given(angles, angles)
 def test_nearest_period(value: float, centre: float) -> None:
     """Softkin_NearestPeriod is bit for bit the reference function."""
-    assert call("NearestPeriod", value, centre) == run.nearest_period(np.float64(value), np.float64(centre))
+    assert call("NearestPeriod", value, centre) == primitives.nearest_period(np.float64(value), np.float64(centre))
 
 
 @given(radians, radians, some.floats(0.0, math.pi))
 def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
     """Softkin_NearestOnArc is the reference function."""
-    wanted = run.nearest_on_arc(np.float64(angle), np.float64(centre), np.float64(half))
+    wanted = primitives.nearest_on_arc(np.float64(angle), np.float64(centre), np.float64(half))
     assert call("NearestOnArc", angle, centre, half) == pytest.approx(float(wanted), abs=1e-12)
 
 

@@ -72,12 +72,14 @@ def test_in_whatever_signs_the_factors_are_written(rod: float, x: float, first: 
     assert abs(value(cannot_reach("rod 1", radicand, []), rod=rod, x=x) - (abs(x) - rod)) < 1e-9 * abs(x)
 
 
-@given(LENGTH, LENGTH, LENGTH, st.floats(-300.0, 300.0))
-def test_a_rod_in_a_product_that_has_a_name(arm: float, distance: float, rod: float, aside: float) -> None:
-    """The third side is the rod's projection on the plane of the arm, sqrt(rod^2 - aside^2), under a name."""
+@given(LENGTH, LENGTH.map(lambda v: v + 1.0), st.floats(-0.8, 0.8), st.floats(1.1e-3, 500.0), st.booleans())
+def test_a_rod_in_a_product_that_has_a_name(arm: float, rod: float, share: float, gap: float, is_inside: bool) -> None:
+    """The third side is the rod's projection on the plane of the arm, sqrt(rod^2 - aside^2), under a name. The rod
+    lacks the gap between that and the difference of the other two sides, whichever of these is the longer one.
+    """
+    aside = rod * share
     square = rod * rod - aside * aside
-    assume(square > 1.0)
-    assume(abs(arm - distance) - square**0.5 > 1e-3)
+    arm, distance = (arm + square**0.5 + gap, arm) if is_inside else (arm, arm + square**0.5 + gap)
     third = real("third_square")
     radicand = (third - (FIRST - SECOND) ** 2) * ((FIRST + SECOND) ** 2 - third)
     reason = out_of_reach(Q, radicand, [Let(third, (ROD - X) * (ROD + X))])
