@@ -129,11 +129,11 @@ def attempts(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES)
     if not work.missing:
         yield from (kept for kept in work.kept if kept is not None)
         return
-    # What is derived lives as long as its process: looking for garbage among it finds nothing, and takes a tenth of the
-    # time.
     _load()
     first, *others = work.missing
     made = _attempt(profile, wanted, first)  # here: what it fills, templates and caches, all processes have then
+    # What is derived lives as long as its process: looking for garbage among it finds nothing, and takes a tenth of the
+    # time. A command has disabled that itself, other callers have not.
     with ProcessPoolExecutor(max_workers=min(PROCESSES, max(1, len(others))), initializer=gc.disable) as pool:
         derived = chain([made], pool.map(partial(_attempt, profile, wanted), others))
         try:

@@ -1,7 +1,7 @@
-"""The process of a command: what Python does beside it takes as little time as may be.
+"""The process of a command.
 
-What a derivation makes lives as long as its process. To look for garbage among it finds nothing and takes a tenth of
-the time; at the end Python would look once more.
+What a command loads and derives lives as long as its process, so that Python looks for garbage in vain: while it loads,
+while it derives, and at the end.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import gc
 
 
 def run() -> int:
-    """Run the command that was typed: its status."""
+    """Run the command that was typed, and return its status."""
     gc.disable()
-    from derive.command.line import main  # loaded here: loading, too, makes what lives as long as the process
+    from derive.command.line import main  # loaded here, when nothing looks for garbage any more
 
     status = main()
     gc.freeze()

@@ -8,7 +8,7 @@ graph: values as a graph, in which equal values are one node
 interpret: the reference interpreter, which executes a program over arrays
 names: names that are free
 passes: passes over programs: aliases folded, statements in the order of their use, constants hoisted
-primitives: the functions that every language implements
+primitives: the functions that every language implements, and their values on arrays
 program: programs, their statements and their statuses
 reason: why a program refuses: what is at fault, what is wrong with it, and how much is missing
 roots: all roots of a trial along one joint, on arrays, found with `cells`

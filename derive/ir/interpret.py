@@ -1,4 +1,4 @@
-"""The reference interpreter: it executes a program over arrays, and defines every primitive."""
+"""The reference interpreter: it executes a program over arrays. What primitives are on arrays stands with them."""
 
 from __future__ import annotations
 

@@ -52,14 +52,6 @@ class _Stretch:
                 self.readers[source].append(place)
             for condition in _conditions(let.value):
                 self.deciding.setdefault(condition, []).append(place)
-        self._on: dict[sp.Basic, list[sp.Basic]] = {}
-        for condition in self.deciding:
-            if isinstance(condition, sp.StrictGreaterThan):
-                self._on.setdefault(condition.lhs, []).append(condition)
-
-    def beside(self, condition: sp.Basic) -> list[sp.Basic]:
-        """The conditions on the value that a condition is on."""
-        return self._on.get(condition.lhs, []) if isinstance(condition, sp.StrictGreaterThan) else []
 
     def upstream(self, places: Iterable[int]) -> set[int]:
         """What these statements need, with them."""
@@ -113,7 +105,7 @@ class _Choice:
         """The values that change where the condition is known; a number that this gives is known, too."""
         stretch = self.stretch
         known: dict[sp.Basic, sp.Basic] = {self.condition: truth}
-        known |= {other: truth for other in stretch.beside(self.condition) if follows(other, self.condition, truth)}
+        known |= {other: truth for other in stretch.deciding if follows(other, self.condition, truth)}
         pending, changed = {p for condition in known for p in stretch.deciding.get(condition, ())}, dict[int, sp.Expr]()
         while pending:
             place = min(pending)

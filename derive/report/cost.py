@@ -136,7 +136,7 @@ _PERIOD_BYTE = Cost(additions=3, multiplications=1)
 def costs_of(kinematics: Kinematics) -> Costs:
     """The cost of forward and inverse kinematics of a mechanism in the worst case."""
     periods, axes = len(kinematics.period_joints), len(kinematics.distance_joints)
-    limits, branch = _at_most_refused(kinematics.limits), _regular_refused(kinematics.branch)
+    limits, branch = _with_refusals(kinematics.limits), _with_refusals(kinematics.branch, _regular)
     # The distance of a solution from the reference, a sum of squares, and its comparison with the least so far
     tried = branch + Cost(additions=3 * axes, multiplications=axes)
     exact = _total(map(expression_cost, surely_exact()))
@@ -147,8 +147,8 @@ def costs_of(kinematics: Kinematics) -> Costs:
         limits=limits,
         automatic=_all_branches(kinematics, tried) + limits if kinematics.branches else branch + limits,
         exact=exact if kinematics.reads_rotation else Cost(),
-        repair=exact + _at_most_refused(rotation_program()) if kinematics.reads_rotation else Cost(),
-        corners=_at_most_refused(kinematics.branch) + branch * -1,
+        repair=exact + _with_refusals(rotation_program()) if kinematics.reads_rotation else Cost(),
+        corners=_with_refusals(kinematics.branch) + branch * -1,
         bounds=tuple(dict.fromkeys(b for p in (kinematics.forward, kinematics.branch) for b in _bounds(p))),
     )
 
@@ -161,17 +161,7 @@ def _all_branches(kinematics: Kinematics, tried: Cost) -> Cost:
     return tried * slots + _total(saved) * -1
 
 
-@kept_by_identity(400)
-def _at_most_refused(program: Program) -> Cost:
-    return _with_refusals(program, _most)
-
-
-@kept_by_identity(400)
-def _regular_refused(program: Program) -> Cost:
-    return _with_refusals(program, _regular)
-
-
-def _with_refusals(program: Program, of_sides: _OfSides) -> Cost:
+def _with_refusals(program: Program, of_sides: _OfSides = _most) -> Cost:
     """The cost with a refusal that computes how much is missing: nothing behind it is then computed."""
     worst, before = cost_of(program, of_sides), Cost()
     for item in (item for stretch in stretches_of(program) for item in stretch.items):

@@ -43,8 +43,6 @@ _TOO_SHORT = 0.2
 """Legs whose lengths are multiplied by this do not reach the platform."""
 _SIZE = 100.0
 """The range of linear axes in a machine without lengths."""
-_HALVINGS = 45
-"""Then two poses on either side of a singular one are nearer to each other than the decimals that are told."""
 _NO_ROTATION = 1.1
 """A rotation multiplied by this is no rotation."""
 
@@ -251,7 +249,7 @@ class _Vectors:
 
     def _halved(self, row: int, low: Array, high: Array) -> Iterator[Reals]:
         """The poses between such pairs of poses where a margin vanishes."""
-        for _ in range(_HALVINGS):
+        for _ in range(60):
             middle = (low + high) / 2.0
             is_above = (margins(self.machine, [tuple(m) for m in middle.tolist()])[row] > 0.0)[:, None]
             low, high = np.where(is_above, middle, low), np.where(is_above, high, middle)

@@ -57,7 +57,9 @@ def start(machine: Machine) -> Array:
     for i in range(axes.shape[1]):
         for shift in np.linspace(-LEAST_WAY, LEAST_WAY, 5):
             free &= machine.is_regular(axes + shift * np.eye(axes.shape[1])[i])
-    return axes[free][0]
+    found = axes[free][0]
+    found.flags.writeable = False  # as for `straight`
+    return found
 
 
 def _bending(machine: Machine) -> list[Locus]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -93,12 +92,6 @@ def in_lengths(value: sp.Expr) -> sp.Expr:
     return without_minus(factored(value))
 
 
-def _most_minus_signs(sums: Sequence[sp.Expr]) -> sp.Expr:
-    if len(sums) == 1:
-        return sums[0]
-    return max(sums, key=lambda f: (sum(t.could_extract_minus_sign() for t in f.args), str(f)))
-
-
 def without_minus(product: sp.Expr) -> sp.Expr:
     """A leading minus goes into the factor with the most minus signs."""
     factors = list(sp.Mul.make_args(product))
@@ -106,5 +99,5 @@ def without_minus(product: sp.Expr) -> sp.Expr:
     if -1 not in factors or not sums:
         return product
     factors.remove(sp.Integer(-1))
-    most = _most_minus_signs(sums)
+    most = max(sums, key=lambda f: (sum(t.could_extract_minus_sign() for t in f.args), str(f)))
     return sp.Mul(*[-f if f is most else f for f in factors])
