@@ -52,7 +52,7 @@ def _sources(kin: Kinematics) -> dict[str, str]:
         return dict(found["files"])
     known = {"module": module, "functions": [laid_out(lanes.lanes_lines(kin, module, one)) for one in programs]}
     text = page(_templates().get_template("machine_lanes.c.j2").render(known))
-    return {**found["files"], f"{module}_lanes.c": text}
+    return {**found["files"], f"{module}-lanes.c": text}  # no module has a hyphen
 
 
 def extension(package: str) -> str:

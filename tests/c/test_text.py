@@ -65,6 +65,7 @@ def test_names() -> None:
     """The files that all share have names that no machine takes."""
     assert package.module_name("Kin_Softkin") == "softkin_machine"
     assert package.module_name("Kin_Math") == "math_machine"  # a folder with another math.h
+    assert package.module_name("Kin_Lanes") == "lanes_machine"  # the core of the Python package has such a file
     assert package.module_name("Kin_3RRR") == "kin_3rrr"
     assert package.module_name("Kin_Numbers") == "numbers"
 

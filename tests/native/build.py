@@ -78,12 +78,12 @@ def built(folder: Path = FOLDER, options: Sequence[str] = ("-O3",), sources: Pat
 
 
 def _is_of_a_machine(path: Path) -> bool:
-    return path.name not in ("softkin.h", "batches.h", "machines.h")
+    return path.name not in ("softkin.h", "batches.h", "lanes.h", "machines.h")
 
 
 def _object(source: Path, folder: Path, command: Sequence[str], shared: str) -> Path:
     """The compiled source. Its name has the digest of all that it depends on."""
-    own = source.with_suffix(".h")
+    own = source.with_name(f"{source.stem.removesuffix('-lanes')}.h")
     text = "\0".join([*command, shared, own.read_text() if own.is_file() else "", source.read_text()])
     target = folder / f"{source.stem}.{sha256(text.encode()).hexdigest()[:16]}.o"
     if not target.is_file():

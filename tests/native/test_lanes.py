@@ -73,7 +73,7 @@ def test_no_branch(module: str, tmp_path: Path) -> None:
     version = subprocess.run([*command, "--version"], capture_output=True, text=True, check=True).stdout
     if "Free Software Foundation" not in version:
         return  # another compiler says it in other words
-    source = SOURCES / f"{module}_lanes.c"
+    source = SOURCES / f"{module}-lanes.c"
     done = subprocess.run(
         [*command, *STRICT, *OPTIMIZED, INFORMED, "-c", str(source), "-o", str(tmp_path / "lanes.o")],
         capture_output=True, text=True, check=True,

@@ -48,7 +48,7 @@ def test_nothing_is_found(tmp_path: Path) -> None:
     """No access beyond an array, no use of what is released, no undefined arithmetic."""
     sources = tmp_path / "sources"
     sources.mkdir()
-    own = (f"{machine}{end}" for machine in FEW for end in (".c", ".h", "_lanes.c"))
+    own = (f"{machine}{end}" for machine in FEW for end in (".c", ".h", "-lanes.c"))
     for name in (*SHARED, *(name for name in own if (SOURCES / name).is_file())):
         (sources / name).write_text((SOURCES / name).read_text())
     table = (sources / "machines.c").read_text()

@@ -54,11 +54,12 @@ from derive.report.reasons import reasons_of, reasons_of_rotation
 name = "c"
 MOST_AXES, MOST_BRANCHES, MOST_DIRECTIONS, MOST_LISTED = 24, 12, 6, 10
 _SHARED = ("softkin.c", "softkin.h")
-_HEADERS = frozenset(
-    "softkin assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg "
-    "stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype".split()
+_TAKEN = frozenset(
+    "softkin batches lanes machine machines assert complex ctype errno fenv float inttypes iso646 limits locale math "
+    "setjmp signal stdalign stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time "
+    "uchar wchar wctype".split()
 )
-"""Headers that a source may include: no machine has the name of one."""
+"""No machine has the name of a file that all share, here or in the core of the Python package, or of a C header."""
 _CELLS, _PLACES, _SOLUTIONS = 64, 128, 128
 """What a search keeps: cells that are still to be cut, candidates, roots of all branches together."""
 _STACK = 36
@@ -113,7 +114,7 @@ def module_name(mechanism: str) -> str:
     """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`, as in the Python package."""
     short = mechanism.removeprefix("Kin_").removeprefix("Softkin_")
     module = (short if short.isidentifier() else mechanism).lower()
-    return f"{module}_machine" if module in _HEADERS else module
+    return f"{module}_machine" if module in _TAKEN else module
 
 
 def _fits(kin: Kinematics) -> bool:

@@ -104,7 +104,7 @@ class BipodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Bipod_Rotary"
-    KEY = "bipod_rotary a8f6ed93e9d7f21f"
+    KEY = "bipod_rotary e55ddcc987dd17d2"
     AXES = (
         Axis(
             name="A1",

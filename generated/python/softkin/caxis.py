@@ -60,7 +60,7 @@ class CAxis(OrientationKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_CAxis"
-    KEY = "caxis d61b234c4873633d"
+    KEY = "caxis f85f004fa0145e84"
     AXES = (Axis(name="C", kind="rotary", unit="deg", meaning="Turn about the flange's Z", multi_turn=True),)
     PARAMETERS = (
         Parameter.of("angle", "offset_c", "C: axis value at the kinematic zero position"),

@@ -67,7 +67,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_CAxis_Tool"
-    KEY = "caxis_tool 9e61872c4c208380"
+    KEY = "caxis_tool 91d155728d045d52"
     AXES = (Axis(name="C", kind="rotary", unit="deg", meaning="Turn about the flange's Z", multi_turn=True),)
     PARAMETERS = (
         Parameter.of("distance", "tool_x", "Flange to the tool, along the turned X"),

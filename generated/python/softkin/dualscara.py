@@ -150,7 +150,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_DualScara"
-    KEY = "dualscara d1b3c89635b31ea5"
+    KEY = "dualscara 5a98cd1ff2d83474"
     AXES = (
         Axis(
             name="A1",

@@ -62,7 +62,7 @@ class Gantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Gantry2"
-    KEY = "gantry2 f43b24866ec07a85"
+    KEY = "gantry2 db3fa568cef7d19d"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),

@@ -62,7 +62,7 @@ class Gantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Gantry3"
-    KEY = "gantry3 89684752a810a3fc"
+    KEY = "gantry3 1144ef47c42eb6ea"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),

@@ -68,7 +68,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_GantryCutter2"
-    KEY = "gantrycutter2 160e7f339c981374"
+    KEY = "gantrycutter2 5cb5ffe004fa122f"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),

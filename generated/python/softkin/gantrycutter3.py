@@ -69,7 +69,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_GantryCutter3"
-    KEY = "gantrycutter3 bc849d4394f07270"
+    KEY = "gantrycutter3 dab8986eb6fe3258"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),

@@ -65,7 +65,7 @@ class HGantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_HGantry2"
-    KEY = "hgantry2 f8390ecbaa8a92d5"
+    KEY = "hgantry2 30b0924c047d4b11"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

@@ -65,7 +65,7 @@ class HGantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_HGantry3"
-    KEY = "hgantry3 eb7d30243173b6ce"
+    KEY = "hgantry3 9eb9c44fd9537a4d"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

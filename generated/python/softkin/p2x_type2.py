@@ -80,7 +80,7 @@ class P2XType2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_P2X_Type2"
-    KEY = "p2x_type2 4ac77dc0dad3eaf5"
+    KEY = "p2x_type2 b7712860b6bf350c"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),

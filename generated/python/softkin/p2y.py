@@ -64,7 +64,7 @@ class P2Y(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_P2Y"
-    KEY = "p2y faf54f89f19ed7de"
+    KEY = "p2y e2a53b2d58bd0b55"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Motor 1", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Motor 2", multi_turn=False),

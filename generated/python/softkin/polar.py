@@ -71,7 +71,7 @@ class Polar(Mechanism):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Polar"
-    KEY = "polar 95f0b8ea986b63d2"
+    KEY = "polar a35fdbd7a27f9581"
     AXES = (
         Axis(name="C", kind="rotary", unit="deg", meaning="Arm about Z", multi_turn=True),
         Axis(name="R", kind="linear", unit="u", meaning="Radius, never negative", multi_turn=False),

@@ -72,7 +72,7 @@ class PolarZ(Mechanism):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Polar_Z"
-    KEY = "polar_z ddde7924ea92fb63"
+    KEY = "polar_z 4cc0b53a65031706"
     AXES = (
         Axis(name="C", kind="rotary", unit="deg", meaning="Arm about Z", multi_turn=True),
         Axis(name="R", kind="linear", unit="u", meaning="Radius, never negative", multi_turn=False),

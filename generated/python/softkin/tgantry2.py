@@ -65,7 +65,7 @@ class TGantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_TGantry2"
-    KEY = "tgantry2 0a2a37303e846b16"
+    KEY = "tgantry2 9c1e4aeab9a6e112"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

@@ -65,7 +65,7 @@ class TGantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_TGantry3"
-    KEY = "tgantry3 dfea846cc8a159fe"
+    KEY = "tgantry3 48cadb366c866205"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

@@ -71,7 +71,7 @@ class Wrist3(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist3"
-    KEY = "wrist3 e2e6aa2bb248a354"
+    KEY = "wrist3 f85422ba439b4ee6"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Turn about Z", multi_turn=True),
         Axis(name="B", kind="rotary", unit="deg", meaning="Turn about the turned -Y", multi_turn=True),
