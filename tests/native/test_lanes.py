@@ -94,7 +94,7 @@ def test_names_of_the_loop(names: tuple[str, ...], tmp_path: Path) -> None:
     )  # fmt: skip
     for path, text in native_sources(build(mechanism)).items():
         (tmp_path / Path(path).name).write_text(text)
-    source = tmp_path / "around_lanes.c"
+    source = tmp_path / "around-lanes.c"
     assert [name for name in names if f"k->{name}" not in source.read_text()] == []
     options = ["-Wshadow", f"-I{tmp_path}", f"-I{SOURCES}", "-fsyntax-only"]
     subprocess.run([*compiler(), *STRICT, *options, str(source)], check=True)
