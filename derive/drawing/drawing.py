@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from typing import TypeAlias
 
 import numpy as np
@@ -131,7 +132,8 @@ def _pairs(machine: Machine, drawn: Pose, told: list[int], other: Machine) -> di
     for axes in _candidates(machine, drawn):
         missing = [k for k in told if k not in found]
         if missing and (pose := pose_at(machine, axes)) is not None:
-            pairs = {k: _pair(machine, pose, k, other) for k in missing if pose.configuration[k] != 3}
+            scene = cache(partial(scene_at, machine, pose))
+            pairs = {k: _pair(scene, pose, k, other) for k in missing if pose.configuration[k] != 3}
             found |= {k: pair for k, pair in pairs.items() if pair is not None}
     return found
 
@@ -161,18 +163,20 @@ def _candidates(machine: Machine, drawn: Pose) -> Iterator[Reals]:
         yield from (tuple(row) for row in rows.tolist())
 
 
-def _pair(machine: Machine, pose: Pose, index: int, into: Machine) -> _Pair | None:
-    count = len(machine.kinematics.mechanism.branches)
+def _pair(scene: Callable[[], Scene], pose: Pose, index: int, into: Machine) -> _Pair | None:
+    """A pose with its scene, and one of a machine with the other byte of this branch; None where there is none."""
+    mechanism = into.kinematics.mechanism
+    count = len(mechanism.branches)
     first = pose.configuration[index] == 1
     other = [3 - byte if k == index else byte for k, byte in enumerate(pose.configuration[:count])]
     periods = (0,) * (len(pose.configuration) - count)
     _, solutions, statuses = branches(into, pose.frame, (*other, *periods), pose.axes)
     flipped = pose_at(into, solutions[0]) if statuses[0] is Status.OK else None
-    if machine.kinematics.mechanism.is_platform and statuses[0] is Status.OK:  # which forward may not find from home
+    if mechanism.is_platform and statuses[0] is Status.OK:  # which forward may not find from home
         flipped = Pose(solutions[0], pose.frame, (*other, *periods))
     if flipped is None:
         return None
-    one, two = scene_at(machine, pose), scene_at(into, flipped)
+    one, two = scene(), scene_at(into, flipped)
     scenes = _different(*((one, two) if first else (two, one)))
     return scenes and (scenes, first)
 

@@ -56,6 +56,7 @@ class Naming:
         self._parameters = lengths_of(mechanism)
         self._angles = tuple(p.name for p in mechanism.parameters if p.role is Role.ANGLE)
         self._machines = [{**values, **other} for other in _others(mechanism)]
+        self._given = {p.name: np.array([float(m[p.name]) for m in self._machines]) for p in self._parameters}
 
     def length(self, measure: Callable[[Values], float]) -> sp.Expr | None:
         """The parameter, or half of it, that equals the length on every machine; else None."""
@@ -88,7 +89,7 @@ class Naming:
     def _candidates(self, magnitude: bool) -> Iterator[tuple[sp.Expr, Array]]:
         yield sp.Integer(0), np.zeros(len(self._machines))
         for parameter in self._parameters:
-            given = np.array([float(machine[parameter.name]) for machine in self._machines])
+            given = self._given[parameter.name]
             for factor in (sp.Integer(1), sp.Rational(1, 2)):
                 scaled = given * float(factor)
                 yield factor * sp.Symbol(parameter.name), np.abs(scaled) if magnitude else scaled

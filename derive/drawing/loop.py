@@ -17,6 +17,7 @@ from derive.description.mechanism import ROTATION, DescriptionError, Joint, Mech
 from derive.drawing.labels import Naming, Values, axis_name, vector_at
 from derive.drawing.scene import Arc, Body, Dimension, Frame, Point, Scene, Segment, Slide, Spot, Turn, point
 from derive.ir.interpret import Array, evaluate
+from derive.kept import kept_by_identity
 
 _EXACT, _ROUNDED = 1e-7, 1e-6
 """Of lengths, as a part of them; and what six decimals of the drawn frame leave, of a machine in metres, too."""
@@ -32,6 +33,7 @@ def bars_of(mechanism: Mechanism) -> tuple[Rod, ...]:
     return mechanism.bars or mechanism.rods
 
 
+@kept_by_identity(10)
 def is_held_by_parallelograms(mechanism: Mechanism) -> bool:
     """Whether three rods, each on a drive of its own, hold a plate in space that keeps its orientation: every rod then
     stands for a parallelogram.

@@ -3,9 +3,9 @@
     length = select(radius > 1e-11, radius, 1)                 require(radius > 1e-11)
     cos_c = select(radius > 1e-11, x/length, cos(free))    →   cos_c = x/radius
 
-The first side of a choice by amounts is the regular one. A choice by a flag of the machine stays. What refuses in the
-result is not known to refuse: the whole program has to be asked. So it serves where many poses are computed by the same
-instructions, of which a few are asked again.
+The first side of a choice by amounts is the regular one. A choice by a flag of the machine stays, and so does that of a
+status: a branch that is refused is not singular. What refuses in the result is not known to refuse: the whole program
+has to be asked. So it serves where many poses are computed by the same instructions, of which a few are asked again.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from derive.ir.constants import EDGE
 from derive.ir.passes import normalise, untold
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, ToReal
 from derive.ir.program import Let, Program, Require, Statement, Status
-from derive.ir.symbols import names_in
+from derive.ir.symbols import is_count, names_in
 
 _HALF_A_TURN = 180 + 2 * EDGE
 """Degrees: on its turn an axis is not farther from the centre."""
@@ -51,7 +51,7 @@ def _needed(
         let = pending.pop()
         if let.name in found:
             continue
-        value, conditions = _first_sides(let.value, constants)
+        value, conditions = (let.value, ()) if is_count(let.name) else _first_sides(let.value, constants)
         found[let.name] = (
             *(Require(condition, Status.OK) for condition in conditions),
             Let(let.name, value, let.note, let.turn_of),

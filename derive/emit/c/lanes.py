@@ -13,12 +13,12 @@ import sympy as sp
 
 from derive.description.mechanism import Joint
 from derive.emit.braces import block
-from derive.emit.c.every_branch import MOST_SLOTS
+from derive.emit.c.every_branch import straight_line
 from derive.emit.c.functions import read_by
 from derive.emit.c.layout import comment, commented
 from derive.emit.c.printer import C, member, spelled, type_of
 from derive.emit.c.program import function_of, without_brackets
-from derive.emit.every_branch import constants, known_constants, signs
+from derive.emit.every_branch import constants, known_constants, read_of, signs
 from derive.equations.rotation_repair import surely_exact
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Program, Require
@@ -67,16 +67,26 @@ def in_lanes(kin: Kinematics) -> tuple[InLanes, ...]:
     if found is None:
         return ()
     own = InLanes(replace(found, name=ONE), ())
-    if not kin.branches or 2 ** len(kin.branches) > MOST_SLOTS:
-        return (own,)
-    (every,), parts = lowered(
-        [replace(found, name=EVERY)],
-        constants(kin),
-        modulo_turns=True,
-        branches={EVERY: signs(kin)},
-        known=known_constants(kin),
-    )
-    return own, InLanes(every, parts)
+    every = _every_branch(kin, found)
+    return (own,) if every is None else (own, every)
+
+
+def _every_branch(kin: Kinematics, one: Program) -> InLanes | None:
+    """The program of all branches; None where there is no straight line. one: that of one branch."""
+    line = straight_line(kin)
+    if line is None:
+        return None
+    parts = line.parts
+    found = regular(line.program, constants(kin) | {part.name.name for part in parts})
+    if found is None:  # it takes sines of sums of angles: lanes have none, but the program of one branch does without
+        (found,), parts = lowered(
+            [replace(one, name=EVERY)],
+            constants(kin),
+            modulo_turns=True,
+            branches={EVERY: signs(kin)},
+            known=known_constants(kin),
+        )
+    return InLanes(replace(found, name=EVERY), read_of(parts, found))
 
 
 def constants_of_lanes(kin: Kinematics) -> set[str]:

@@ -77,7 +77,9 @@ def _known_sign(problem: Problem, determinant: sp.Expr, unknown: sp.Symbol) -> s
     """
     for quantity in problem.positive:
         value = _through(problem, quantity, unknown)
-        ratio = cancelled(determinant / value) if value != 0 else sp.Integer(0)
+        if value == 0 or not (determinant.free_symbols ^ value.free_symbols) <= {*problem.signs}:
+            continue  # no multiple: another symbol stands in one of them
+        ratio = cancelled(determinant / value)
         for sign in (sp.Integer(1), *(s for s in problem.signs if s.is_nonzero and s in ratio.free_symbols)):
             number = cancelled(ratio * sign)
             if number.is_number and number != 0:

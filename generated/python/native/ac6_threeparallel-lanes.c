@@ -170,34 +170,83 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double distance_q1 = softkin_lane_root(wrist_x*wrist_x + wrist_y*wrist_y);
     /* Pythagoras: square of the distance ahead of the axis */
     const double ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1);
+    /* near a fold */
+    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
     const double distance_q1_squared = distance_q1*distance_q1;
     /* q1: out of reach */
     missed += ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1 ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
     const double d4_times_wrist_y = d4*wrist_y;
     /* how far ahead of the axis the point is; negative: behind it */
     const double ahead_q1_before_q1_for_q3_right = softkin_lane_root(ahead_squared_q1);
     const double product_in_cos_q1_before_q1_for_q3_left = ahead_q1_before_q1_for_q3_right*wrist_x;
-    const double one_by_distance_q1_squared = 1.0/distance_q1_squared;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
     const double cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - product_in_cos_q1_before_q1_for_q3_left)
-        *one_by_distance_q1_squared;
+        /distance_q1_squared;
     const double d4_times_wrist_x = d4*wrist_x;
     const double product_in_sin_q1_before_q1_for_q3_left = ahead_q1_before_q1_for_q3_right*wrist_y;
     const double sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - product_in_sin_q1_before_q1_for_q3_left)
-        *one_by_distance_q1_squared;
+        /distance_q1_squared;
     const double r21_from_q1_left = r21*cos_q1_before_q1_for_q3_left - r11*sin_q1_before_q1_for_q3_left;
     const double r22_from_q1_left = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left;
     /* polar coordinates: the radius at angle q6 */
     const double radius_q6_left = softkin_lane_root(r21_from_q1_left*r21_from_q1_left
         + r22_from_q1_left*r22_from_q1_left);
     missed += radius_q6_left > 1e-11 ? 0.0 : 1.0;
+    /* cosine and sine of q5 from the q6 radius and r32 equations */
+    const double cos_q5_left = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left;
+    const double r21_from_q1_left_by_radius_q6_left = r21_from_q1_left/radius_q6_left;
+    /* where it is singular: the angle of the reference */
+    const double cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left_by_radius_q6_left;
+    const double r22_from_q1_left_by_radius_q6_left = r22_from_q1_left/radius_q6_left;
+    const double r21_from_q1_before_q6_before_q6_of_q3_left_down = r31*cos_q6_before_q6_of_q3_left_down
+        - r22_from_q1_left_by_radius_q6_left*r32;
+    const double radius_q6_left_times_r33 = r33*radius_q6_left;
+    const double r21_from_q1_before_q56_before_q6_of_q3_left_down =
+        r21_from_q1_before_q6_before_q6_of_q3_left_down*cos_q5_left - radius_q6_left_times_r33;
+    const double wrist_x_from_q1_before_q6_of_q3_left_down = -ahead_q1_before_q1_for_q3_right
+        - d5*r21_from_q1_before_q56_before_q6_of_q3_left_down;
+    const double r22_from_q1_before_q6_before_q6_of_q3_left_down = r32*cos_q6_before_q6_of_q3_left_down
+        + r22_from_q1_left_by_radius_q6_left*r31;
+    const double wrist_z = z - d6*r33;
+    const double wrist_y_from_q1_fixed = wrist_z - d1;
+    const double wrist_y_from_q1_before_q6_of_q3_left_down = wrist_y_from_q1_fixed
+        + d5*r22_from_q1_before_q6_before_q6_of_q3_left_down;
+    /* q3 has solutions where this is within its bound */
+    const double value_q6_of_q3_left_down = wrist_x_from_q1_before_q6_of_q3_left_down
+        *wrist_x_from_q1_before_q6_of_q3_left_down
+        + wrist_y_from_q1_before_q6_of_q3_left_down*wrist_y_from_q1_before_q6_of_q3_left_down
+        - a2_squared_plus_a3_squared;
+    missed += fabs(value_q6_of_q3_left_down) <= size_q1_for_q3 ? 0.0 : 1.0;
+    /* distance that the remaining links must span */
+    const double reach_left_down = softkin_lane_root(wrist_x_from_q1_before_q6_of_q3_left_down
+        *wrist_x_from_q1_before_q6_of_q3_left_down
+        + wrist_y_from_q1_before_q6_of_q3_left_down*wrist_y_from_q1_before_q6_of_q3_left_down);
+    missed += reach_left_down > machine_scale_times_free_angle ? 0.0 : 1.0;
+    const double r21_from_q1_before_q56_before_q6_of_q3_left_up =
+        -r21_from_q1_before_q56_before_q6_of_q3_left_down;
+    const double wrist_x_from_q1_before_q6_of_q3_left_up = -ahead_q1_before_q1_for_q3_right
+        - d5*r21_from_q1_before_q56_before_q6_of_q3_left_up;
+    const double r22_from_q1_before_q6_before_q6_of_q3_left_up =
+        -r22_from_q1_before_q6_before_q6_of_q3_left_down;
+    const double wrist_y_from_q1_before_q6_of_q3_left_up = wrist_y_from_q1_fixed
+        + d5*r22_from_q1_before_q6_before_q6_of_q3_left_up;
+    /* q3 has solutions where this is within its bound */
+    const double value_q6_of_q3_left_up = wrist_x_from_q1_before_q6_of_q3_left_up
+        *wrist_x_from_q1_before_q6_of_q3_left_up
+        + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up
+        - a2_squared_plus_a3_squared;
+    missed += fabs(value_q6_of_q3_left_up) <= size_q1_for_q3 ? 0.0 : 1.0;
+    /* distance that the remaining links must span */
+    const double reach_left_up = softkin_lane_root(wrist_x_from_q1_before_q6_of_q3_left_up
+        *wrist_x_from_q1_before_q6_of_q3_left_up
+        + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up);
+    missed += reach_left_up > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
     const double cos_q1_before_q1_for_q3_right = (product_in_cos_q1_before_q1_for_q3_left - d4_times_wrist_y)
-        *one_by_distance_q1_squared;
+        /distance_q1_squared;
     const double sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + product_in_sin_q1_before_q1_for_q3_left)
-        *one_by_distance_q1_squared;
+        /distance_q1_squared;
     const double r21_from_q1_right = r21*cos_q1_before_q1_for_q3_right - r11*sin_q1_before_q1_for_q3_right;
     const double r22_from_q1_right = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right;
     /* polar coordinates: the radius at angle q6 */
@@ -205,90 +254,51 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         + r22_from_q1_right*r22_from_q1_right);
     missed += radius_q6_right > 1e-11 ? 0.0 : 1.0;
     /* cosine and sine of q5 from the q6 radius and r32 equations */
-    const double cos_q5_left = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left;
-    const double q6_radius_of_q5_times_r33_left_down = r33*radius_q6_left;
-    /* where it is singular: the angle of the reference */
-    const double cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left;
-    const double sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left/radius_q6_left;
-    const double r21_from_q1_before_q6_before_q6_of_q3_left_down = r31*cos_q6_before_q6_of_q3_left_down
-        + r32*sin_q6_before_q6_of_q3_left_up;
-    const double r21_from_q1_before_q56_before_q6_of_q3_left_down =
-        r21_from_q1_before_q6_before_q6_of_q3_left_down*cos_q5_left - q6_radius_of_q5_times_r33_left_down;
-    const double product_in_wrist_x_from_q1_before_q6_of_q3_left_down = d5
-        *r21_from_q1_before_q56_before_q6_of_q3_left_down;
-    const double wrist_x_from_q1_before_q6_of_q3_left_down = -ahead_q1_before_q1_for_q3_right
-        - product_in_wrist_x_from_q1_before_q6_of_q3_left_down;
-    const double wrist_z = z - d6*r33;
-    const double wrist_y_from_q1_fixed = wrist_z - d1;
-    const double r22_from_q1_before_q6_before_q6_of_q3_left_up = r31*sin_q6_before_q6_of_q3_left_up
-        - r32*cos_q6_before_q6_of_q3_left_down;
-    const double product_in_wrist_y_from_q1_before_q6_of_q3_left_down = d5
-        *r22_from_q1_before_q6_before_q6_of_q3_left_up;
-    const double wrist_y_from_q1_before_q6_of_q3_left_down = wrist_y_from_q1_fixed
-        - product_in_wrist_y_from_q1_before_q6_of_q3_left_down;
-    const double sum_in_value_q6_of_q3_left_down = wrist_x_from_q1_before_q6_of_q3_left_down
-        *wrist_x_from_q1_before_q6_of_q3_left_down
-        + wrist_y_from_q1_before_q6_of_q3_left_down*wrist_y_from_q1_before_q6_of_q3_left_down;
-    /* q3 has solutions where this is within its bound */
-    const double value_q6_of_q3_left_down = sum_in_value_q6_of_q3_left_down - a2_squared_plus_a3_squared;
-    missed += fabs(value_q6_of_q3_left_down) <= size_q1_for_q3 ? 0.0 : 1.0;
-    const double wrist_x_from_q1_before_q6_of_q3_left_up =
-        product_in_wrist_x_from_q1_before_q6_of_q3_left_down - ahead_q1_before_q1_for_q3_right;
-    const double wrist_y_from_q1_before_q6_of_q3_left_up =
-        product_in_wrist_y_from_q1_before_q6_of_q3_left_down + wrist_y_from_q1_fixed;
-    const double sum_in_value_q6_of_q3_left_up = wrist_x_from_q1_before_q6_of_q3_left_up
-        *wrist_x_from_q1_before_q6_of_q3_left_up
-        + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up;
-    /* q3 has solutions where this is within its bound */
-    const double value_q6_of_q3_left_up = sum_in_value_q6_of_q3_left_up - a2_squared_plus_a3_squared;
-    missed += fabs(value_q6_of_q3_left_up) <= size_q1_for_q3 ? 0.0 : 1.0;
-    /* cosine and sine of q5 from the q6 radius and r32 equations */
     const double cos_q5_right = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right;
-    const double q6_radius_of_q5_times_r33_right_down = r33*radius_q6_right;
+    const double r21_from_q1_right_by_radius_q6_right = r21_from_q1_right/radius_q6_right;
     /* where it is singular: the angle of the reference */
-    const double cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right;
-    const double sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right/radius_q6_right;
+    const double cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right_by_radius_q6_right;
+    const double r22_from_q1_right_by_radius_q6_right = r22_from_q1_right/radius_q6_right;
     const double r21_from_q1_before_q6_before_q6_of_q3_right_down = r31*cos_q6_before_q6_of_q3_right_down
-        + r32*sin_q6_before_q6_of_q3_right_up;
+        - r22_from_q1_right_by_radius_q6_right*r32;
+    const double radius_q6_right_times_r33 = r33*radius_q6_right;
     const double r21_from_q1_before_q56_before_q6_of_q3_right_down =
-        r21_from_q1_before_q6_before_q6_of_q3_right_down*cos_q5_right - q6_radius_of_q5_times_r33_right_down;
-    const double product_in_wrist_x_from_q1_before_q6_of_q3_right_down = d5
-        *r21_from_q1_before_q56_before_q6_of_q3_right_down;
+        r21_from_q1_before_q6_before_q6_of_q3_right_down*cos_q5_right - radius_q6_right_times_r33;
     const double wrist_x_from_q1_before_q6_of_q3_right_down = ahead_q1_before_q1_for_q3_right
-        - product_in_wrist_x_from_q1_before_q6_of_q3_right_down;
-    const double r22_from_q1_before_q6_before_q6_of_q3_right_up = r31*sin_q6_before_q6_of_q3_right_up
-        - r32*cos_q6_before_q6_of_q3_right_down;
-    const double product_in_wrist_y_from_q1_before_q6_of_q3_right_down = d5
-        *r22_from_q1_before_q6_before_q6_of_q3_right_up;
+        - d5*r21_from_q1_before_q56_before_q6_of_q3_right_down;
+    const double r22_from_q1_before_q6_before_q6_of_q3_right_down = r32*cos_q6_before_q6_of_q3_right_down
+        + r22_from_q1_right_by_radius_q6_right*r31;
     const double wrist_y_from_q1_before_q6_of_q3_right_down = wrist_y_from_q1_fixed
-        - product_in_wrist_y_from_q1_before_q6_of_q3_right_down;
-    const double sum_in_value_q6_of_q3_right_down = wrist_x_from_q1_before_q6_of_q3_right_down
+        + d5*r22_from_q1_before_q6_before_q6_of_q3_right_down;
+    /* q3 has solutions where this is within its bound */
+    const double value_q6_of_q3_right_down = wrist_x_from_q1_before_q6_of_q3_right_down
         *wrist_x_from_q1_before_q6_of_q3_right_down
-        + wrist_y_from_q1_before_q6_of_q3_right_down*wrist_y_from_q1_before_q6_of_q3_right_down;
-    /* q3 has solutions where this is within its bound */
-    const double value_q6_of_q3_right_down = sum_in_value_q6_of_q3_right_down - a2_squared_plus_a3_squared;
+        + wrist_y_from_q1_before_q6_of_q3_right_down*wrist_y_from_q1_before_q6_of_q3_right_down
+        - a2_squared_plus_a3_squared;
     missed += fabs(value_q6_of_q3_right_down) <= size_q1_for_q3 ? 0.0 : 1.0;
+    /* distance that the remaining links must span */
+    const double reach_right_down = softkin_lane_root(wrist_x_from_q1_before_q6_of_q3_right_down
+        *wrist_x_from_q1_before_q6_of_q3_right_down
+        + wrist_y_from_q1_before_q6_of_q3_right_down*wrist_y_from_q1_before_q6_of_q3_right_down);
+    missed += reach_right_down > machine_scale_times_free_angle ? 0.0 : 1.0;
+    const double r21_from_q1_before_q56_before_q6_of_q3_right_up =
+        -r21_from_q1_before_q56_before_q6_of_q3_right_down;
     const double wrist_x_from_q1_before_q6_of_q3_right_up = ahead_q1_before_q1_for_q3_right
-        + product_in_wrist_x_from_q1_before_q6_of_q3_right_down;
-    const double wrist_y_from_q1_before_q6_of_q3_right_up =
-        product_in_wrist_y_from_q1_before_q6_of_q3_right_down + wrist_y_from_q1_fixed;
-    const double sum_in_value_q6_of_q3_right_up = wrist_x_from_q1_before_q6_of_q3_right_up
-        *wrist_x_from_q1_before_q6_of_q3_right_up
-        + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up;
+        - d5*r21_from_q1_before_q56_before_q6_of_q3_right_up;
+    const double r22_from_q1_before_q6_before_q6_of_q3_right_up =
+        -r22_from_q1_before_q6_before_q6_of_q3_right_down;
+    const double wrist_y_from_q1_before_q6_of_q3_right_up = wrist_y_from_q1_fixed
+        + d5*r22_from_q1_before_q6_before_q6_of_q3_right_up;
     /* q3 has solutions where this is within its bound */
-    const double value_q6_of_q3_right_up = sum_in_value_q6_of_q3_right_up - a2_squared_plus_a3_squared;
+    const double value_q6_of_q3_right_up = wrist_x_from_q1_before_q6_of_q3_right_up
+        *wrist_x_from_q1_before_q6_of_q3_right_up
+        + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up
+        - a2_squared_plus_a3_squared;
     missed += fabs(value_q6_of_q3_right_up) <= size_q1_for_q3 ? 0.0 : 1.0;
     /* distance that the remaining links must span */
-    const double reach_left_down = softkin_lane_root(sum_in_value_q6_of_q3_left_down);
-    missed += reach_left_down > machine_scale_times_free_angle ? 0.0 : 1.0;
-    /* distance that the remaining links must span */
-    const double reach_left_up = softkin_lane_root(sum_in_value_q6_of_q3_left_up);
-    missed += reach_left_up > machine_scale_times_free_angle ? 0.0 : 1.0;
-    /* distance that the remaining links must span */
-    const double reach_right_down = softkin_lane_root(sum_in_value_q6_of_q3_right_down);
-    missed += reach_right_down > machine_scale_times_free_angle ? 0.0 : 1.0;
-    /* distance that the remaining links must span */
-    const double reach_right_up = softkin_lane_root(sum_in_value_q6_of_q3_right_up);
+    const double reach_right_up = softkin_lane_root(wrist_x_from_q1_before_q6_of_q3_right_up
+        *wrist_x_from_q1_before_q6_of_q3_right_up
+        + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up);
     missed += reach_right_up > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
     const double one_less_cos_q3_left_down = (a2_plus_a3 + reach_left_down)*(a2_plus_a3 - reach_left_down);
@@ -301,33 +311,24 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double axis_a1_left = offset_a1
         + softkin_lane_angle(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*SOFTKIN_RADIAN;
     const double arm_along_q2_left_down = a2 + a3*cos_q3_left_down;
-    const double product_in_direction_x_q2_left_up_down = arm_along_q2_left_down
-        *wrist_x_from_q1_before_q6_of_q3_left_down;
     /* sine squared, times the squared scale */
     const double sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down;
     const double sin_q3_left_up_down = softkin_lane_root(sine_square_q3_left_down)*quotient_in_sin_q3;
     const double arm_across_q2_left_up_down = a3*sin_q3_left_up_down;
-    const double product_in_direction_x_q2_left_up_down_2 = arm_across_q2_left_up_down
-        *wrist_y_from_q1_before_q6_of_q3_left_down;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_q2_left_up_down = product_in_direction_x_q2_left_up_down
-        + product_in_direction_x_q2_left_up_down_2;
-    const double product_in_direction_y_q2_left_up_down = arm_across_q2_left_up_down
-        *wrist_x_from_q1_before_q6_of_q3_left_down;
-    const double product_in_direction_y_q2_left_up_down_2 = arm_along_q2_left_down
-        *wrist_y_from_q1_before_q6_of_q3_left_down;
-    const double direction_y_q2_left_up_down = product_in_direction_y_q2_left_up_down_2
-        - product_in_direction_y_q2_left_up_down;
-    const double angle_q2_left_up_down = softkin_lane_angle(direction_y_q2_left_up_down,
-        direction_x_q2_left_up_down);
+    const double angle_of_arm_along_q2_left_up_down = softkin_lane_angle(arm_across_q2_left_up_down,
+        arm_along_q2_left_down);
+    const double angle_of_wrist_x_from_q1_left_down =
+        softkin_lane_angle(wrist_y_from_q1_before_q6_of_q3_left_down,
+        wrist_x_from_q1_before_q6_of_q3_left_down);
+    const double angle_q2_left_up_down = angle_of_wrist_x_from_q1_left_down
+        - angle_of_arm_along_q2_left_up_down;
     const double axis_a2_left_up_down = offset_a2 + angle_q2_left_up_down*SOFTKIN_RADIAN;
     const double angle_q3_left_up_down = softkin_lane_angle(sin_q3_left_up_down, cos_q3_left_down);
     const double quotient_in_axis_a3_left_up_down = angle_q3_left_up_down*SOFTKIN_RADIAN;
     const double axis_a3_left_up_down = offset_a3 + quotient_in_axis_a3_left_up_down;
     const double angle_with_q4_left_down =
         softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3_left_down,
-        -r22_from_q1_before_q6_before_q6_of_q3_left_up);
+        r22_from_q1_before_q6_before_q6_of_q3_left_down);
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_left_up_down = offset_a4
         + (angle_with_q4_left_down - angle_q2_left_up_down - angle_q3_left_up_down)*SOFTKIN_RADIAN;
@@ -335,7 +336,8 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         *SOFTKIN_RADIAN;
     const double axis_a5_left_down = offset_a5 + quotient_in_axis_a5_left_down;
     const double axis_a6_left_down = offset_a6
-        - softkin_lane_angle(sin_q6_before_q6_of_q3_left_up, cos_q6_before_q6_of_q3_left_down)*SOFTKIN_RADIAN;
+        + softkin_lane_angle(r22_from_q1_left_by_radius_q6_left, cos_q6_before_q6_of_q3_left_down)
+        *SOFTKIN_RADIAN;
     /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
     const double one_less_cos_q3_left_up = (a2_plus_a3 + reach_left_up)*(a2_plus_a3 - reach_left_up);
     /* 1 + cosine, times the scale */
@@ -344,57 +346,37 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* q3: out of reach */
     const double refusal_left_up = fabs(cos_q3_left_up) <= 1.0000000000005 ? 0 : 3;
     const double arm_along_q2_left_up = a2 + a3*cos_q3_left_up;
-    const double product_in_direction_x_q2_left_up_up = arm_along_q2_left_up
-        *wrist_x_from_q1_before_q6_of_q3_left_up;
     /* sine squared, times the squared scale */
     const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
     const double sin_q3_left_up_up = softkin_lane_root(sine_square_q3_left_up)*quotient_in_sin_q3;
     const double arm_across_q2_left_up_up = a3*sin_q3_left_up_up;
-    const double product_in_direction_x_q2_left_up_up_2 = arm_across_q2_left_up_up
-        *wrist_y_from_q1_before_q6_of_q3_left_up;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_q2_left_up_up = product_in_direction_x_q2_left_up_up
-        + product_in_direction_x_q2_left_up_up_2;
-    const double product_in_direction_y_q2_left_up_up = arm_across_q2_left_up_up
-        *wrist_x_from_q1_before_q6_of_q3_left_up;
-    const double product_in_direction_y_q2_left_up_up_2 = arm_along_q2_left_up
-        *wrist_y_from_q1_before_q6_of_q3_left_up;
-    const double direction_y_q2_left_up_up = product_in_direction_y_q2_left_up_up_2
-        - product_in_direction_y_q2_left_up_up;
-    const double angle_q2_left_up_up = softkin_lane_angle(direction_y_q2_left_up_up,
-        direction_x_q2_left_up_up);
+    const double angle_of_arm_along_q2_left_up_up = softkin_lane_angle(arm_across_q2_left_up_up,
+        arm_along_q2_left_up);
+    const double angle_of_wrist_x_from_q1_left_up =
+        softkin_lane_angle(wrist_y_from_q1_before_q6_of_q3_left_up, wrist_x_from_q1_before_q6_of_q3_left_up);
+    const double angle_q2_left_up_up = angle_of_wrist_x_from_q1_left_up - angle_of_arm_along_q2_left_up_up;
     const double axis_a2_left_up_up = offset_a2 + angle_q2_left_up_up*SOFTKIN_RADIAN;
     const double angle_q3_left_up_up = softkin_lane_angle(sin_q3_left_up_up, cos_q3_left_up);
     const double quotient_in_axis_a3_left_up_up = angle_q3_left_up_up*SOFTKIN_RADIAN;
     const double axis_a3_left_up_up = offset_a3 + quotient_in_axis_a3_left_up_up;
-    const double angle_with_q4_left_up = angle_with_q4_left_down - 180.0*SOFTKIN_DEGREE;
+    const double angle_with_q4_left_up = softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3_left_up,
+        r22_from_q1_before_q6_before_q6_of_q3_left_up);
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_left_up_up = offset_a4
         + (angle_with_q4_left_up - angle_q2_left_up_up - angle_q3_left_up_up)*SOFTKIN_RADIAN;
     const double axis_a5_left_up = offset_a5 - quotient_in_axis_a5_left_down;
-    const double axis_a6_left_up = 180.0 + axis_a6_left_down;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_q2_left_down_down = product_in_direction_x_q2_left_up_down
-        - product_in_direction_x_q2_left_up_down_2;
-    const double direction_y_q2_left_down_down = product_in_direction_y_q2_left_up_down
-        + product_in_direction_y_q2_left_up_down_2;
-    const double angle_q2_left_down_down = softkin_lane_angle(direction_y_q2_left_down_down,
-        direction_x_q2_left_down_down);
+    const double sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left_by_radius_q6_left;
+    const double axis_a6_left_up = offset_a6
+        + softkin_lane_angle(sin_q6_before_q6_of_q3_left_up, r21_from_q1_left_by_radius_q6_left)
+        *SOFTKIN_RADIAN;
+    const double angle_q2_left_down_down = angle_of_arm_along_q2_left_up_down
+        + angle_of_wrist_x_from_q1_left_down;
     const double axis_a2_left_down_down = offset_a2 + angle_q2_left_down_down*SOFTKIN_RADIAN;
     const double axis_a3_left_down_down = offset_a3 - quotient_in_axis_a3_left_up_down;
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_left_down_down = offset_a4
         + (angle_q3_left_up_down + angle_with_q4_left_down - angle_q2_left_down_down)*SOFTKIN_RADIAN;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_q2_left_down_up = product_in_direction_x_q2_left_up_up
-        - product_in_direction_x_q2_left_up_up_2;
-    const double direction_y_q2_left_down_up = product_in_direction_y_q2_left_up_up
-        + product_in_direction_y_q2_left_up_up_2;
-    const double angle_q2_left_down_up = softkin_lane_angle(direction_y_q2_left_down_up,
-        direction_x_q2_left_down_up);
+    const double angle_q2_left_down_up = angle_of_arm_along_q2_left_up_up + angle_of_wrist_x_from_q1_left_up;
     const double axis_a2_left_down_up = offset_a2 + angle_q2_left_down_up*SOFTKIN_RADIAN;
     const double axis_a3_left_down_up = offset_a3 - quotient_in_axis_a3_left_up_up;
     /* q4 from the sum q234 of angles about parallel axes */
@@ -412,33 +394,24 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double axis_a1_right = offset_a1
         + softkin_lane_angle(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*SOFTKIN_RADIAN;
     const double arm_along_q2_right_down = a2 + a3*cos_q3_right_down;
-    const double product_in_direction_x_q2_right_up_down = arm_along_q2_right_down
-        *wrist_x_from_q1_before_q6_of_q3_right_down;
     /* sine squared, times the squared scale */
     const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
     const double sin_q3_right_up_down = softkin_lane_root(sine_square_q3_right_down)*quotient_in_sin_q3;
     const double arm_across_q2_right_up_down = a3*sin_q3_right_up_down;
-    const double product_in_direction_x_q2_right_up_down_2 = arm_across_q2_right_up_down
-        *wrist_y_from_q1_before_q6_of_q3_right_down;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_q2_right_up_down = product_in_direction_x_q2_right_up_down
-        + product_in_direction_x_q2_right_up_down_2;
-    const double product_in_direction_y_q2_right_up_down = arm_across_q2_right_up_down
-        *wrist_x_from_q1_before_q6_of_q3_right_down;
-    const double product_in_direction_y_q2_right_up_down_2 = arm_along_q2_right_down
-        *wrist_y_from_q1_before_q6_of_q3_right_down;
-    const double direction_y_q2_right_up_down = product_in_direction_y_q2_right_up_down_2
-        - product_in_direction_y_q2_right_up_down;
-    const double angle_q2_right_up_down = softkin_lane_angle(direction_y_q2_right_up_down,
-        direction_x_q2_right_up_down);
+    const double angle_of_arm_along_q2_right_up_down = softkin_lane_angle(arm_across_q2_right_up_down,
+        arm_along_q2_right_down);
+    const double angle_of_wrist_x_from_q1_right_down =
+        softkin_lane_angle(wrist_y_from_q1_before_q6_of_q3_right_down,
+        wrist_x_from_q1_before_q6_of_q3_right_down);
+    const double angle_q2_right_up_down = angle_of_wrist_x_from_q1_right_down
+        - angle_of_arm_along_q2_right_up_down;
     const double axis_a2_right_up_down = offset_a2 + angle_q2_right_up_down*SOFTKIN_RADIAN;
     const double angle_q3_right_up_down = softkin_lane_angle(sin_q3_right_up_down, cos_q3_right_down);
     const double quotient_in_axis_a3_right_up_down = angle_q3_right_up_down*SOFTKIN_RADIAN;
     const double axis_a3_right_up_down = offset_a3 + quotient_in_axis_a3_right_up_down;
     const double angle_with_q4_right_down =
         softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3_right_down,
-        -r22_from_q1_before_q6_before_q6_of_q3_right_up);
+        r22_from_q1_before_q6_before_q6_of_q3_right_down);
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_right_up_down = offset_a4
         + (angle_with_q4_right_down - angle_q2_right_up_down - angle_q3_right_up_down)*SOFTKIN_RADIAN;
@@ -446,7 +419,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         *SOFTKIN_RADIAN;
     const double axis_a5_right_down = offset_a5 + quotient_in_axis_a5_right_down;
     const double axis_a6_right_down = offset_a6
-        - softkin_lane_angle(sin_q6_before_q6_of_q3_right_up, cos_q6_before_q6_of_q3_right_down)
+        + softkin_lane_angle(r22_from_q1_right_by_radius_q6_right, cos_q6_before_q6_of_q3_right_down)
         *SOFTKIN_RADIAN;
     /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
     const double one_less_cos_q3_right_up = (a2_plus_a3 + reach_right_up)*(a2_plus_a3 - reach_right_up);
@@ -456,57 +429,39 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* q3: out of reach */
     const double refusal_right_up = fabs(cos_q3_right_up) <= 1.0000000000005 ? 0 : 3;
     const double arm_along_q2_right_up = a2 + a3*cos_q3_right_up;
-    const double product_in_direction_x_q2_right_up_up = arm_along_q2_right_up
-        *wrist_x_from_q1_before_q6_of_q3_right_up;
     /* sine squared, times the squared scale */
     const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
     const double sin_q3_right_up_up = softkin_lane_root(sine_square_q3_right_up)*quotient_in_sin_q3;
     const double arm_across_q2_right_up_up = a3*sin_q3_right_up_up;
-    const double product_in_direction_x_q2_right_up_up_2 = arm_across_q2_right_up_up
-        *wrist_y_from_q1_before_q6_of_q3_right_up;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_q2_right_up_up = product_in_direction_x_q2_right_up_up
-        + product_in_direction_x_q2_right_up_up_2;
-    const double product_in_direction_y_q2_right_up_up = arm_across_q2_right_up_up
-        *wrist_x_from_q1_before_q6_of_q3_right_up;
-    const double product_in_direction_y_q2_right_up_up_2 = arm_along_q2_right_up
-        *wrist_y_from_q1_before_q6_of_q3_right_up;
-    const double direction_y_q2_right_up_up = product_in_direction_y_q2_right_up_up_2
-        - product_in_direction_y_q2_right_up_up;
-    const double angle_q2_right_up_up = softkin_lane_angle(direction_y_q2_right_up_up,
-        direction_x_q2_right_up_up);
+    const double angle_of_arm_along_q2_right_up_up = softkin_lane_angle(arm_across_q2_right_up_up,
+        arm_along_q2_right_up);
+    const double angle_of_wrist_x_from_q1_right_up =
+        softkin_lane_angle(wrist_y_from_q1_before_q6_of_q3_right_up,
+        wrist_x_from_q1_before_q6_of_q3_right_up);
+    const double angle_q2_right_up_up = angle_of_wrist_x_from_q1_right_up - angle_of_arm_along_q2_right_up_up;
     const double axis_a2_right_up_up = offset_a2 + angle_q2_right_up_up*SOFTKIN_RADIAN;
     const double angle_q3_right_up_up = softkin_lane_angle(sin_q3_right_up_up, cos_q3_right_up);
     const double quotient_in_axis_a3_right_up_up = angle_q3_right_up_up*SOFTKIN_RADIAN;
     const double axis_a3_right_up_up = offset_a3 + quotient_in_axis_a3_right_up_up;
-    const double angle_with_q4_right_up = angle_with_q4_right_down - 180.0*SOFTKIN_DEGREE;
+    const double angle_with_q4_right_up = softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3_right_up,
+        r22_from_q1_before_q6_before_q6_of_q3_right_up);
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_right_up_up = offset_a4
         + (angle_with_q4_right_up - angle_q2_right_up_up - angle_q3_right_up_up)*SOFTKIN_RADIAN;
     const double axis_a5_right_up = offset_a5 - quotient_in_axis_a5_right_down;
-    const double axis_a6_right_up = 180.0 + axis_a6_right_down;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_q2_right_down_down = product_in_direction_x_q2_right_up_down
-        - product_in_direction_x_q2_right_up_down_2;
-    const double direction_y_q2_right_down_down = product_in_direction_y_q2_right_up_down
-        + product_in_direction_y_q2_right_up_down_2;
-    const double angle_q2_right_down_down = softkin_lane_angle(direction_y_q2_right_down_down,
-        direction_x_q2_right_down_down);
+    const double sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right_by_radius_q6_right;
+    const double axis_a6_right_up = offset_a6
+        + softkin_lane_angle(sin_q6_before_q6_of_q3_right_up, r21_from_q1_right_by_radius_q6_right)
+        *SOFTKIN_RADIAN;
+    const double angle_q2_right_down_down = angle_of_arm_along_q2_right_up_down
+        + angle_of_wrist_x_from_q1_right_down;
     const double axis_a2_right_down_down = offset_a2 + angle_q2_right_down_down*SOFTKIN_RADIAN;
     const double axis_a3_right_down_down = offset_a3 - quotient_in_axis_a3_right_up_down;
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_right_down_down = offset_a4
         + (angle_q3_right_up_down + angle_with_q4_right_down - angle_q2_right_down_down)*SOFTKIN_RADIAN;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_q2_right_down_up = product_in_direction_x_q2_right_up_up
-        - product_in_direction_x_q2_right_up_up_2;
-    const double direction_y_q2_right_down_up = product_in_direction_y_q2_right_up_up
-        + product_in_direction_y_q2_right_up_up_2;
-    const double angle_q2_right_down_up = softkin_lane_angle(direction_y_q2_right_down_up,
-        direction_x_q2_right_down_up);
+    const double angle_q2_right_down_up = angle_of_arm_along_q2_right_up_up
+        + angle_of_wrist_x_from_q1_right_up;
     const double axis_a2_right_down_up = offset_a2 + angle_q2_right_down_up*SOFTKIN_RADIAN;
     const double axis_a3_right_down_up = offset_a3 - quotient_in_axis_a3_right_up_up;
     /* q4 from the sum q234 of angles about parallel axes */

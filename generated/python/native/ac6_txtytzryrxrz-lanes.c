@@ -77,6 +77,7 @@ void ac6_txtytzryrxrz_regular_all(const void *machine, const softkin_lanes *give
     /* polar coordinates: the radius at angle a4 */
     const double radius_a4 = softkin_lane_root(r13*r13 + r33*r33);
     missed += radius_a4 > 1e-11 ? 0.0 : 1.0;
+    missed += radius_a4 > 0.1 ? 0.0 : 1.0;
     /* wrist centre: the last joints do not move this point */
     const double wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13;
     const double axis_a1 = offset_a1 + wrist_x;
@@ -86,10 +87,7 @@ void ac6_txtytzryrxrz_regular_all(const void *machine, const softkin_lanes *give
     const double axis_a3 = offset_a3 + wrist_z;
     const double axis_a4_upright = offset_a4 + softkin_lane_angle(r13, r33)*SOFTKIN_RADIAN;
     const double axis_a5_upright = offset_a5 - softkin_lane_angle(r23, radius_a4)*SOFTKIN_RADIAN;
-    const double scaled_r11_from_a4_flipped = r13*r31 - r11*r33;
-    const double direction_y_a6_flipped = r12*r33 - r13*r32;
-    const double axis_a6_upright = offset_a6
-        - softkin_lane_angle(direction_y_a6_flipped, -scaled_r11_from_a4_flipped)*SOFTKIN_RADIAN;
+    const double axis_a6_upright = offset_a6 + softkin_lane_angle(r21, r22)*SOFTKIN_RADIAN;
     const double axis_a4_flipped = 180.0 + axis_a4_upright;
     const double axis_a5_flipped = offset_a5 - softkin_lane_angle(r23, -radius_a4)*SOFTKIN_RADIAN;
     const double axis_a6_flipped = 180.0 + axis_a6_upright;

@@ -167,10 +167,14 @@ void delta_p3c_type3_regular_all(const void *machine, const softkin_lanes *given
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const delta_p3c_type3_machine *k = machine;
-  const double cos_azimuth_1 = k->cos_azimuth_1,
-      cos_azimuth_1_times_inner_arm_1 = k->cos_azimuth_1_times_inner_arm_1, cos_azimuth_2 = k->cos_azimuth_2,
-      cos_azimuth_2_times_inner_arm_2 = k->cos_azimuth_2_times_inner_arm_2, cos_azimuth_3 = k->cos_azimuth_3,
-      cos_azimuth_3_times_inner_arm_3 = k->cos_azimuth_3_times_inner_arm_3, inner_arm_1 = k->inner_arm_1,
+  const double base_radius_1 = k->base_radius_1, base_radius_2 = k->base_radius_2,
+      base_radius_3 = k->base_radius_3, cos_azimuth_1 = k->cos_azimuth_1,
+      cos_azimuth_1_times_inner_arm_1 = k->cos_azimuth_1_times_inner_arm_1,
+      cos_azimuth_1_times_tcp_radius_1 = k->cos_azimuth_1_times_tcp_radius_1,
+      cos_azimuth_2 = k->cos_azimuth_2, cos_azimuth_2_times_inner_arm_2 = k->cos_azimuth_2_times_inner_arm_2,
+      cos_azimuth_2_times_tcp_radius_2 = k->cos_azimuth_2_times_tcp_radius_2,
+      cos_azimuth_3 = k->cos_azimuth_3, cos_azimuth_3_times_inner_arm_3 = k->cos_azimuth_3_times_inner_arm_3,
+      cos_azimuth_3_times_tcp_radius_3 = k->cos_azimuth_3_times_tcp_radius_3, inner_arm_1 = k->inner_arm_1,
       inner_arm_1_times_shortest_link = k->inner_arm_1_times_shortest_link,
       inner_arm_1_times_sin_azimuth_1 = k->inner_arm_1_times_sin_azimuth_1, inner_arm_2 = k->inner_arm_2,
       inner_arm_2_times_shortest_link = k->inner_arm_2_times_shortest_link,
@@ -181,19 +185,26 @@ void delta_p3c_type3_regular_all(const void *machine, const softkin_lanes *given
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
       outer_arm_1 = k->outer_arm_1, outer_arm_2 = k->outer_arm_2, outer_arm_3 = k->outer_arm_3,
       quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar, sin_azimuth_1 = k->sin_azimuth_1,
-      sin_azimuth_2 = k->sin_azimuth_2, sin_azimuth_3 = k->sin_azimuth_3,
+      sin_azimuth_1_times_tcp_radius_1 = k->sin_azimuth_1_times_tcp_radius_1,
+      sin_azimuth_2 = k->sin_azimuth_2,
+      sin_azimuth_2_times_tcp_radius_2 = k->sin_azimuth_2_times_tcp_radius_2,
+      sin_azimuth_3 = k->sin_azimuth_3,
+      sin_azimuth_3_times_tcp_radius_3 = k->sin_azimuth_3_times_tcp_radius_3,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
-      single_a3 = k->single_a3 ? 1.0 : 0.0, sum_in_pivot_1_x = k->sum_in_pivot_1_x,
-      sum_in_pivot_1_y = k->sum_in_pivot_1_y, sum_in_pivot_2_x = k->sum_in_pivot_2_x,
-      sum_in_pivot_2_y = k->sum_in_pivot_2_y, sum_in_pivot_3_x = k->sum_in_pivot_3_x,
-      sum_in_pivot_3_y = k->sum_in_pivot_3_y;
+      single_a3 = k->single_a3 ? 1.0 : 0.0;
+  const double sum_in_span_1_x = cos_azimuth_1_times_tcp_radius_1 - base_radius_1*cos_azimuth_1;
+  const double sum_in_span_1_y = sin_azimuth_1_times_tcp_radius_1 - base_radius_1*sin_azimuth_1;
+  const double sum_in_span_2_x = cos_azimuth_2_times_tcp_radius_2 - base_radius_2*cos_azimuth_2;
+  const double sum_in_span_2_y = sin_azimuth_2_times_tcp_radius_2 - base_radius_2*sin_azimuth_2;
+  const double sum_in_span_3_x = cos_azimuth_3_times_tcp_radius_3 - base_radius_3*cos_azimuth_3;
+  const double sum_in_span_3_y = sin_azimuth_3_times_tcp_radius_3 - base_radius_3*sin_azimuth_3;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane],
         ref_a3 = given->reference[2][lane];
     double missed = misses[lane];
-    const double span_1_x = x - sum_in_pivot_1_x; /* rod 1: known part of its vector */
-    const double span_1_y = y - sum_in_pivot_1_y;
+    const double span_1_x = sum_in_span_1_x + x; /* rod 1: known part of its vector */
+    const double span_1_y = sum_in_span_1_y + y;
     const double along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1;
     const double z_squared = z*z;
     /* effective length of the arm that a1 turns */
@@ -215,11 +226,11 @@ void delta_p3c_type3_regular_all(const void *machine, const softkin_lanes *given
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_a1 = -(one_less_cos_a1 - one_plus_cos_a1)/sum_a1;
+    const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
     /* a1: out of reach */
     missed += fabs(cos_swing_a1) <= 1.0000000000005 ? 0.0 : 1.0;
-    const double span_2_x = x - sum_in_pivot_2_x; /* rod 2: known part of its vector */
-    const double span_2_y = y - sum_in_pivot_2_y;
+    const double span_2_x = sum_in_span_2_x + x; /* rod 2: known part of its vector */
+    const double span_2_y = sum_in_span_2_y + y;
     const double along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2;
     /* effective length of the arm that a2 turns */
     const double effective_a2 = softkin_lane_root(z_squared + along_a2*along_a2);
@@ -240,11 +251,11 @@ void delta_p3c_type3_regular_all(const void *machine, const softkin_lanes *given
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_a2 = -(one_less_cos_a2 - one_plus_cos_a2)/sum_a2;
+    const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
     /* a2: out of reach */
     missed += fabs(cos_swing_a2) <= 1.0000000000005 ? 0.0 : 1.0;
-    const double span_3_x = x - sum_in_pivot_3_x; /* rod 3: known part of its vector */
-    const double span_3_y = y - sum_in_pivot_3_y;
+    const double span_3_x = sum_in_span_3_x + x; /* rod 3: known part of its vector */
+    const double span_3_y = sum_in_span_3_y + y;
     const double along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3;
     /* effective length of the arm that a3 turns */
     const double effective_a3 = softkin_lane_root(z_squared + along_a3*along_a3);
@@ -265,70 +276,61 @@ void delta_p3c_type3_regular_all(const void *machine, const softkin_lanes *given
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
     missed += sum_a3 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_a3 = -(one_less_cos_a3 - one_plus_cos_a3)/sum_a3;
+    const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3;
     /* a3: out of reach */
     missed += fabs(cos_swing_a3) <= 1.0000000000005 ? 0.0 : 1.0;
     const double along_a1_times_cos_swing_a1 = along_a1*cos_swing_a1;
     /* sine squared, times the squared scale */
     const double sine_square_a1 = one_less_cos_a1*one_plus_cos_a1;
-    const double sin_swing_a1_outward = -2.0*softkin_lane_root(sine_square_a1)/sum_a1;
-    const double sin_swing_a1_outward_times_z = z*sin_swing_a1_outward;
-    const double one_by_effective_a1 = 1.0/effective_a1;
+    const double sin_swing_a1_inward = 2.0*softkin_lane_root(sine_square_a1)/sum_a1;
+    const double sin_swing_a1_inward_times_z = z*sin_swing_a1_inward;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a1_outward = (along_a1_times_cos_swing_a1 + sin_swing_a1_outward_times_z)
-        *one_by_effective_a1;
+    const double cos_a1_outward = (along_a1_times_cos_swing_a1 - sin_swing_a1_inward_times_z)/effective_a1;
     const double rod_1_x_outward = span_1_x - cos_a1_outward*cos_azimuth_1_times_inner_arm_1;
     const double rod_1_y_outward = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1_outward;
     const double cos_swing_a1_times_z = z*cos_swing_a1;
-    const double along_a1_times_sin_swing_a1_outward = along_a1*sin_swing_a1_outward;
-    const double sin_a1_outward = (along_a1_times_sin_swing_a1_outward - cos_swing_a1_times_z)
-        *one_by_effective_a1;
+    const double along_a1_times_sin_swing_a1_inward = along_a1*sin_swing_a1_inward;
+    const double sin_a1_outward = (-along_a1_times_sin_swing_a1_inward - cos_swing_a1_times_z)/effective_a1;
     const double pivot_1_z_outward = -inner_arm_1*sin_a1_outward;
     const double rod_1_z_outward = z - pivot_1_z_outward;
     const double along_a2_times_cos_swing_a2 = along_a2*cos_swing_a2;
     /* sine squared, times the squared scale */
     const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
-    const double sin_swing_a2_outward = -2.0*softkin_lane_root(sine_square_a2)/sum_a2;
-    const double sin_swing_a2_outward_times_z = z*sin_swing_a2_outward;
-    const double one_by_effective_a2 = 1.0/effective_a2;
+    const double sin_swing_a2_inward = 2.0*softkin_lane_root(sine_square_a2)/sum_a2;
+    const double sin_swing_a2_inward_times_z = z*sin_swing_a2_inward;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a2_outward = (along_a2_times_cos_swing_a2 + sin_swing_a2_outward_times_z)
-        *one_by_effective_a2;
-    const double rod_2_x_outward = span_2_x - cos_a2_outward*cos_azimuth_2_times_inner_arm_2;
+    const double cos_a2_outward = (along_a2_times_cos_swing_a2 - sin_swing_a2_inward_times_z)/effective_a2;
     const double rod_2_y_outward = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2_outward;
+    const double cos_swing_a2_times_z = z*cos_swing_a2;
+    const double along_a2_times_sin_swing_a2_inward = along_a2*sin_swing_a2_inward;
+    const double sin_a2_outward = (-along_a2_times_sin_swing_a2_inward - cos_swing_a2_times_z)/effective_a2;
+    const double pivot_2_z_outward = -inner_arm_2*sin_a2_outward;
+    const double rod_2_z_outward = z - pivot_2_z_outward;
     const double along_a3_times_cos_swing_a3 = along_a3*cos_swing_a3;
     /* sine squared, times the squared scale */
     const double sine_square_a3 = one_less_cos_a3*one_plus_cos_a3;
-    const double sin_swing_a3_outward = -2.0*softkin_lane_root(sine_square_a3)/sum_a3;
-    const double sin_swing_a3_outward_times_z = z*sin_swing_a3_outward;
-    const double one_by_effective_a3 = 1.0/effective_a3;
+    const double sin_swing_a3_inward = 2.0*softkin_lane_root(sine_square_a3)/sum_a3;
+    const double sin_swing_a3_inward_times_z = z*sin_swing_a3_inward;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a3_outward = (along_a3_times_cos_swing_a3 + sin_swing_a3_outward_times_z)
-        *one_by_effective_a3;
-    const double rod_3_x_outward = span_3_x - cos_a3_outward*cos_azimuth_3_times_inner_arm_3;
+    const double cos_a3_outward = (along_a3_times_cos_swing_a3 - sin_swing_a3_inward_times_z)/effective_a3;
     const double rod_3_y_outward = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3_outward;
-    const double sum_in_type2_rods_coplanar_outward_outward_outward = rod_2_y_outward*rod_3_x_outward
-        - rod_2_x_outward*rod_3_y_outward;
-    const double cos_swing_a2_times_z = z*cos_swing_a2;
-    const double along_a2_times_sin_swing_a2_outward = along_a2*sin_swing_a2_outward;
-    const double sin_a2_outward = (along_a2_times_sin_swing_a2_outward - cos_swing_a2_times_z)
-        *one_by_effective_a2;
-    const double pivot_2_z_outward = -inner_arm_2*sin_a2_outward;
-    const double rod_2_z_outward = z - pivot_2_z_outward;
     const double cos_swing_a3_times_z = z*cos_swing_a3;
-    const double along_a3_times_sin_swing_a3_outward = along_a3*sin_swing_a3_outward;
-    const double sin_a3_outward = (along_a3_times_sin_swing_a3_outward - cos_swing_a3_times_z)
-        *one_by_effective_a3;
+    const double along_a3_times_sin_swing_a3_inward = along_a3*sin_swing_a3_inward;
+    const double sin_a3_outward = (-along_a3_times_sin_swing_a3_inward - cos_swing_a3_times_z)/effective_a3;
     const double pivot_3_z_outward = -inner_arm_3*sin_a3_outward;
     const double rod_3_z_outward = z - pivot_3_z_outward;
-    const double sum_in_type2_rods_coplanar_outward_outward_outward_2 = rod_2_x_outward*rod_3_z_outward
-        - rod_2_z_outward*rod_3_x_outward;
-    const double sum_in_type2_rods_coplanar_outward_outward_outward_3 = rod_2_z_outward*rod_3_y_outward
-        - rod_2_y_outward*rod_3_z_outward;
-    const double type2_rods_coplanar_outward_outward_outward = -quotient_in_type2_rods_coplanar
-        *(rod_1_x_outward*sum_in_type2_rods_coplanar_outward_outward_outward_3
+    const double sum_in_type2_rods_coplanar_outward_outward_outward = rod_2_y_outward*rod_3_z_outward
+        - rod_2_z_outward*rod_3_y_outward;
+    const double rod_2_x_outward = span_2_x - cos_a2_outward*cos_azimuth_2_times_inner_arm_2;
+    const double rod_3_x_outward = span_3_x - cos_a3_outward*cos_azimuth_3_times_inner_arm_3;
+    const double sum_in_type2_rods_coplanar_outward_outward_outward_2 = rod_2_z_outward*rod_3_x_outward
+        - rod_2_x_outward*rod_3_z_outward;
+    const double sum_in_type2_rods_coplanar_outward_outward_outward_3 = rod_2_x_outward*rod_3_y_outward
+        - rod_2_y_outward*rod_3_x_outward;
+    const double type2_rods_coplanar_outward_outward_outward = quotient_in_type2_rods_coplanar
+        *(rod_1_x_outward*sum_in_type2_rods_coplanar_outward_outward_outward
         + rod_1_y_outward*sum_in_type2_rods_coplanar_outward_outward_outward_2
-        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_outward_outward);
+        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_outward_outward_3);
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_outward_outward_outward =
         type2_rods_coplanar_outward_outward_outward >= min_type2_margin ? 0 : 3;
@@ -339,99 +341,93 @@ void delta_p3c_type3_regular_all(const void *machine, const softkin_lanes *given
     const double axis_a3_outward = offset_a3
         + softkin_lane_angle(sin_a3_outward, cos_a3_outward)*SOFTKIN_RADIAN;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a3_inward = (along_a3_times_cos_swing_a3 - sin_swing_a3_outward_times_z)
-        *one_by_effective_a3;
-    const double rod_3_x_inward = span_3_x - cos_a3_inward*cos_azimuth_3_times_inner_arm_3;
+    const double cos_a3_inward = (along_a3_times_cos_swing_a3 + sin_swing_a3_inward_times_z)/effective_a3;
     const double rod_3_y_inward = span_3_y - inner_arm_3_times_sin_azimuth_3*cos_a3_inward;
-    const double sum_in_type2_rods_coplanar_outward_outward_inward = rod_2_y_outward*rod_3_x_inward
-        - rod_2_x_outward*rod_3_y_inward;
-    const double sin_a3_inward = (-along_a3_times_sin_swing_a3_outward - cos_swing_a3_times_z)
-        *one_by_effective_a3;
+    const double sin_a3_inward = (along_a3_times_sin_swing_a3_inward - cos_swing_a3_times_z)/effective_a3;
     const double pivot_3_z_inward = -inner_arm_3*sin_a3_inward;
     const double rod_3_z_inward = z - pivot_3_z_inward;
-    const double sum_in_type2_rods_coplanar_outward_outward_inward_2 = rod_2_x_outward*rod_3_z_inward
-        - rod_2_z_outward*rod_3_x_inward;
-    const double sum_in_type2_rods_coplanar_outward_outward_inward_3 = rod_2_z_outward*rod_3_y_inward
-        - rod_2_y_outward*rod_3_z_inward;
-    const double type2_rods_coplanar_outward_outward_inward = -quotient_in_type2_rods_coplanar
-        *(rod_1_x_outward*sum_in_type2_rods_coplanar_outward_outward_inward_3
+    const double sum_in_type2_rods_coplanar_outward_outward_inward = rod_2_y_outward*rod_3_z_inward
+        - rod_2_z_outward*rod_3_y_inward;
+    const double rod_3_x_inward = span_3_x - cos_a3_inward*cos_azimuth_3_times_inner_arm_3;
+    const double sum_in_type2_rods_coplanar_outward_outward_inward_2 = rod_2_z_outward*rod_3_x_inward
+        - rod_2_x_outward*rod_3_z_inward;
+    const double sum_in_type2_rods_coplanar_outward_outward_inward_3 = rod_2_x_outward*rod_3_y_inward
+        - rod_2_y_outward*rod_3_x_inward;
+    const double type2_rods_coplanar_outward_outward_inward = quotient_in_type2_rods_coplanar
+        *(rod_1_x_outward*sum_in_type2_rods_coplanar_outward_outward_inward
         + rod_1_y_outward*sum_in_type2_rods_coplanar_outward_outward_inward_2
-        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_outward_inward);
+        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_outward_inward_3);
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_outward_outward_inward =
         type2_rods_coplanar_outward_outward_inward >= min_type2_margin ? 0 : 3;
     const double axis_a3_inward = offset_a3 + softkin_lane_angle(sin_a3_inward, cos_a3_inward)*SOFTKIN_RADIAN;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a2_inward = (along_a2_times_cos_swing_a2 - sin_swing_a2_outward_times_z)
-        *one_by_effective_a2;
-    const double rod_2_x_inward = span_2_x - cos_a2_inward*cos_azimuth_2_times_inner_arm_2;
+    const double cos_a2_inward = (along_a2_times_cos_swing_a2 + sin_swing_a2_inward_times_z)/effective_a2;
     const double rod_2_y_inward = span_2_y - inner_arm_2_times_sin_azimuth_2*cos_a2_inward;
-    const double sum_in_type2_rods_coplanar_outward_inward_outward = rod_2_y_inward*rod_3_x_outward
-        - rod_2_x_inward*rod_3_y_outward;
-    const double sin_a2_inward = (-along_a2_times_sin_swing_a2_outward - cos_swing_a2_times_z)
-        *one_by_effective_a2;
+    const double sin_a2_inward = (along_a2_times_sin_swing_a2_inward - cos_swing_a2_times_z)/effective_a2;
     const double pivot_2_z_inward = -inner_arm_2*sin_a2_inward;
     const double rod_2_z_inward = z - pivot_2_z_inward;
-    const double sum_in_type2_rods_coplanar_outward_inward_outward_2 = rod_2_x_inward*rod_3_z_outward
-        - rod_2_z_inward*rod_3_x_outward;
-    const double sum_in_type2_rods_coplanar_outward_inward_outward_3 = rod_2_z_inward*rod_3_y_outward
-        - rod_2_y_inward*rod_3_z_outward;
-    const double type2_rods_coplanar_outward_inward_outward = -quotient_in_type2_rods_coplanar
-        *(rod_1_x_outward*sum_in_type2_rods_coplanar_outward_inward_outward_3
+    const double sum_in_type2_rods_coplanar_outward_inward_outward = rod_2_y_inward*rod_3_z_outward
+        - rod_2_z_inward*rod_3_y_outward;
+    const double rod_2_x_inward = span_2_x - cos_a2_inward*cos_azimuth_2_times_inner_arm_2;
+    const double sum_in_type2_rods_coplanar_outward_inward_outward_2 = rod_2_z_inward*rod_3_x_outward
+        - rod_2_x_inward*rod_3_z_outward;
+    const double sum_in_type2_rods_coplanar_outward_inward_outward_3 = rod_2_x_inward*rod_3_y_outward
+        - rod_2_y_inward*rod_3_x_outward;
+    const double type2_rods_coplanar_outward_inward_outward = quotient_in_type2_rods_coplanar
+        *(rod_1_x_outward*sum_in_type2_rods_coplanar_outward_inward_outward
         + rod_1_y_outward*sum_in_type2_rods_coplanar_outward_inward_outward_2
-        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_inward_outward);
+        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_inward_outward_3);
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_outward_inward_outward =
         type2_rods_coplanar_outward_inward_outward >= min_type2_margin ? 0 : 3;
     const double axis_a2_inward = offset_a2 + softkin_lane_angle(sin_a2_inward, cos_a2_inward)*SOFTKIN_RADIAN;
-    const double sum_in_type2_rods_coplanar_outward_inward_inward = rod_2_y_inward*rod_3_x_inward
-        - rod_2_x_inward*rod_3_y_inward;
-    const double sum_in_type2_rods_coplanar_outward_inward_inward_2 = rod_2_x_inward*rod_3_z_inward
-        - rod_2_z_inward*rod_3_x_inward;
-    const double sum_in_type2_rods_coplanar_outward_inward_inward_3 = rod_2_z_inward*rod_3_y_inward
-        - rod_2_y_inward*rod_3_z_inward;
-    const double type2_rods_coplanar_outward_inward_inward = -quotient_in_type2_rods_coplanar
-        *(rod_1_x_outward*sum_in_type2_rods_coplanar_outward_inward_inward_3
+    const double sum_in_type2_rods_coplanar_outward_inward_inward = rod_2_y_inward*rod_3_z_inward
+        - rod_2_z_inward*rod_3_y_inward;
+    const double sum_in_type2_rods_coplanar_outward_inward_inward_2 = rod_2_z_inward*rod_3_x_inward
+        - rod_2_x_inward*rod_3_z_inward;
+    const double sum_in_type2_rods_coplanar_outward_inward_inward_3 = rod_2_x_inward*rod_3_y_inward
+        - rod_2_y_inward*rod_3_x_inward;
+    const double type2_rods_coplanar_outward_inward_inward = quotient_in_type2_rods_coplanar
+        *(rod_1_x_outward*sum_in_type2_rods_coplanar_outward_inward_inward
         + rod_1_y_outward*sum_in_type2_rods_coplanar_outward_inward_inward_2
-        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_inward_inward);
+        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_inward_inward_3);
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_outward_inward_inward =
         type2_rods_coplanar_outward_inward_inward >= min_type2_margin ? 0 : 3;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a1_inward = (along_a1_times_cos_swing_a1 - sin_swing_a1_outward_times_z)
-        *one_by_effective_a1;
+    const double cos_a1_inward = (along_a1_times_cos_swing_a1 + sin_swing_a1_inward_times_z)/effective_a1;
     const double rod_1_x_inward = span_1_x - cos_a1_inward*cos_azimuth_1_times_inner_arm_1;
     const double rod_1_y_inward = span_1_y - inner_arm_1_times_sin_azimuth_1*cos_a1_inward;
-    const double sin_a1_inward = (-along_a1_times_sin_swing_a1_outward - cos_swing_a1_times_z)
-        *one_by_effective_a1;
+    const double sin_a1_inward = (along_a1_times_sin_swing_a1_inward - cos_swing_a1_times_z)/effective_a1;
     const double pivot_1_z_inward = -inner_arm_1*sin_a1_inward;
     const double rod_1_z_inward = z - pivot_1_z_inward;
-    const double type2_rods_coplanar_inward_outward_outward = -quotient_in_type2_rods_coplanar
-        *(rod_1_x_inward*sum_in_type2_rods_coplanar_outward_outward_outward_3
+    const double type2_rods_coplanar_inward_outward_outward = quotient_in_type2_rods_coplanar
+        *(rod_1_x_inward*sum_in_type2_rods_coplanar_outward_outward_outward
         + rod_1_y_inward*sum_in_type2_rods_coplanar_outward_outward_outward_2
-        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_outward_outward);
+        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_outward_outward_3);
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_inward_outward_outward =
         type2_rods_coplanar_inward_outward_outward >= min_type2_margin ? 0 : 3;
     const double axis_a1_inward = offset_a1 + softkin_lane_angle(sin_a1_inward, cos_a1_inward)*SOFTKIN_RADIAN;
-    const double type2_rods_coplanar_inward_outward_inward = -quotient_in_type2_rods_coplanar
-        *(rod_1_x_inward*sum_in_type2_rods_coplanar_outward_outward_inward_3
+    const double type2_rods_coplanar_inward_outward_inward = quotient_in_type2_rods_coplanar
+        *(rod_1_x_inward*sum_in_type2_rods_coplanar_outward_outward_inward
         + rod_1_y_inward*sum_in_type2_rods_coplanar_outward_outward_inward_2
-        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_outward_inward);
+        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_outward_inward_3);
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_inward_outward_inward =
         type2_rods_coplanar_inward_outward_inward >= min_type2_margin ? 0 : 3;
-    const double type2_rods_coplanar_inward_inward_outward = -quotient_in_type2_rods_coplanar
-        *(rod_1_x_inward*sum_in_type2_rods_coplanar_outward_inward_outward_3
+    const double type2_rods_coplanar_inward_inward_outward = quotient_in_type2_rods_coplanar
+        *(rod_1_x_inward*sum_in_type2_rods_coplanar_outward_inward_outward
         + rod_1_y_inward*sum_in_type2_rods_coplanar_outward_inward_outward_2
-        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_inward_outward);
+        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_inward_outward_3);
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_inward_inward_outward =
         type2_rods_coplanar_inward_inward_outward >= min_type2_margin ? 0 : 3;
-    const double type2_rods_coplanar_inward_inward_inward = -quotient_in_type2_rods_coplanar
-        *(rod_1_x_inward*sum_in_type2_rods_coplanar_outward_inward_inward_3
+    const double type2_rods_coplanar_inward_inward_inward = quotient_in_type2_rods_coplanar
+        *(rod_1_x_inward*sum_in_type2_rods_coplanar_outward_inward_inward
         + rod_1_y_inward*sum_in_type2_rods_coplanar_outward_inward_inward_2
-        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_inward_inward);
+        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_inward_inward_3);
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_inward_inward_inward = type2_rods_coplanar_inward_inward_inward >= min_type2_margin
         ? 0 : 3;

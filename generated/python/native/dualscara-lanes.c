@@ -151,7 +151,7 @@ void dualscara_regular_all(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_a1 = -(one_less_cos_a1 - one_plus_cos_a1)/sum_a1;
+    const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
     /* a1: out of reach */
     missed += fabs(cos_swing_a1) <= 1.0000000000005 ? 0.0 : 1.0;
     const double span_2_x = x - half_base_distance; /* rod 2: known part of its vector */
@@ -168,39 +168,33 @@ void dualscara_regular_all(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_a2 = -(one_less_cos_a2 - one_plus_cos_a2)/sum_a2;
+    const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
     /* a2: out of reach */
     missed += fabs(cos_swing_a2) <= 1.0000000000005 ? 0.0 : 1.0;
     const double cos_swing_a1_times_span_1_x = span_1_x*cos_swing_a1;
     /* sine squared, times the squared scale */
     const double sine_square_a1 = one_less_cos_a1*one_plus_cos_a1;
-    const double sin_swing_a1_inward = -2.0*softkin_lane_root(sine_square_a1)/sum_a1;
-    const double sin_swing_a1_inward_times_y = y*sin_swing_a1_inward;
-    const double one_by_effective_a1 = 1.0/effective_a1;
+    const double sin_swing_a1_outward = 2.0*softkin_lane_root(sine_square_a1)/sum_a1;
+    const double sin_swing_a1_outward_times_y = y*sin_swing_a1_outward;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a1_outward = one_by_effective_a1
-        *(cos_swing_a1_times_span_1_x + sin_swing_a1_inward_times_y);
+    const double cos_a1_outward = (cos_swing_a1_times_span_1_x - sin_swing_a1_outward_times_y)/effective_a1;
     const double rod_1_x_outward = span_1_x - arm_length_1*cos_a1_outward;
     const double cos_swing_a1_times_y = y*cos_swing_a1;
-    const double sin_swing_a1_inward_times_span_1_x = span_1_x*sin_swing_a1_inward;
-    const double sin_a1_outward = one_by_effective_a1
-        *(cos_swing_a1_times_y - sin_swing_a1_inward_times_span_1_x);
+    const double sin_swing_a1_outward_times_span_1_x = span_1_x*sin_swing_a1_outward;
+    const double sin_a1_outward = (cos_swing_a1_times_y + sin_swing_a1_outward_times_span_1_x)/effective_a1;
     const double pivot_1_y_outward = arm_length_1*sin_a1_outward;
     const double rod_1_y_outward = y - pivot_1_y_outward;
     const double cos_swing_a2_times_span_2_x = span_2_x*cos_swing_a2;
     /* sine squared, times the squared scale */
     const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
-    const double sin_swing_a2_outward = -2.0*softkin_lane_root(sine_square_a2)/sum_a2;
-    const double sin_swing_a2_outward_times_y = y*sin_swing_a2_outward;
-    const double one_by_effective_a2 = 1.0/effective_a2;
+    const double sin_swing_a2_inward = 2.0*softkin_lane_root(sine_square_a2)/sum_a2;
+    const double sin_swing_a2_inward_times_y = y*sin_swing_a2_inward;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a2_outward = one_by_effective_a2
-        *(cos_swing_a2_times_span_2_x - sin_swing_a2_outward_times_y);
+    const double cos_a2_outward = (cos_swing_a2_times_span_2_x + sin_swing_a2_inward_times_y)/effective_a2;
     const double rod_2_x_outward = span_2_x - arm_length_2*cos_a2_outward;
     const double cos_swing_a2_times_y = y*cos_swing_a2;
-    const double sin_swing_a2_outward_times_span_2_x = span_2_x*sin_swing_a2_outward;
-    const double sin_a2_outward = one_by_effective_a2
-        *(cos_swing_a2_times_y + sin_swing_a2_outward_times_span_2_x);
+    const double sin_swing_a2_inward_times_span_2_x = span_2_x*sin_swing_a2_inward;
+    const double sin_a2_outward = (cos_swing_a2_times_y - sin_swing_a2_inward_times_span_2_x)/effective_a2;
     const double pivot_2_y_outward = arm_length_2*sin_a2_outward;
     const double rod_2_y_outward = y - pivot_2_y_outward;
     const double type2_rods_aligned_outward_outward = quotient_in_type2_rods_aligned
@@ -214,11 +208,9 @@ void dualscara_regular_all(const void *machine, const softkin_lanes *given,
     const double axis_a3 = offset_a3 + z;
     const double axis_a4 = offset_a4 + softkin_lane_angle(heading_across, heading_along)*SOFTKIN_RADIAN;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a2_inward = one_by_effective_a2
-        *(cos_swing_a2_times_span_2_x + sin_swing_a2_outward_times_y);
+    const double cos_a2_inward = (cos_swing_a2_times_span_2_x - sin_swing_a2_inward_times_y)/effective_a2;
     const double rod_2_x_inward = span_2_x - arm_length_2*cos_a2_inward;
-    const double sin_a2_inward = one_by_effective_a2
-        *(cos_swing_a2_times_y - sin_swing_a2_outward_times_span_2_x);
+    const double sin_a2_inward = (cos_swing_a2_times_y + sin_swing_a2_inward_times_span_2_x)/effective_a2;
     const double pivot_2_y_inward = arm_length_2*sin_a2_inward;
     const double rod_2_y_inward = y - pivot_2_y_inward;
     const double type2_rods_aligned_outward_inward = quotient_in_type2_rods_aligned
@@ -227,11 +219,9 @@ void dualscara_regular_all(const void *machine, const softkin_lanes *given,
     const double refusal_outward_inward = type2_rods_aligned_outward_inward >= min_type2_margin ? 0 : 3;
     const double axis_a2_inward = offset_a2 + softkin_lane_angle(sin_a2_inward, cos_a2_inward)*SOFTKIN_RADIAN;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a1_inward = one_by_effective_a1
-        *(cos_swing_a1_times_span_1_x - sin_swing_a1_inward_times_y);
+    const double cos_a1_inward = (cos_swing_a1_times_span_1_x + sin_swing_a1_outward_times_y)/effective_a1;
     const double rod_1_x_inward = span_1_x - arm_length_1*cos_a1_inward;
-    const double sin_a1_inward = one_by_effective_a1
-        *(cos_swing_a1_times_y + sin_swing_a1_inward_times_span_1_x);
+    const double sin_a1_inward = (cos_swing_a1_times_y - sin_swing_a1_outward_times_span_1_x)/effective_a1;
     const double pivot_1_y_inward = arm_length_1*sin_a1_inward;
     const double rod_1_y_inward = y - pivot_1_y_inward;
     const double type2_rods_aligned_inward_outward = quotient_in_type2_rods_aligned

@@ -69,17 +69,17 @@ void headhead_cb_regular_all(const void *machine, const softkin_lanes *given,
     /* polar coordinates: the radius at angle c */
     const double radius_c = softkin_lane_root(r13*r13 + r23*r23);
     missed += radius_c > 1e-11 ? 0.0 : 1.0;
-    const double cos_c_positive = r13/radius_c; /* where it is singular: the angle of the reference */
+    const double r13_by_radius_c = r13/radius_c;
     const double radius_c_times_pivot_length = pivot_length*radius_c;
     const double fork_offset_plus_head_offset_times_r33 = fork_offset + head_offset*r33;
     const double sum_in_joint_x_positive = fork_offset_plus_head_offset_times_r33
         - radius_c_times_pivot_length;
     /* joint_x from the x equation, which is linear in it */
-    const double joint_x_positive = x - sum_in_joint_x_positive*cos_c_positive;
+    const double joint_x_positive = x - r13_by_radius_c*sum_in_joint_x_positive;
     const double axis_x_positive = joint_x_positive + offset_x;
-    const double sin_c_positive = r23/radius_c;
+    const double r23_by_radius_c = r23/radius_c;
     /* joint_y from the y equation, which is linear in it */
-    const double joint_y_positive = y - sum_in_joint_x_positive*sin_c_positive;
+    const double joint_y_positive = y - r23_by_radius_c*sum_in_joint_x_positive;
     const double axis_y_positive = joint_y_positive + offset_y;
     const double radius_c_times_head_offset = head_offset*radius_c;
     const double z_plus_pivot_length_times_r33 = z + pivot_length*r33;
@@ -87,16 +87,19 @@ void headhead_cb_regular_all(const void *machine, const softkin_lanes *given,
     const double joint_z_positive = radius_c_times_head_offset + z_plus_pivot_length_times_r33;
     const double axis_z_positive = joint_z_positive + offset_z;
     const double axis_c_positive = offset_c
-        + softkin_lane_angle(sin_c_positive, cos_c_positive)*SOFTKIN_RADIAN;
+        + softkin_lane_angle(r23_by_radius_c, r13_by_radius_c)*SOFTKIN_RADIAN;
     const double quotient_in_axis_b_positive = softkin_lane_angle(radius_c, r33)*SOFTKIN_RADIAN;
     const double axis_b_positive = offset_b + quotient_in_axis_b_positive;
+    /* where it is singular: the angle of the reference */
+    const double cos_c_negative = -r13_by_radius_c;
     const double sum_in_joint_x_negative = fork_offset_plus_head_offset_times_r33
         + radius_c_times_pivot_length;
     /* joint_x from the x equation, which is linear in it */
-    const double joint_x_negative = x + sum_in_joint_x_negative*cos_c_positive;
+    const double joint_x_negative = x - sum_in_joint_x_negative*cos_c_negative;
     const double axis_x_negative = joint_x_negative + offset_x;
+    const double sin_c_negative = -r23_by_radius_c;
     /* joint_y from the y equation, which is linear in it */
-    const double joint_y_negative = y + sum_in_joint_x_negative*sin_c_positive;
+    const double joint_y_negative = y - sum_in_joint_x_negative*sin_c_negative;
     const double axis_y_negative = joint_y_negative + offset_y;
     /* joint_z from the z equation, which is linear in it */
     const double joint_z_negative = z_plus_pivot_length_times_r33 - radius_c_times_head_offset;

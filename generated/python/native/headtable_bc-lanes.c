@@ -66,17 +66,18 @@ void headtable_bc_regular_all(const void *machine, const softkin_lanes *given,
     /* polar coordinates: the radius at angle c */
     const double radius_c = softkin_lane_root(r13*r13 + r23*r23);
     missed += radius_c > 1e-11 ? 0.0 : 1.0;
-    const double cos_c_positive = r13/radius_c; /* where it is singular: the angle of the reference */
-    const double sin_c_negative = r23/radius_c;
+    const double r13_by_radius_c = r13/radius_c;
+    const double r23_by_radius_c = r23/radius_c;
+    const double sin_c_positive = -r23_by_radius_c;
     const double head_offset_times_r33 = head_offset*r33;
     const double radius_c_times_pivot_length = pivot_length*radius_c;
     const double sum_in_joint_x_positive = radius_c_times_pivot_length - head_offset_times_r33;
     /* joint_x and joint_y from the x and y equations, linear in both */
-    const double joint_x_positive = cos_c_positive*(x + sum_in_joint_x_positive*cos_c_positive)
-        + sin_c_negative*(y + sum_in_joint_x_positive*sin_c_negative);
+    const double joint_x_positive = r13_by_radius_c*(x + r13_by_radius_c*sum_in_joint_x_positive)
+        + sin_c_positive*(sum_in_joint_x_positive*sin_c_positive - y);
     const double axis_x_positive = joint_x_positive + offset_x;
-    const double joint_y_negative = x*sin_c_negative - y*cos_c_positive;
-    const double axis_y_positive = offset_y - joint_y_negative;
+    const double joint_y_positive = r13_by_radius_c*y + x*sin_c_positive;
+    const double axis_y_positive = joint_y_positive + offset_y;
     const double radius_c_times_head_offset = head_offset*radius_c;
     const double z_plus_pivot_length_times_r33 = z + pivot_length*r33;
     /* joint_z from the z equation, which is linear in it */
@@ -85,12 +86,15 @@ void headtable_bc_regular_all(const void *machine, const softkin_lanes *given,
     const double quotient_in_axis_b_positive = softkin_lane_angle(radius_c, r33)*SOFTKIN_RADIAN;
     const double axis_b_positive = offset_b + quotient_in_axis_b_positive;
     const double axis_c_positive = offset_c
-        - softkin_lane_angle(sin_c_negative, cos_c_positive)*SOFTKIN_RADIAN;
-    const double sum_in_joint_x_negative = -head_offset_times_r33 - radius_c_times_pivot_length;
+        + softkin_lane_angle(sin_c_positive, r13_by_radius_c)*SOFTKIN_RADIAN;
+    /* where it is singular: the angle of the reference */
+    const double cos_c_negative = -r13_by_radius_c;
+    const double sum_in_joint_x_negative = head_offset_times_r33 + radius_c_times_pivot_length;
     /* joint_x and joint_y from the x and y equations, linear in both */
-    const double joint_x_negative = cos_c_positive*(sum_in_joint_x_negative*cos_c_positive - x)
-        + sin_c_negative*(sum_in_joint_x_negative*sin_c_negative - y);
+    const double joint_x_negative = (x - sum_in_joint_x_negative*cos_c_negative)*cos_c_negative
+        + (-y - r23_by_radius_c*sum_in_joint_x_negative)*r23_by_radius_c;
     const double axis_x_negative = joint_x_negative + offset_x;
+    const double joint_y_negative = -joint_y_positive;
     const double axis_y_negative = joint_y_negative + offset_y;
     /* joint_z from the z equation, which is linear in it */
     const double joint_z_negative = z_plus_pivot_length_times_r33 - radius_c_times_head_offset;

@@ -57,24 +57,26 @@ void kin_5axes_regular_all(const void *machine, const softkin_lanes *given,
   const kin_5axes_machine *k = machine;
   const double mid_a = k->mid_a, mid_b = k->mid_b, offset_a = k->offset_a, offset_b = k->offset_b,
       offset_x = k->offset_x, offset_y = k->offset_y, offset_z = k->offset_z,
-      one_by_tool_side = k->one_by_tool_side, single_a = k->single_a ? 1.0 : 0.0,
-      single_b = k->single_b ? 1.0 : 0.0, tool_length_times_tool_side = k->tool_length_times_tool_side;
+      single_a = k->single_a ? 1.0 : 0.0, single_b = k->single_b ? 1.0 : 0.0, tool_length = k->tool_length,
+      tool_side = k->tool_side;
+  const double tool_length_times_tool_side_2 = tool_length*tool_side;
+  const double one_by_tool_side_2 = 1.0/tool_side;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r13 = given->rotation[2][lane], r23 = given->rotation[5][lane], r33 = given->rotation[8][lane],
         ref_a = given->reference[3][lane], ref_b = given->reference[4][lane];
     double missed = misses[lane];
-    const double r13_of_a = one_by_tool_side*r13;
-    const double r23_of_a = one_by_tool_side*r23;
+    const double r13_of_a = one_by_tool_side_2*r13;
+    const double r23_of_a = one_by_tool_side_2*r23;
     /* polar coordinates: the radius at angle a */
     const double radius_a = softkin_lane_root(r13_of_a*r13_of_a + r23_of_a*r23_of_a);
     missed += radius_a > 1e-11 ? 0.0 : 1.0;
     /* wrist centre: the last joints do not move this point */
-    const double wrist_x = x - r13*tool_length_times_tool_side;
+    const double wrist_x = x - r13*tool_length_times_tool_side_2;
     const double axis_x = offset_x + wrist_x;
-    const double wrist_y = y - r23*tool_length_times_tool_side;
+    const double wrist_y = y - r23*tool_length_times_tool_side_2;
     const double axis_y = offset_y + wrist_y;
-    const double wrist_z = z - r33*tool_length_times_tool_side;
+    const double wrist_z = z - r33*tool_length_times_tool_side_2;
     const double axis_z = offset_z + wrist_z;
     const double axis_a_positive = offset_a + softkin_lane_angle(r23_of_a, r13_of_a)*SOFTKIN_RADIAN;
     const double quotient_in_axis_b_positive = softkin_lane_angle(radius_a, r33)*SOFTKIN_RADIAN;

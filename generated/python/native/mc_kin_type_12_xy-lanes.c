@@ -122,18 +122,19 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
       link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
       link_length_1_times_shortest_link = k->link_length_1_times_shortest_link,
+      link_length_2 = k->link_length_2, link_length_3 = k->link_length_3,
       link_length_3_by_link_length_2 = k->link_length_3_by_link_length_2,
       link_length_4_plus_link_length_5 = k->link_length_4_plus_link_length_5,
       link_length_5_minus_link_length_4 = k->link_length_5_minus_link_length_4,
       link_length_5_times_shortest_link = k->link_length_5_times_shortest_link,
       machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
-      quotient_in_along_a2 = k->quotient_in_along_a2,
-      quotient_in_scaled_pivot_rear_y = k->quotient_in_scaled_pivot_rear_y,
       quotient_in_scaled_pivot_rear_y_2 = k->quotient_in_scaled_pivot_rear_y_2,
       quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
-      swap_xy = k->swap_xy ? 1.0 : 0.0;
+      sum_in_pivot_rear_x = k->sum_in_pivot_rear_x, swap_xy = k->swap_xy ? 1.0 : 0.0;
+  const double quotient_in_along_a2_left = link_length_1*(link_length_2 + link_length_3)/link_length_2;
+  const double quotient_in_scaled_pivot_rear_y_left_left = link_length_2*sum_in_pivot_rear_x/link_length_3;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane];
@@ -163,34 +164,22 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     const double sine_square_a1 = one_less_cos_a1*one_plus_cos_a1;
     const double sin_swing_a1_right = 2.0*softkin_lane_root(sine_square_a1)/sum_a1;
     const double sin_swing_a1_right_times_span_upper_y = span_upper_y*sin_swing_a1_right;
-    const double one_by_effective_a1 = 1.0/effective_a1;
-    const double sin_a1_left = one_by_effective_a1
-        *(cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y);
+    const double sin_a1_left = (cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y)
+        /effective_a1;
     /* rod rear: known part of its vector */
     const double span_rear_x = -link_length_3_by_link_length_2*span_upper_x;
-    const double along_a2_left = span_rear_x - quotient_in_along_a2*sin_a1_left;
+    const double along_a2_left = span_rear_x - quotient_in_along_a2_left*sin_a1_left;
     const double cos_swing_a1_times_span_upper_y = span_upper_y*cos_swing_a1;
     const double sin_swing_a1_right_times_span_upper_x = span_upper_x*sin_swing_a1_right;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a1_left = one_by_effective_a1
-        *(cos_swing_a1_times_span_upper_y + sin_swing_a1_right_times_span_upper_x);
+    const double cos_a1_left = (cos_swing_a1_times_span_upper_y + sin_swing_a1_right_times_span_upper_x)
+        /effective_a1;
     const double span_rear_y = -link_length_3_by_link_length_2*span_upper_y;
-    const double across_a2_left = quotient_in_along_a2*cos_a1_left - span_rear_y;
+    const double across_a2_left = quotient_in_along_a2_left*cos_a1_left - span_rear_y;
     /* effective length of the arm that a2 turns */
     const double effective_a2_left = softkin_lane_root(across_a2_left*across_a2_left
         + along_a2_left*along_a2_left);
     missed += effective_a2_left > link_length_5_times_shortest_link ? 0.0 : 1.0;
-    const double sin_a1_right = one_by_effective_a1
-        *(cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y);
-    const double along_a2_right = span_rear_x - quotient_in_along_a2*sin_a1_right;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a1_right = one_by_effective_a1
-        *(cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x);
-    const double across_a2_right = quotient_in_along_a2*cos_a1_right - span_rear_y;
-    /* effective length of the arm that a2 turns */
-    const double effective_a2_right = softkin_lane_root(across_a2_right*across_a2_right
-        + along_a2_right*along_a2_right);
-    missed += effective_a2_right > link_length_5_times_shortest_link ? 0.0 : 1.0;
     /* law of cosines for a2 (rod rear): 1 - cosine, times a scale */
     const double one_less_cos_a2_left = (effective_a2_left + link_length_4_plus_link_length_5)
         *(effective_a2_left + link_length_5_minus_link_length_4);
@@ -200,6 +189,17 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left;
     missed += sum_a2_left > 0.0 ? 0.0 : 1.0;
+    const double sin_a1_right = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y)
+        /effective_a1;
+    const double along_a2_right = span_rear_x - quotient_in_along_a2_left*sin_a1_right;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_a1_right = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x)
+        /effective_a1;
+    const double across_a2_right = quotient_in_along_a2_left*cos_a1_right - span_rear_y;
+    /* effective length of the arm that a2 turns */
+    const double effective_a2_right = softkin_lane_root(across_a2_right*across_a2_right
+        + along_a2_right*along_a2_right);
+    missed += effective_a2_right > link_length_5_times_shortest_link ? 0.0 : 1.0;
     /* law of cosines for a2 (rod rear): 1 - cosine, times a scale */
     const double one_less_cos_a2_right = (effective_a2_right + link_length_4_plus_link_length_5)
         *(effective_a2_right + link_length_5_minus_link_length_4);
@@ -209,12 +209,10 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right;
     missed += sum_a2_right > 0.0 ? 0.0 : 1.0;
-    /* a2: its effective length is too short */
-    const double refusal_left = effective_a2_left > link_length_5_times_shortest_link ? 0 : 3;
     const double cos_swing_a2_left = (one_plus_cos_a2_left - one_less_cos_a2_left)/sum_a2_left;
-    /* a2: out of reach */
-    const double refusal_left_2 = refusal_left > 0 ? refusal_left
-        : (fabs(cos_swing_a2_left) <= 1.0000000000005 ? 0 : 3);
+    /* a2: its effective length is too short, a2: out of reach */
+    const double refusal_left = (effective_a2_left > link_length_5_times_shortest_link)
+        && (fabs(cos_swing_a2_left) <= 1.0000000000005) ? 0 : 3;
     /* rod upper: centre about which it swings */
     const double pivot_upper_x_left = -link_length_1*sin_a1_left;
     const double pivot_upper_y_left = -link_length_1*cos_a1_left;
@@ -224,22 +222,23 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     const double rod_1_y_left = y - centre_1_y_left;
     /* sine squared, times the squared scale */
     const double sine_square_a2_left = one_less_cos_a2_left*one_plus_cos_a2_left;
-    const double sin_swing_a2_left_left = -2.0*softkin_lane_root(sine_square_a2_left)/sum_a2_left;
-    const double product_in_cos_a2_left_left = across_a2_left*sin_swing_a2_left_left;
+    const double sin_swing_a2_left_right = 2.0*softkin_lane_root(sine_square_a2_left)/sum_a2_left;
+    const double product_in_cos_a2_left_left = across_a2_left*sin_swing_a2_left_right;
     const double along_a2_left_times_cos_swing_a2_left = along_a2_left*cos_swing_a2_left;
-    const double one_by_effective_a2_left = 1.0/effective_a2_left;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a2_left_left = (along_a2_left_times_cos_swing_a2_left - product_in_cos_a2_left_left)
-        *one_by_effective_a2_left;
-    const double product_in_scaled_pivot_rear_x_left_left = quotient_in_scaled_pivot_rear_y*sin_a1_left;
+    const double cos_a2_left_left = (along_a2_left_times_cos_swing_a2_left + product_in_cos_a2_left_left)
+        /effective_a2_left;
+    const double product_in_scaled_pivot_rear_x_left_left = quotient_in_scaled_pivot_rear_y_left_left
+        *sin_a1_left;
     /* rod rear: centre about which it swings */
     const double scaled_pivot_rear_x_left_left = product_in_scaled_pivot_rear_x_left_left
         - quotient_in_scaled_pivot_rear_y_2*cos_a2_left_left;
-    const double product_in_sin_a2_left_left = along_a2_left*sin_swing_a2_left_left;
+    const double product_in_sin_a2_left_left = along_a2_left*sin_swing_a2_left_right;
     const double across_a2_left_times_cos_swing_a2_left = across_a2_left*cos_swing_a2_left;
-    const double sin_a2_left_left = (across_a2_left_times_cos_swing_a2_left + product_in_sin_a2_left_left)
-        *one_by_effective_a2_left;
-    const double product_in_scaled_pivot_rear_y_left_left = quotient_in_scaled_pivot_rear_y*cos_a1_left;
+    const double sin_a2_left_left = (across_a2_left_times_cos_swing_a2_left - product_in_sin_a2_left_left)
+        /effective_a2_left;
+    const double product_in_scaled_pivot_rear_y_left_left = quotient_in_scaled_pivot_rear_y_left_left
+        *cos_a1_left;
     const double scaled_pivot_rear_y_left_left = product_in_scaled_pivot_rear_y_left_left
         + quotient_in_scaled_pivot_rear_y_2*sin_a2_left_left;
     const double centre_2_x_left_left = swap_xy ? -scaled_pivot_rear_y_left_left
@@ -251,19 +250,19 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     const double type2_arms_aligned_left_left = quotient_in_type2_arms_aligned
         *(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left);
     /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
-    const double refusal_left_left = refusal_left_2 > 0 ? refusal_left_2
+    const double refusal_left_left = refusal_left > 0 ? refusal_left
         : (type2_arms_aligned_left_left >= min_type2_margin ? 0 : 3);
     const double axis_a1_left = offset_a1 + softkin_lane_angle(sin_a1_left, cos_a1_left)*SOFTKIN_RADIAN;
     const double axis_a2_left_left = offset_a2
         + softkin_lane_angle(sin_a2_left_left, cos_a2_left_left)*SOFTKIN_RADIAN;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a2_left_right = (along_a2_left_times_cos_swing_a2_left + product_in_cos_a2_left_left)
-        *one_by_effective_a2_left;
+    const double cos_a2_left_right = (along_a2_left_times_cos_swing_a2_left - product_in_cos_a2_left_left)
+        /effective_a2_left;
     /* rod rear: centre about which it swings */
     const double scaled_pivot_rear_x_left_right = product_in_scaled_pivot_rear_x_left_left
         - quotient_in_scaled_pivot_rear_y_2*cos_a2_left_right;
-    const double sin_a2_left_right = (across_a2_left_times_cos_swing_a2_left - product_in_sin_a2_left_left)
-        *one_by_effective_a2_left;
+    const double sin_a2_left_right = (across_a2_left_times_cos_swing_a2_left + product_in_sin_a2_left_left)
+        /effective_a2_left;
     const double scaled_pivot_rear_y_left_right = product_in_scaled_pivot_rear_y_left_left
         + quotient_in_scaled_pivot_rear_y_2*sin_a2_left_right;
     const double centre_2_x_left_right = swap_xy ? -scaled_pivot_rear_y_left_right
@@ -275,16 +274,14 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     const double type2_arms_aligned_left_right = quotient_in_type2_arms_aligned
         *(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right);
     /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
-    const double refusal_left_right = refusal_left_2 > 0 ? refusal_left_2
+    const double refusal_left_right = refusal_left > 0 ? refusal_left
         : (type2_arms_aligned_left_right >= min_type2_margin ? 0 : 3);
     const double axis_a2_left_right = offset_a2
         + softkin_lane_angle(sin_a2_left_right, cos_a2_left_right)*SOFTKIN_RADIAN;
-    /* a2: its effective length is too short */
-    const double refusal_right = effective_a2_right > link_length_5_times_shortest_link ? 0 : 3;
     const double cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right)/sum_a2_right;
-    /* a2: out of reach */
-    const double refusal_right_2 = refusal_right > 0 ? refusal_right
-        : (fabs(cos_swing_a2_right) <= 1.0000000000005 ? 0 : 3);
+    /* a2: its effective length is too short, a2: out of reach */
+    const double refusal_right = (effective_a2_right > link_length_5_times_shortest_link)
+        && (fabs(cos_swing_a2_right) <= 1.0000000000005) ? 0 : 3;
     /* rod upper: centre about which it swings */
     const double pivot_upper_x_right = -link_length_1*sin_a1_right;
     const double pivot_upper_y_right = -link_length_1*cos_a1_right;
@@ -294,22 +291,23 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     const double rod_1_y_right = y - centre_1_y_right;
     /* sine squared, times the squared scale */
     const double sine_square_a2_right = one_less_cos_a2_right*one_plus_cos_a2_right;
-    const double sin_swing_a2_right_left = -2.0*softkin_lane_root(sine_square_a2_right)/sum_a2_right;
-    const double product_in_cos_a2_right_left = across_a2_right*sin_swing_a2_right_left;
+    const double sin_swing_a2_right_right = 2.0*softkin_lane_root(sine_square_a2_right)/sum_a2_right;
+    const double product_in_cos_a2_right_left = across_a2_right*sin_swing_a2_right_right;
     const double along_a2_right_times_cos_swing_a2_right = along_a2_right*cos_swing_a2_right;
-    const double one_by_effective_a2_right = 1.0/effective_a2_right;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a2_right_left = (along_a2_right_times_cos_swing_a2_right - product_in_cos_a2_right_left)
-        *one_by_effective_a2_right;
-    const double product_in_scaled_pivot_rear_x_right_left = quotient_in_scaled_pivot_rear_y*sin_a1_right;
+    const double cos_a2_right_left = (along_a2_right_times_cos_swing_a2_right + product_in_cos_a2_right_left)
+        /effective_a2_right;
+    const double product_in_scaled_pivot_rear_x_right_left = quotient_in_scaled_pivot_rear_y_left_left
+        *sin_a1_right;
     /* rod rear: centre about which it swings */
     const double scaled_pivot_rear_x_right_left = product_in_scaled_pivot_rear_x_right_left
         - quotient_in_scaled_pivot_rear_y_2*cos_a2_right_left;
-    const double product_in_sin_a2_right_left = along_a2_right*sin_swing_a2_right_left;
+    const double product_in_sin_a2_right_left = along_a2_right*sin_swing_a2_right_right;
     const double across_a2_right_times_cos_swing_a2_right = across_a2_right*cos_swing_a2_right;
-    const double sin_a2_right_left = (across_a2_right_times_cos_swing_a2_right + product_in_sin_a2_right_left)
-        *one_by_effective_a2_right;
-    const double product_in_scaled_pivot_rear_y_right_left = quotient_in_scaled_pivot_rear_y*cos_a1_right;
+    const double sin_a2_right_left = (across_a2_right_times_cos_swing_a2_right - product_in_sin_a2_right_left)
+        /effective_a2_right;
+    const double product_in_scaled_pivot_rear_y_right_left = quotient_in_scaled_pivot_rear_y_left_left
+        *cos_a1_right;
     const double scaled_pivot_rear_y_right_left = product_in_scaled_pivot_rear_y_right_left
         + quotient_in_scaled_pivot_rear_y_2*sin_a2_right_left;
     const double centre_2_x_right_left = swap_xy ? -scaled_pivot_rear_y_right_left
@@ -321,19 +319,19 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     const double type2_arms_aligned_right_left = quotient_in_type2_arms_aligned
         *(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left);
     /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
-    const double refusal_right_left = refusal_right_2 > 0 ? refusal_right_2
+    const double refusal_right_left = refusal_right > 0 ? refusal_right
         : (type2_arms_aligned_right_left >= min_type2_margin ? 0 : 3);
     const double axis_a1_right = offset_a1 + softkin_lane_angle(sin_a1_right, cos_a1_right)*SOFTKIN_RADIAN;
     const double axis_a2_right_left = offset_a2
         + softkin_lane_angle(sin_a2_right_left, cos_a2_right_left)*SOFTKIN_RADIAN;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a2_right_right = (along_a2_right_times_cos_swing_a2_right + product_in_cos_a2_right_left)
-        *one_by_effective_a2_right;
+    const double cos_a2_right_right = (along_a2_right_times_cos_swing_a2_right - product_in_cos_a2_right_left)
+        /effective_a2_right;
     /* rod rear: centre about which it swings */
     const double scaled_pivot_rear_x_right_right = product_in_scaled_pivot_rear_x_right_left
         - quotient_in_scaled_pivot_rear_y_2*cos_a2_right_right;
     const double sin_a2_right_right = (across_a2_right_times_cos_swing_a2_right
-        - product_in_sin_a2_right_left)*one_by_effective_a2_right;
+        + product_in_sin_a2_right_left)/effective_a2_right;
     const double scaled_pivot_rear_y_right_right = product_in_scaled_pivot_rear_y_right_left
         + quotient_in_scaled_pivot_rear_y_2*sin_a2_right_right;
     const double centre_2_x_right_right = swap_xy ? -scaled_pivot_rear_y_right_right
@@ -345,7 +343,7 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     const double type2_arms_aligned_right_right = quotient_in_type2_arms_aligned
         *(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right);
     /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
-    const double refusal_right_right = refusal_right_2 > 0 ? refusal_right_2
+    const double refusal_right_right = refusal_right > 0 ? refusal_right
         : (type2_arms_aligned_right_right >= min_type2_margin ? 0 : 3);
     const double axis_a2_right_right = offset_a2
         + softkin_lane_angle(sin_a2_right_right, cos_a2_right_right)*SOFTKIN_RADIAN;

@@ -126,7 +126,7 @@ void p2c_type2_regular_all(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_a1 = -(one_less_cos_a1 - one_plus_cos_a1)/sum_a1;
+    const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
     /* a1: out of reach */
     missed += fabs(cos_swing_a1) <= 1.0000000000005 ? 0.0 : 1.0;
     const double span_2_x = sum_in_pivot_1_x + x; /* rod 2: known part of its vector */
@@ -143,39 +143,33 @@ void p2c_type2_regular_all(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_a2 = -(one_less_cos_a2 - one_plus_cos_a2)/sum_a2;
+    const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
     /* a2: out of reach */
     missed += fabs(cos_swing_a2) <= 1.0000000000005 ? 0.0 : 1.0;
     const double cos_swing_a1_times_span_1_x = span_1_x*cos_swing_a1;
     /* sine squared, times the squared scale */
     const double sine_square_a1 = one_less_cos_a1*one_plus_cos_a1;
-    const double sin_swing_a1_outward = -2.0*softkin_lane_root(sine_square_a1)/sum_a1;
-    const double sin_swing_a1_outward_times_y = y*sin_swing_a1_outward;
-    const double one_by_effective_a1 = 1.0/effective_a1;
+    const double sin_swing_a1_inward = 2.0*softkin_lane_root(sine_square_a1)/sum_a1;
+    const double sin_swing_a1_inward_times_y = y*sin_swing_a1_inward;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a1_outward = one_by_effective_a1
-        *(cos_swing_a1_times_span_1_x - sin_swing_a1_outward_times_y);
+    const double cos_a1_outward = (cos_swing_a1_times_span_1_x + sin_swing_a1_inward_times_y)/effective_a1;
     const double rod_1_x_outward = span_1_x - inner_arm*cos_a1_outward;
     const double cos_swing_a1_times_y = y*cos_swing_a1;
-    const double sin_swing_a1_outward_times_span_1_x = span_1_x*sin_swing_a1_outward;
-    const double sin_a1_outward = one_by_effective_a1
-        *(cos_swing_a1_times_y + sin_swing_a1_outward_times_span_1_x);
+    const double sin_swing_a1_inward_times_span_1_x = span_1_x*sin_swing_a1_inward;
+    const double sin_a1_outward = (cos_swing_a1_times_y - sin_swing_a1_inward_times_span_1_x)/effective_a1;
     const double pivot_1_y_outward = inner_arm*sin_a1_outward;
     const double rod_1_y_outward = y - pivot_1_y_outward;
     const double cos_swing_a2_times_span_2_x = span_2_x*cos_swing_a2;
     /* sine squared, times the squared scale */
     const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
-    const double sin_swing_a2_inward = -2.0*softkin_lane_root(sine_square_a2)/sum_a2;
-    const double sin_swing_a2_inward_times_y = y*sin_swing_a2_inward;
-    const double one_by_effective_a2 = 1.0/effective_a2;
+    const double sin_swing_a2_outward = 2.0*softkin_lane_root(sine_square_a2)/sum_a2;
+    const double sin_swing_a2_outward_times_y = y*sin_swing_a2_outward;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a2_outward = one_by_effective_a2
-        *(cos_swing_a2_times_span_2_x + sin_swing_a2_inward_times_y);
+    const double cos_a2_outward = (cos_swing_a2_times_span_2_x - sin_swing_a2_outward_times_y)/effective_a2;
     const double rod_2_x_outward = span_2_x - inner_arm*cos_a2_outward;
     const double cos_swing_a2_times_y = y*cos_swing_a2;
-    const double sin_swing_a2_inward_times_span_2_x = span_2_x*sin_swing_a2_inward;
-    const double sin_a2_outward = one_by_effective_a2
-        *(cos_swing_a2_times_y - sin_swing_a2_inward_times_span_2_x);
+    const double sin_swing_a2_outward_times_span_2_x = span_2_x*sin_swing_a2_outward;
+    const double sin_a2_outward = (cos_swing_a2_times_y + sin_swing_a2_outward_times_span_2_x)/effective_a2;
     const double pivot_2_y_outward = inner_arm*sin_a2_outward;
     const double rod_2_y_outward = y - pivot_2_y_outward;
     const double type2_arms_aligned_outward_outward = assembly_sign_by_outer_arm_squared
@@ -187,11 +181,9 @@ void p2c_type2_regular_all(const void *machine, const softkin_lanes *given,
     const double axis_a2_outward = offset_a2
         + softkin_lane_angle(sin_a2_outward, cos_a2_outward)*SOFTKIN_RADIAN;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a2_inward = one_by_effective_a2
-        *(cos_swing_a2_times_span_2_x - sin_swing_a2_inward_times_y);
+    const double cos_a2_inward = (cos_swing_a2_times_span_2_x + sin_swing_a2_outward_times_y)/effective_a2;
     const double rod_2_x_inward = span_2_x - inner_arm*cos_a2_inward;
-    const double sin_a2_inward = one_by_effective_a2
-        *(cos_swing_a2_times_y + sin_swing_a2_inward_times_span_2_x);
+    const double sin_a2_inward = (cos_swing_a2_times_y - sin_swing_a2_outward_times_span_2_x)/effective_a2;
     const double pivot_2_y_inward = inner_arm*sin_a2_inward;
     const double rod_2_y_inward = y - pivot_2_y_inward;
     const double type2_arms_aligned_outward_inward = assembly_sign_by_outer_arm_squared
@@ -200,11 +192,9 @@ void p2c_type2_regular_all(const void *machine, const softkin_lanes *given,
     const double refusal_outward_inward = type2_arms_aligned_outward_inward >= min_type2_margin ? 0 : 3;
     const double axis_a2_inward = offset_a2 + softkin_lane_angle(sin_a2_inward, cos_a2_inward)*SOFTKIN_RADIAN;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a1_inward = one_by_effective_a1
-        *(cos_swing_a1_times_span_1_x + sin_swing_a1_outward_times_y);
+    const double cos_a1_inward = (cos_swing_a1_times_span_1_x - sin_swing_a1_inward_times_y)/effective_a1;
     const double rod_1_x_inward = span_1_x - inner_arm*cos_a1_inward;
-    const double sin_a1_inward = one_by_effective_a1
-        *(cos_swing_a1_times_y - sin_swing_a1_outward_times_span_1_x);
+    const double sin_a1_inward = (cos_swing_a1_times_y + sin_swing_a1_inward_times_span_1_x)/effective_a1;
     const double pivot_1_y_inward = inner_arm*sin_a1_inward;
     const double rod_1_y_inward = y - pivot_1_y_inward;
     const double type2_arms_aligned_inward_outward = assembly_sign_by_outer_arm_squared

@@ -86,23 +86,23 @@ void p2x_type1_regular_all(const void *machine, const softkin_lanes *given,
     const double root_of_radicand_a2 = softkin_lane_root(radicand_a2);
     const double a2_right = root_of_radicand_a2 + span_2_x;
     const double rod_2_x_right = span_2_x - a2_right;
-    const double rod_2_x_right_times_span_1_y = rod_2_x_right*span_1_y;
+    const double span_1_y_times_rod_2_x_right = rod_2_x_right*span_1_y;
     const double span_1_x = x - tcp_offset_1; /* rod 1: known part of its vector */
     const double root_of_radicand_a1 = softkin_lane_root(radicand_a1);
     const double a1_left = span_1_x - root_of_radicand_a1;
     const double rod_1_x_left = span_1_x - a1_left;
     const double rod_1_x_left_times_span_2_y = rod_1_x_left*span_2_y;
     const double type2_arms_aligned_left_right = quotient_in_type2_arms_aligned
-        *(rod_1_x_left_times_span_2_y - rod_2_x_right_times_span_1_y);
+        *(rod_1_x_left_times_span_2_y - span_1_y_times_rod_2_x_right);
     /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_left_right = type2_arms_aligned_left_right >= min_type2_margin ? 0 : 3;
     const double axis_a1_left = a1_left + offset_a1;
     const double axis_a2_right = a2_right + offset_a2;
     const double a2_left = span_2_x - root_of_radicand_a2;
     const double rod_2_x_left = span_2_x - a2_left;
-    const double rod_2_x_left_times_span_1_y = rod_2_x_left*span_1_y;
+    const double span_1_y_times_rod_2_x_left = rod_2_x_left*span_1_y;
     const double type2_arms_aligned_left_left = quotient_in_type2_arms_aligned
-        *(rod_1_x_left_times_span_2_y - rod_2_x_left_times_span_1_y);
+        *(rod_1_x_left_times_span_2_y - span_1_y_times_rod_2_x_left);
     /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_left_left = type2_arms_aligned_left_left >= min_type2_margin ? 0 : 3;
     const double axis_a2_left = a2_left + offset_a2;
@@ -110,12 +110,12 @@ void p2x_type1_regular_all(const void *machine, const softkin_lanes *given,
     const double rod_1_x_right = span_1_x - a1_right;
     const double rod_1_x_right_times_span_2_y = rod_1_x_right*span_2_y;
     const double type2_arms_aligned_right_right = quotient_in_type2_arms_aligned
-        *(rod_1_x_right_times_span_2_y - rod_2_x_right_times_span_1_y);
+        *(rod_1_x_right_times_span_2_y - span_1_y_times_rod_2_x_right);
     /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_right_right = type2_arms_aligned_right_right >= min_type2_margin ? 0 : 3;
     const double axis_a1_right = a1_right + offset_a1;
     const double type2_arms_aligned_right_left = quotient_in_type2_arms_aligned
-        *(rod_1_x_right_times_span_2_y - rod_2_x_left_times_span_1_y);
+        *(rod_1_x_right_times_span_2_y - span_1_y_times_rod_2_x_left);
     /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_right_left = type2_arms_aligned_right_left >= min_type2_margin ? 0 : 3;
     statuses[0][lane] = refusal_left_right;

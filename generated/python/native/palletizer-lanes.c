@@ -152,23 +152,16 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
     const double angle_a1_front = softkin_lane_angle(y, x);
     const double axis_a1_front = offset_a1 + angle_a1_front*SOFTKIN_RADIAN;
     const double arm_along_a2_front = link_length_1 - link_length_2*cos_swing_a3_from_a2_front;
-    const double arm_along_a2_front_times_wrist_z = arm_along_a2_front*wrist_z;
     /* sine squared, times the squared scale */
     const double sine_square_a3_from_a2_front = one_less_cos_a3_from_a2_front*one_plus_cos_a3_from_a2_front;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_a3_from_a2_front_up = softkin_lane_root(sine_square_a3_from_a2_front)
         *half_by_link_length_1_by_link_length_2;
     const double arm_across_a2_front_up = link_length_2*cos_a3_from_a2_front_up;
-    const double product_in_direction_x_a2_front_up = arm_across_a2_front_up*wrist_a1_radius_front;
-    /* rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_a2_front_up = arm_along_a2_front_times_wrist_z
-        + product_in_direction_x_a2_front_up;
-    const double arm_across_a2_front_up_times_wrist_z = arm_across_a2_front_up*wrist_z;
-    const double product_in_direction_y_a2_front_up = arm_along_a2_front*wrist_a1_radius_front;
-    const double direction_y_a2_front_up = product_in_direction_y_a2_front_up
-        - arm_across_a2_front_up_times_wrist_z;
-    const double angle_a2_front_up = softkin_lane_angle(direction_y_a2_front_up, direction_x_a2_front_up);
+    const double angle_of_arm_along_a2_front_up = softkin_lane_angle(arm_across_a2_front_up,
+        arm_along_a2_front);
+    const double angle_of_wrist_z_front = softkin_lane_angle(wrist_a1_radius_front, wrist_z);
+    const double angle_a2_front_up = angle_of_wrist_z_front - angle_of_arm_along_a2_front_up;
     const double axis_a2_front_up = offset_a2 + angle_a2_front_up*SOFTKIN_RADIAN;
     const double angle_a3_from_a2_front_up = softkin_lane_angle(cos_swing_a3_from_a2_front,
         cos_a3_from_a2_front_up);
@@ -178,14 +171,7 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
     const double angle_heading = softkin_lane_angle(heading_across, heading_along);
     /* cosine and sine of a4 from the cos heading and sin heading equations */
     const double axis_a4_front = offset_a4 + (angle_heading - angle_a1_front)*SOFTKIN_RADIAN;
-    /* rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_a2_front_down = arm_along_a2_front_times_wrist_z
-        - product_in_direction_x_a2_front_up;
-    const double direction_y_a2_front_down = arm_across_a2_front_up_times_wrist_z
-        + product_in_direction_y_a2_front_up;
-    const double angle_a2_front_down = softkin_lane_angle(direction_y_a2_front_down,
-        direction_x_a2_front_down);
+    const double angle_a2_front_down = angle_of_arm_along_a2_front_up + angle_of_wrist_z_front;
     const double axis_a2_front_down = offset_a2 + angle_a2_front_down*SOFTKIN_RADIAN;
     const double angle_a3_from_a2_front_down = 180.0*SOFTKIN_DEGREE - angle_a3_from_a2_front_up;
     /* a3 from the sum a3_from_a2 of angles about parallel axes */
@@ -203,22 +189,15 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
     const double refusal_back = fabs(cos_swing_a3_from_a2_back) <= 1.0000000000005 ? 0 : 3;
     const double axis_a1_back = 180.0 + axis_a1_front;
     const double arm_along_a2_back = link_length_1 - link_length_2*cos_swing_a3_from_a2_back;
-    const double arm_along_a2_back_times_wrist_z = arm_along_a2_back*wrist_z;
     /* sine squared, times the squared scale */
     const double sine_square_a3_from_a2_back = one_less_cos_a3_from_a2_back*one_plus_cos_a3_from_a2_back;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_a3_from_a2_back_up = softkin_lane_root(sine_square_a3_from_a2_back)
         *half_by_link_length_1_by_link_length_2;
     const double arm_across_a2_back_up = link_length_2*cos_a3_from_a2_back_up;
-    const double product_in_direction_x_a2_back_up = arm_across_a2_back_up*wrist_a1_radius_back;
-    /* rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_a2_back_up = arm_along_a2_back_times_wrist_z + product_in_direction_x_a2_back_up;
-    const double arm_across_a2_back_up_times_wrist_z = arm_across_a2_back_up*wrist_z;
-    const double product_in_direction_y_a2_back_up = arm_along_a2_back*wrist_a1_radius_back;
-    const double direction_y_a2_back_up = product_in_direction_y_a2_back_up
-        - arm_across_a2_back_up_times_wrist_z;
-    const double angle_a2_back_up = softkin_lane_angle(direction_y_a2_back_up, direction_x_a2_back_up);
+    const double angle_of_arm_along_a2_back_up = softkin_lane_angle(arm_across_a2_back_up, arm_along_a2_back);
+    const double angle_of_wrist_z_back = softkin_lane_angle(wrist_a1_radius_back, wrist_z);
+    const double angle_a2_back_up = angle_of_wrist_z_back - angle_of_arm_along_a2_back_up;
     const double axis_a2_back_up = offset_a2 + angle_a2_back_up*SOFTKIN_RADIAN;
     const double angle_a3_from_a2_back_up = softkin_lane_angle(cos_swing_a3_from_a2_back,
         cos_a3_from_a2_back_up);
@@ -226,13 +205,7 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
     const double axis_a3_back_up = offset_a3 + (angle_a2_back_up + angle_a3_from_a2_back_up)*SOFTKIN_RADIAN;
     /* cosine and sine of a4 from the cos heading and sin heading equations */
     const double axis_a4_back = 180.0 + axis_a4_front;
-    /* rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_a2_back_down = arm_along_a2_back_times_wrist_z
-        - product_in_direction_x_a2_back_up;
-    const double direction_y_a2_back_down = arm_across_a2_back_up_times_wrist_z
-        + product_in_direction_y_a2_back_up;
-    const double angle_a2_back_down = softkin_lane_angle(direction_y_a2_back_down, direction_x_a2_back_down);
+    const double angle_a2_back_down = angle_of_arm_along_a2_back_up + angle_of_wrist_z_back;
     const double axis_a2_back_down = offset_a2 + angle_a2_back_down*SOFTKIN_RADIAN;
     const double angle_a3_from_a2_back_down = 180.0*SOFTKIN_DEGREE - angle_a3_from_a2_back_up;
     /* a3 from the sum a3_from_a2 of angles about parallel axes */

@@ -94,29 +94,19 @@ void pcc_regular_all(const void *machine, const softkin_lanes *given,
     missed += fabs(cos_a2_from_a1) <= 1.0000000000005 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1;
-    const double arm_along_a1_times_x = arm_along_a1*x;
     /* sine squared, times the squared scale */
     const double sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1;
     const double sin_a2_from_a1_right = softkin_lane_root(sine_square_a2_from_a1)
         *half_by_link_length_1_by_link_length_2;
     const double arm_across_a1_right = link_length_2*sin_a2_from_a1_right;
-    const double arm_across_a1_right_times_y = arm_across_a1_right*y;
-    /* rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_a1_right = arm_across_a1_right_times_y + arm_along_a1_times_x;
-    const double arm_along_a1_times_y = arm_along_a1*y;
-    const double arm_across_a1_right_times_x = arm_across_a1_right*x;
-    const double direction_y_a1_right = arm_along_a1_times_y - arm_across_a1_right_times_x;
-    const double angle_a1_right = softkin_lane_angle(direction_y_a1_right, direction_x_a1_right);
+    const double angle_of_arm_along_a1_right = softkin_lane_angle(arm_across_a1_right, arm_along_a1);
+    const double angle_of_x = softkin_lane_angle(y, x);
+    const double angle_a1_right = angle_of_x - angle_of_arm_along_a1_right;
     const double axis_a1_right = offset_a1 + angle_a1_right*SOFTKIN_RADIAN;
     const double angle_a2_from_a1_right = softkin_lane_angle(sin_a2_from_a1_right, cos_a2_from_a1);
     /* a2 from the sum a2_from_a1 of angles about parallel axes */
     const double axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1_right)*SOFTKIN_RADIAN;
-    /* rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_a1_left = arm_along_a1_times_x - arm_across_a1_right_times_y;
-    const double direction_y_a1_left = arm_across_a1_right_times_x + arm_along_a1_times_y;
-    const double angle_a1_left = softkin_lane_angle(direction_y_a1_left, direction_x_a1_left);
+    const double angle_a1_left = angle_of_arm_along_a1_right + angle_of_x;
     const double axis_a1_left = offset_a1 + angle_a1_left*SOFTKIN_RADIAN;
     /* a2 from the sum a2_from_a1 of angles about parallel axes */
     const double axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1_right)*SOFTKIN_RADIAN;

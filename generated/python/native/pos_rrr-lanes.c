@@ -98,6 +98,7 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
       mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
       offset_a3 = k->offset_a3, rounding_q1 = k->rounding_q1, single_a1 = k->single_a1 ? 1.0 : 0.0,
       single_a2 = k->single_a2 ? 1.0 : 0.0, single_a3 = k->single_a3 ? 1.0 : 0.0;
+  const double angle_of_a3_by_effective_q3_2 = softkin_lane_angle(d4_by_effective_q3_2, a3_by_effective_q3_2);
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane],
@@ -107,18 +108,18 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double distance_q1 = softkin_lane_root(x*x + y*y);
     /* Pythagoras: square of the distance ahead of the axis */
     const double ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1);
+    /* near a fold */
+    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
     const double distance_q1_squared = distance_q1*distance_q1;
     /* q1: out of reach */
     missed += ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1 ? 0.0 : 1.0;
-    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
-    /* coordinate of the point that the remaining links must reach */
-    const double wrist_y_from_q1 = z - d1;
-    const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
     /* how far ahead of the axis the point is; negative: behind it */
     const double ahead_q1_before_q1_for_q3_front = softkin_lane_root(ahead_squared_q1);
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x_from_q1_front = ahead_q1_before_q1_for_q3_front - a1;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_y_from_q1 = z - d1;
+    const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
     /* distance that the remaining links must span */
     const double reach_front = softkin_lane_root(wrist_y_from_q1_squared
         + wrist_x_from_q1_front*wrist_x_from_q1_front);
@@ -131,6 +132,8 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
     missed += sum_q3_front > 0.0 ? 0.0 : 1.0;
+    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += reach_front > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x_from_q1_back = -a1 - ahead_q1_before_q1_for_q3_front;
     /* distance that the remaining links must span */
@@ -145,111 +148,66 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
     missed += sum_q3_back > 0.0 ? 0.0 : 1.0;
-    missed += reach_front > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += reach_back > machine_scale_times_free_angle ? 0.0 : 1.0;
-    const double cos_swing_q3_front = -(one_less_cos_q3_front - one_plus_cos_q3_front)/sum_q3_front;
+    const double cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/sum_q3_front;
     /* q3: out of reach */
     const double refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
     const double d3_times_y = d3*y;
     const double ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3_front*x;
-    const double one_by_distance_q1_squared = 1.0/distance_q1_squared;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
     const double cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)
-        *one_by_distance_q1_squared;
+        /distance_q1_squared;
     const double d3_times_x = d3*x;
     const double ahead_q1_before_q1_for_q3_front_times_y = ahead_q1_before_q1_for_q3_front*y;
     const double sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_y + d3_times_x)
-        *one_by_distance_q1_squared;
+        /distance_q1_squared;
     const double axis_a1_front = offset_a1
         + softkin_lane_angle(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*SOFTKIN_RADIAN;
     /* sine squared, times the squared scale */
     const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
-    const double sin_swing_q3_front_down = -2.0*softkin_lane_root(sine_square_q3_front)/sum_q3_front;
-    const double arm_along_q2_front_up = effective_q3_2*sin_swing_q3_front_down;
-    const double product_in_direction_x_q2_front_down = arm_along_q2_front_up*wrist_x_from_q1_front;
+    const double sin_swing_q3_front_up = 2.0*softkin_lane_root(sine_square_q3_front)/sum_q3_front;
+    const double arm_along_q2_front_down = effective_q3_2*sin_swing_q3_front_up;
     const double arm_across_q2_front = a2 + effective_q3_2*cos_swing_q3_front;
-    const double product_in_direction_x_q2_front_down_2 = arm_across_q2_front*wrist_y_from_q1;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_q2_front_down = product_in_direction_x_q2_front_down_2
-        - product_in_direction_x_q2_front_down;
-    const double product_in_direction_y_q2_front_down = arm_across_q2_front*wrist_x_from_q1_front;
-    const double product_in_direction_y_q2_front_down_2 = arm_along_q2_front_up*wrist_y_from_q1;
-    const double direction_y_q2_front_down = -product_in_direction_y_q2_front_down
-        - product_in_direction_y_q2_front_down_2;
-    const double axis_a2_front_down = offset_a2
-        + softkin_lane_angle(direction_y_q2_front_down, direction_x_q2_front_down)*SOFTKIN_RADIAN;
-    const double product_in_cos_q3_front_down = d4_by_effective_q3_2*sin_swing_q3_front_down;
-    const double product_in_cos_q3_front_down_2 = a3_by_effective_q3_2*cos_swing_q3_front;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_front_down = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
-    const double product_in_sin_q3_front_down = d4_by_effective_q3_2*cos_swing_q3_front;
-    const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2*sin_swing_q3_front_down;
-    const double sin_q3_front_down = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
-    const double axis_a3_front_down = offset_a3
-        + softkin_lane_angle(sin_q3_front_down, cos_q3_front_down)*SOFTKIN_RADIAN;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_q2_front_up = product_in_direction_x_q2_front_down
-        + product_in_direction_x_q2_front_down_2;
-    const double direction_y_q2_front_up = product_in_direction_y_q2_front_down_2
-        - product_in_direction_y_q2_front_down;
-    const double axis_a2_front_up = offset_a2
-        + softkin_lane_angle(direction_y_q2_front_up, direction_x_q2_front_up)*SOFTKIN_RADIAN;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_front_up = product_in_cos_q3_front_down + product_in_cos_q3_front_down_2;
-    const double sin_q3_front_up = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
-    const double axis_a3_front_up = offset_a3
-        + softkin_lane_angle(sin_q3_front_up, cos_q3_front_up)*SOFTKIN_RADIAN;
-    const double cos_swing_q3_back = -(one_less_cos_q3_back - one_plus_cos_q3_back)/sum_q3_back;
+    const double angle_of_arm_across_q2_front_down = softkin_lane_angle(arm_along_q2_front_down,
+        arm_across_q2_front);
+    const double angle_of_wrist_y_from_q1_front = softkin_lane_angle(wrist_x_from_q1_front, wrist_y_from_q1);
+    const double angle_q2_front_down = angle_of_arm_across_q2_front_down - angle_of_wrist_y_from_q1_front;
+    const double axis_a2_front_down = offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
+    const double angle_of_swing_q3_front_down = -softkin_lane_angle(sin_swing_q3_front_up,
+        cos_swing_q3_front);
+    const double angle_q3_front_down = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_front_down;
+    const double axis_a3_front_down = offset_a3 + angle_q3_front_down*SOFTKIN_RADIAN;
+    const double angle_q2_front_up = -angle_of_arm_across_q2_front_down - angle_of_wrist_y_from_q1_front;
+    const double axis_a2_front_up = offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
+    const double angle_q3_front_up = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_front_down;
+    const double axis_a3_front_up = offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
+    const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/sum_q3_back;
     /* q3: out of reach */
     const double refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3;
     /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
     const double cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)
-        *one_by_distance_q1_squared;
+        /distance_q1_squared;
     const double sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_front_times_y)
-        *one_by_distance_q1_squared;
+        /distance_q1_squared;
     const double axis_a1_back = offset_a1
         + softkin_lane_angle(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*SOFTKIN_RADIAN;
     /* sine squared, times the squared scale */
     const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
-    const double sin_swing_q3_back_down = -2.0*softkin_lane_root(sine_square_q3_back)/sum_q3_back;
-    const double arm_along_q2_back_up = effective_q3_2*sin_swing_q3_back_down;
-    const double product_in_direction_x_q2_back_down = arm_along_q2_back_up*wrist_x_from_q1_back;
+    const double sin_swing_q3_back_up = 2.0*softkin_lane_root(sine_square_q3_back)/sum_q3_back;
+    const double arm_along_q2_back_down = effective_q3_2*sin_swing_q3_back_up;
     const double arm_across_q2_back = a2 + effective_q3_2*cos_swing_q3_back;
-    const double arm_across_q2_back_times_wrist_y_from_q1 = arm_across_q2_back*wrist_y_from_q1;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_q2_back_down = arm_across_q2_back_times_wrist_y_from_q1
-        - product_in_direction_x_q2_back_down;
-    const double product_in_direction_y_q2_back_down = arm_across_q2_back*wrist_x_from_q1_back;
-    const double product_in_direction_y_q2_back_down_2 = arm_along_q2_back_up*wrist_y_from_q1;
-    const double direction_y_q2_back_down = -product_in_direction_y_q2_back_down
-        - product_in_direction_y_q2_back_down_2;
-    const double axis_a2_back_down = offset_a2
-        + softkin_lane_angle(direction_y_q2_back_down, direction_x_q2_back_down)*SOFTKIN_RADIAN;
-    const double product_in_cos_q3_back_down = d4_by_effective_q3_2*sin_swing_q3_back_down;
-    const double product_in_cos_q3_back_down_2 = a3_by_effective_q3_2*cos_swing_q3_back;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_back_down = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
-    const double product_in_sin_q3_back_down = d4_by_effective_q3_2*cos_swing_q3_back;
-    const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2*sin_swing_q3_back_down;
-    const double sin_q3_back_down = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
-    const double axis_a3_back_down = offset_a3
-        + softkin_lane_angle(sin_q3_back_down, cos_q3_back_down)*SOFTKIN_RADIAN;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_q2_back_up = arm_across_q2_back_times_wrist_y_from_q1
-        + product_in_direction_x_q2_back_down;
-    const double direction_y_q2_back_up = product_in_direction_y_q2_back_down_2
-        - product_in_direction_y_q2_back_down;
-    const double axis_a2_back_up = offset_a2
-        + softkin_lane_angle(direction_y_q2_back_up, direction_x_q2_back_up)*SOFTKIN_RADIAN;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_back_up = product_in_cos_q3_back_down + product_in_cos_q3_back_down_2;
-    const double sin_q3_back_up = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
-    const double axis_a3_back_up = offset_a3
-        + softkin_lane_angle(sin_q3_back_up, cos_q3_back_up)*SOFTKIN_RADIAN;
+    const double angle_of_arm_across_q2_back_down = softkin_lane_angle(arm_along_q2_back_down,
+        arm_across_q2_back);
+    const double angle_of_wrist_y_from_q1_back = softkin_lane_angle(wrist_x_from_q1_back, wrist_y_from_q1);
+    const double angle_q2_back_down = angle_of_arm_across_q2_back_down - angle_of_wrist_y_from_q1_back;
+    const double axis_a2_back_down = offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
+    const double angle_of_swing_q3_back_down = -softkin_lane_angle(sin_swing_q3_back_up, cos_swing_q3_back);
+    const double angle_q3_back_down = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_back_down;
+    const double axis_a3_back_down = offset_a3 + angle_q3_back_down*SOFTKIN_RADIAN;
+    const double angle_q2_back_up = -angle_of_arm_across_q2_back_down - angle_of_wrist_y_from_q1_back;
+    const double axis_a2_back_up = offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
+    const double angle_q3_back_up = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_back_down;
+    const double axis_a3_back_up = offset_a3 + angle_q3_back_up*SOFTKIN_RADIAN;
     near[0][lane] = single_a1 > 0.0 ? mid_a1 : ref_a1;
     near[1][lane] = single_a2 > 0.0 ? mid_a2 : ref_a2;
     near[2][lane] = single_a3 > 0.0 ? mid_a3 : ref_a3;

@@ -128,19 +128,13 @@ void scara3_zccc_regular_all(const void *machine, const softkin_lanes *given,
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double axis_a1 = offset_a1 + z;
     const double arm_along_a2 = link_length_1 + link_length_2*cos_a3;
-    const double arm_along_a2_times_wrist_x = arm_along_a2*wrist_x;
     /* sine squared, times the squared scale */
     const double sine_square_a3 = one_less_cos_a3*one_plus_cos_a3;
     const double sin_a3_right = softkin_lane_root(sine_square_a3)*half_by_link_length_1_by_link_length_2;
     const double arm_across_a2_right = link_length_2*sin_a3_right;
-    const double arm_across_a2_right_times_wrist_y = arm_across_a2_right*wrist_y;
-    /* rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_a2_right = arm_across_a2_right_times_wrist_y + arm_along_a2_times_wrist_x;
-    const double arm_along_a2_times_wrist_y = arm_along_a2*wrist_y;
-    const double arm_across_a2_right_times_wrist_x = arm_across_a2_right*wrist_x;
-    const double direction_y_a2_right = arm_along_a2_times_wrist_y - arm_across_a2_right_times_wrist_x;
-    const double angle_a2_right = softkin_lane_angle(direction_y_a2_right, direction_x_a2_right);
+    const double angle_of_arm_along_a2_right = softkin_lane_angle(arm_across_a2_right, arm_along_a2);
+    const double angle_of_wrist_x = softkin_lane_angle(wrist_y, wrist_x);
+    const double angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2_right;
     const double axis_a2_right = offset_a2 + angle_a2_right*SOFTKIN_RADIAN;
     const double angle_a3_right = softkin_lane_angle(sin_a3_right, cos_a3);
     const double quotient_in_axis_a3_right = angle_a3_right*SOFTKIN_RADIAN;
@@ -148,11 +142,7 @@ void scara3_zccc_regular_all(const void *machine, const softkin_lanes *given,
     const double angle_heading = softkin_lane_angle(sin_heading, cos_heading);
     /* a4 from the sum a234 of angles about parallel axes */
     const double axis_a4_right = offset_a4 + (angle_heading - angle_a2_right - angle_a3_right)*SOFTKIN_RADIAN;
-    /* rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
-    const double direction_x_a2_left = arm_along_a2_times_wrist_x - arm_across_a2_right_times_wrist_y;
-    const double direction_y_a2_left = arm_across_a2_right_times_wrist_x + arm_along_a2_times_wrist_y;
-    const double angle_a2_left = softkin_lane_angle(direction_y_a2_left, direction_x_a2_left);
+    const double angle_a2_left = angle_of_arm_along_a2_right + angle_of_wrist_x;
     const double axis_a2_left = offset_a2 + angle_a2_left*SOFTKIN_RADIAN;
     const double axis_a3_left = offset_a3 - quotient_in_axis_a3_right;
     /* a4 from the sum a234 of angles about parallel axes */

@@ -70,30 +70,32 @@ void tabletable_ac_regular_all(const void *machine, const softkin_lanes *given,
     /* polar coordinates: the radius at angle c */
     const double radius_c = softkin_lane_root(r13*r13 + r23*r23);
     missed += radius_c > 1e-11 ? 0.0 : 1.0;
-    const double cos_c_positive = r23/radius_c; /* where it is singular: the angle of the reference */
-    const double sin_c_positive = r13/radius_c;
-    const double x_from_c_negative = y*sin_c_positive - x*cos_c_positive;
-    const double axis_x_positive = offset_x - x_from_c_negative;
-    const double y_from_c_positive = y*cos_c_positive + x*sin_c_positive;
-    const double pivot_y_plus_y_from_c_positive = pivot_y + y_from_c_positive;
+    const double r23_by_radius_c = r23/radius_c;
+    const double r13_by_radius_c = r13/radius_c;
+    const double x_from_c_positive = r23_by_radius_c*x - r13_by_radius_c*y;
+    const double axis_x_positive = offset_x + x_from_c_positive;
     const double pivot_z_plus_z = pivot_z + z;
     const double radius_c_times_pivot_z_plus_z = pivot_z_plus_z*radius_c;
+    const double y_from_c_positive = r13_by_radius_c*x + r23_by_radius_c*y;
+    const double pivot_y_plus_y_from_c_positive = pivot_y + y_from_c_positive;
     const double y_from_c_a_positive = pivot_y_plus_y_from_c_positive*r33 - radius_c_times_pivot_z_plus_z;
     const double axis_y_positive = offset_y + y_from_c_a_positive;
-    const double pivot_z_plus_z_times_r33 = pivot_z_plus_z*r33;
-    const double z_from_c_a_positive = pivot_z_plus_z_times_r33 + pivot_y_plus_y_from_c_positive*radius_c;
+    const double r33_times_pivot_z_plus_z = pivot_z_plus_z*r33;
+    const double z_from_c_a_positive = r33_times_pivot_z_plus_z + pivot_y_plus_y_from_c_positive*radius_c;
     /* joint_z from the z_from_c_a equation, which is linear in it */
     const double joint_z_positive = tool_length + z_from_c_a_positive;
     const double axis_z_positive = joint_z_positive + offset_z;
     const double quotient_in_axis_a_positive = softkin_lane_angle(radius_c, r33)*SOFTKIN_RADIAN;
     const double axis_a_positive = offset_a + quotient_in_axis_a_positive;
     const double axis_c_positive = offset_c
-        + softkin_lane_angle(sin_c_positive, cos_c_positive)*SOFTKIN_RADIAN;
+        + softkin_lane_angle(r13_by_radius_c, r23_by_radius_c)*SOFTKIN_RADIAN;
+    const double x_from_c_negative = -x_from_c_positive;
     const double axis_x_negative = offset_x + x_from_c_negative;
-    const double pivot_y_plus_y_from_c_negative = pivot_y - y_from_c_positive;
+    const double y_from_c_negative = -y_from_c_positive;
+    const double pivot_y_plus_y_from_c_negative = pivot_y + y_from_c_negative;
     const double y_from_c_a_negative = radius_c_times_pivot_z_plus_z + pivot_y_plus_y_from_c_negative*r33;
     const double axis_y_negative = offset_y + y_from_c_a_negative;
-    const double z_from_c_a_negative = pivot_z_plus_z_times_r33 - pivot_y_plus_y_from_c_negative*radius_c;
+    const double z_from_c_a_negative = r33_times_pivot_z_plus_z - pivot_y_plus_y_from_c_negative*radius_c;
     /* joint_z from the z_from_c_a equation, which is linear in it */
     const double joint_z_negative = tool_length + z_from_c_a_negative;
     const double axis_z_negative = joint_z_negative + offset_z;

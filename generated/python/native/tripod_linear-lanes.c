@@ -110,59 +110,60 @@ void tripod_linear_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   (void)near;
   const tripod_linear_machine *k = machine;
-  const double arm_length_squared = k->arm_length_squared,
+  const double arm_length = k->arm_length, arm_length_squared = k->arm_length_squared,
       arm_length_squared_times_rounding = k->arm_length_squared_times_rounding,
       cos_rail_angle = k->cos_rail_angle, cos_rail_angle_squared = k->cos_rail_angle_squared,
       cos_rail_angle_times_sin_rail_angle = k->cos_rail_angle_times_sin_rail_angle,
       half_by_arm_length = k->half_by_arm_length, half_sin_rail_angle = k->half_sin_rail_angle,
-      inner_radius_minus_outer_radius = k->inner_radius_minus_outer_radius,
+      inner_radius = k->inner_radius, inner_radius_minus_outer_radius = k->inner_radius_minus_outer_radius,
       min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
       offset_a3 = k->offset_a3, one_by_arm_length = k->one_by_arm_length,
-      one_minus_sin_rail_angle_squared = k->one_minus_sin_rail_angle_squared,
-      product_in_pivot_2_y = k->product_in_pivot_2_y, product_in_radicand_a1 = k->product_in_radicand_a1,
-      product_in_radicand_a2 = k->product_in_radicand_a2,
-      product_in_radicand_a2_2 = k->product_in_radicand_a2_2,
-      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar,
-      root_of_3_times_half_by_arm_length = k->root_of_3_times_half_by_arm_length,
+      one_minus_sin_rail_angle_squared = k->one_minus_sin_rail_angle_squared, outer_radius = k->outer_radius,
+      product_in_radicand_a1 = k->product_in_radicand_a1,
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar, root_of_3 = k->root_of_3,
       sin_max_angle_ball_joint = k->sin_max_angle_ball_joint, sin_rail_angle = k->sin_rail_angle,
       sin_rail_angle_squared_times_1_by_4 = k->sin_rail_angle_squared_times_1_by_4,
-      sum_in_pivot_2_x = k->sum_in_pivot_2_x, sum_in_pivot_2_y = k->sum_in_pivot_2_y,
-      sum_in_radicand_a2 = k->sum_in_radicand_a2;
+      sum_in_pivot_2_x = k->sum_in_pivot_2_x, sum_in_radicand_a2 = k->sum_in_radicand_a2;
+  const double sum_in_span_2_y = 0.5*outer_radius*root_of_3 - 0.5*inner_radius*root_of_3;
+  const double product_in_radicand_a2_3 = root_of_3*cos_rail_angle*sin_rail_angle;
+  const double product_in_radicand_a2_4 = 0.5*root_of_3*sin_rail_angle*sin_rail_angle;
+  const double product_in_middle_a2 = 0.5*root_of_3*sin_rail_angle;
+  const double root_of_3_times_half_by_arm_length_2 = 0.5*root_of_3/arm_length;
   const double one_minus_cos_rail_angle_squared = 1.0 - cos_rail_angle_squared;
-  const double sum_in_radicand_a2_3_2 = 1.0 - sin_rail_angle_squared_times_1_by_4;
+  const double sum_in_radicand_a2_2 = 1.0 - sin_rail_angle_squared_times_1_by_4;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane];
     double missed = misses[lane];
     const double span_1_x = x - inner_radius_minus_outer_radius; /* rod 1: known part of its vector */
-    const double z_minus_cos_rail_angle_squared_times_z = one_minus_cos_rail_angle_squared*z;
+    const double one_minus_cos_rail_angle_squared_times_z = one_minus_cos_rail_angle_squared*z;
     /* quadratic equation for a1: rod 1 */
     const double radicand_a1 = arm_length_squared
-        + (product_in_radicand_a1*span_1_x - z_minus_cos_rail_angle_squared_times_z)*z - y*y
+        + (product_in_radicand_a1*span_1_x - one_minus_cos_rail_angle_squared_times_z)*z - y*y
         - one_minus_sin_rail_angle_squared*span_1_x*span_1_x;
     /* rod 1 cannot reach */
     missed += radicand_a1 >= -arm_length_squared_times_rounding ? 0.0 : 1.0;
     const double span_2_x = x - sum_in_pivot_2_x; /* rod 2: known part of its vector */
-    const double span_2_y = y - sum_in_pivot_2_y;
-    const double sum_in_radicand_a2_2 = z_minus_cos_rail_angle_squared_times_z
+    const double span_2_y = sum_in_span_2_y + y;
+    const double sum_in_radicand_a2_3 = one_minus_cos_rail_angle_squared_times_z
         + span_2_x*cos_rail_angle_times_sin_rail_angle;
-    const double sum_in_radicand_a2_3 = span_2_x*sum_in_radicand_a2_3_2;
+    const double sum_in_radicand_a2_2_times_span_2_x = span_2_x*sum_in_radicand_a2_2;
     /* quadratic equation for a2: rod 2 */
     const double radicand_a2 = arm_length_squared
-        + (product_in_radicand_a2*span_2_y - sum_in_radicand_a2_2)*z
-        - (sum_in_radicand_a2_3 + product_in_radicand_a2_2*span_2_y)*span_2_x
-        - span_2_y*span_2_y*sum_in_radicand_a2;
+        + (-sum_in_radicand_a2_2_times_span_2_x - product_in_radicand_a2_4*span_2_y)*span_2_x
+        + (product_in_radicand_a2_3*span_2_y - sum_in_radicand_a2_3)*z - span_2_y*span_2_y*sum_in_radicand_a2;
     /* rod 2 cannot reach */
     missed += radicand_a2 >= -arm_length_squared_times_rounding ? 0.0 : 1.0;
-    const double span_3_y = sum_in_pivot_2_y + y;
+    const double span_3_y = y - sum_in_span_2_y;
     /* quadratic equation for a3: rod 3 */
     const double radicand_a3 = arm_length_squared
-        + (product_in_radicand_a2_2*span_3_y - sum_in_radicand_a2_3)*span_2_x
-        - (sum_in_radicand_a2_2 + product_in_radicand_a2*span_3_y)*z - span_3_y*span_3_y*sum_in_radicand_a2;
+        + (product_in_radicand_a2_4*span_3_y - sum_in_radicand_a2_2_times_span_2_x)*span_2_x
+        + (-sum_in_radicand_a2_3 - product_in_radicand_a2_3*span_3_y)*z
+        - span_3_y*span_3_y*sum_in_radicand_a2;
     /* rod 3 cannot reach */
     missed += radicand_a3 >= -arm_length_squared_times_rounding ? 0.0 : 1.0;
     /* ball joint of rod 1 */
     missed += fabs(y)*one_by_arm_length <= sin_max_angle_ball_joint ? 0.0 : 1.0;
-    const double shared_product = root_of_3_times_half_by_arm_length*x;
+    const double shared_product = root_of_3_times_half_by_arm_length_2*x;
     const double half_by_arm_length_times_y = half_by_arm_length*y;
     /* ball joint of rod 2 */
     missed += fabs(half_by_arm_length_times_y + shared_product) <= sin_max_angle_ball_joint ? 0.0 : 1.0;
@@ -176,29 +177,29 @@ void tripod_linear_regular_all(const void *machine, const softkin_lanes *given,
     const double pivot_1_z_below = -a1_below*cos_rail_angle;
     const double rod_1_z_below = z - pivot_1_z_below;
     const double sum_in_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle*span_2_x;
-    const double middle_a2 = -sum_in_middle_a2 - product_in_pivot_2_y*span_2_y;
+    const double middle_a2 = -sum_in_middle_a2 - product_in_middle_a2*span_2_y;
     const double root_of_radicand_a2 = softkin_lane_root(radicand_a2);
     const double a2_below = middle_a2 + root_of_radicand_a2;
     const double rod_2_x_below = span_2_x - a2_below*half_sin_rail_angle;
     const double pivot_2_z_below = -a2_below*cos_rail_angle;
     const double rod_2_z_below = z - pivot_2_z_below;
-    const double middle_a3 = product_in_pivot_2_y*span_3_y - sum_in_middle_a2;
+    const double middle_a3 = product_in_middle_a2*span_3_y - sum_in_middle_a2;
     const double root_of_radicand_a3 = softkin_lane_root(radicand_a3);
     const double a3_below = middle_a3 + root_of_radicand_a3;
     const double rod_3_x_below = span_2_x - a3_below*half_sin_rail_angle;
     const double pivot_3_z_below = -a3_below*cos_rail_angle;
     const double rod_3_z_below = z - pivot_3_z_below;
-    const double product_in_type2_rods_coplanar_below_below_below = (rod_2_z_below*rod_3_x_below
-        - rod_2_x_below*rod_3_z_below)*y;
-    const double rod_2_y_below = span_2_y + a2_below*product_in_pivot_2_y;
-    const double rod_3_y_below = span_3_y - a3_below*product_in_pivot_2_y;
-    const double sum_in_type2_rods_coplanar_below_below_below = rod_2_y_below*rod_3_x_below
-        - rod_2_x_below*rod_3_y_below;
-    const double sum_in_type2_rods_coplanar_below_below_below_2 = rod_2_z_below*rod_3_y_below
-        - rod_2_y_below*rod_3_z_below;
-    const double type2_rods_coplanar_below_below_below = -(rod_1_x_below
-        *sum_in_type2_rods_coplanar_below_below_below_2
-        + rod_1_z_below*sum_in_type2_rods_coplanar_below_below_below
+    const double product_in_type2_rods_coplanar_below_below_below = (rod_2_x_below*rod_3_z_below
+        - rod_2_z_below*rod_3_x_below)*y;
+    const double rod_2_y_below = span_2_y + a2_below*product_in_middle_a2;
+    const double rod_3_y_below = span_3_y - a3_below*product_in_middle_a2;
+    const double sum_in_type2_rods_coplanar_below_below_below = rod_2_y_below*rod_3_z_below
+        - rod_2_z_below*rod_3_y_below;
+    const double sum_in_type2_rods_coplanar_below_below_below_2 = rod_2_x_below*rod_3_y_below
+        - rod_2_y_below*rod_3_x_below;
+    const double type2_rods_coplanar_below_below_below = (rod_1_x_below
+        *sum_in_type2_rods_coplanar_below_below_below
+        + rod_1_z_below*sum_in_type2_rods_coplanar_below_below_below_2
         - product_in_type2_rods_coplanar_below_below_below)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_below_below_below = type2_rods_coplanar_below_below_below >= min_type2_margin ? 0
@@ -210,16 +211,16 @@ void tripod_linear_regular_all(const void *machine, const softkin_lanes *given,
     const double rod_3_x_above = span_2_x - a3_above*half_sin_rail_angle;
     const double pivot_3_z_above = -a3_above*cos_rail_angle;
     const double rod_3_z_above = z - pivot_3_z_above;
-    const double product_in_type2_rods_coplanar_below_below_above = (rod_2_z_below*rod_3_x_above
-        - rod_2_x_below*rod_3_z_above)*y;
-    const double rod_3_y_above = span_3_y - a3_above*product_in_pivot_2_y;
-    const double sum_in_type2_rods_coplanar_below_below_above = rod_2_y_below*rod_3_x_above
-        - rod_2_x_below*rod_3_y_above;
-    const double sum_in_type2_rods_coplanar_below_below_above_2 = rod_2_z_below*rod_3_y_above
-        - rod_2_y_below*rod_3_z_above;
-    const double type2_rods_coplanar_below_below_above = -(rod_1_x_below
-        *sum_in_type2_rods_coplanar_below_below_above_2
-        + rod_1_z_below*sum_in_type2_rods_coplanar_below_below_above
+    const double product_in_type2_rods_coplanar_below_below_above = (rod_2_x_below*rod_3_z_above
+        - rod_2_z_below*rod_3_x_above)*y;
+    const double rod_3_y_above = span_3_y - a3_above*product_in_middle_a2;
+    const double sum_in_type2_rods_coplanar_below_below_above = rod_2_y_below*rod_3_z_above
+        - rod_2_z_below*rod_3_y_above;
+    const double sum_in_type2_rods_coplanar_below_below_above_2 = rod_2_x_below*rod_3_y_above
+        - rod_2_y_below*rod_3_x_above;
+    const double type2_rods_coplanar_below_below_above = (rod_1_x_below
+        *sum_in_type2_rods_coplanar_below_below_above
+        + rod_1_z_below*sum_in_type2_rods_coplanar_below_below_above_2
         - product_in_type2_rods_coplanar_below_below_above)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_below_below_above = type2_rods_coplanar_below_below_above >= min_type2_margin ? 0
@@ -229,30 +230,30 @@ void tripod_linear_regular_all(const void *machine, const softkin_lanes *given,
     const double rod_2_x_above = span_2_x - a2_above*half_sin_rail_angle;
     const double pivot_2_z_above = -a2_above*cos_rail_angle;
     const double rod_2_z_above = z - pivot_2_z_above;
-    const double product_in_type2_rods_coplanar_below_above_below = (rod_2_z_above*rod_3_x_below
-        - rod_2_x_above*rod_3_z_below)*y;
-    const double rod_2_y_above = span_2_y + a2_above*product_in_pivot_2_y;
-    const double sum_in_type2_rods_coplanar_below_above_below = rod_2_y_above*rod_3_x_below
-        - rod_2_x_above*rod_3_y_below;
-    const double sum_in_type2_rods_coplanar_below_above_below_2 = rod_2_z_above*rod_3_y_below
-        - rod_2_y_above*rod_3_z_below;
-    const double type2_rods_coplanar_below_above_below = -(rod_1_x_below
-        *sum_in_type2_rods_coplanar_below_above_below_2
-        + rod_1_z_below*sum_in_type2_rods_coplanar_below_above_below
+    const double product_in_type2_rods_coplanar_below_above_below = (rod_2_x_above*rod_3_z_below
+        - rod_2_z_above*rod_3_x_below)*y;
+    const double rod_2_y_above = span_2_y + a2_above*product_in_middle_a2;
+    const double sum_in_type2_rods_coplanar_below_above_below = rod_2_y_above*rod_3_z_below
+        - rod_2_z_above*rod_3_y_below;
+    const double sum_in_type2_rods_coplanar_below_above_below_2 = rod_2_x_above*rod_3_y_below
+        - rod_2_y_above*rod_3_x_below;
+    const double type2_rods_coplanar_below_above_below = (rod_1_x_below
+        *sum_in_type2_rods_coplanar_below_above_below
+        + rod_1_z_below*sum_in_type2_rods_coplanar_below_above_below_2
         - product_in_type2_rods_coplanar_below_above_below)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_below_above_below = type2_rods_coplanar_below_above_below >= min_type2_margin ? 0
         : 3;
     const double axis_a2_above = a2_above + offset_a2;
-    const double product_in_type2_rods_coplanar_below_above_above = (rod_2_z_above*rod_3_x_above
-        - rod_2_x_above*rod_3_z_above)*y;
-    const double sum_in_type2_rods_coplanar_below_above_above = rod_2_y_above*rod_3_x_above
-        - rod_2_x_above*rod_3_y_above;
-    const double sum_in_type2_rods_coplanar_below_above_above_2 = rod_2_z_above*rod_3_y_above
-        - rod_2_y_above*rod_3_z_above;
-    const double type2_rods_coplanar_below_above_above = -(rod_1_x_below
-        *sum_in_type2_rods_coplanar_below_above_above_2
-        + rod_1_z_below*sum_in_type2_rods_coplanar_below_above_above
+    const double product_in_type2_rods_coplanar_below_above_above = (rod_2_x_above*rod_3_z_above
+        - rod_2_z_above*rod_3_x_above)*y;
+    const double sum_in_type2_rods_coplanar_below_above_above = rod_2_y_above*rod_3_z_above
+        - rod_2_z_above*rod_3_y_above;
+    const double sum_in_type2_rods_coplanar_below_above_above_2 = rod_2_x_above*rod_3_y_above
+        - rod_2_y_above*rod_3_x_above;
+    const double type2_rods_coplanar_below_above_above = (rod_1_x_below
+        *sum_in_type2_rods_coplanar_below_above_above
+        + rod_1_z_below*sum_in_type2_rods_coplanar_below_above_above_2
         - product_in_type2_rods_coplanar_below_above_above)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_below_above_above = type2_rods_coplanar_below_above_above >= min_type2_margin ? 0
@@ -261,31 +262,31 @@ void tripod_linear_regular_all(const void *machine, const softkin_lanes *given,
     const double rod_1_x_above = span_1_x + a1_above*sin_rail_angle;
     const double pivot_1_z_above = -a1_above*cos_rail_angle;
     const double rod_1_z_above = z - pivot_1_z_above;
-    const double type2_rods_coplanar_above_below_below = -(rod_1_x_above
-        *sum_in_type2_rods_coplanar_below_below_below_2
-        + rod_1_z_above*sum_in_type2_rods_coplanar_below_below_below
+    const double type2_rods_coplanar_above_below_below = (rod_1_x_above
+        *sum_in_type2_rods_coplanar_below_below_below
+        + rod_1_z_above*sum_in_type2_rods_coplanar_below_below_below_2
         - product_in_type2_rods_coplanar_below_below_below)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_above_below_below = type2_rods_coplanar_above_below_below >= min_type2_margin ? 0
         : 3;
     const double axis_a1_above = a1_above + offset_a1;
-    const double type2_rods_coplanar_above_below_above = -(rod_1_x_above
-        *sum_in_type2_rods_coplanar_below_below_above_2
-        + rod_1_z_above*sum_in_type2_rods_coplanar_below_below_above
+    const double type2_rods_coplanar_above_below_above = (rod_1_x_above
+        *sum_in_type2_rods_coplanar_below_below_above
+        + rod_1_z_above*sum_in_type2_rods_coplanar_below_below_above_2
         - product_in_type2_rods_coplanar_below_below_above)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_above_below_above = type2_rods_coplanar_above_below_above >= min_type2_margin ? 0
         : 3;
-    const double type2_rods_coplanar_above_above_below = -(rod_1_x_above
-        *sum_in_type2_rods_coplanar_below_above_below_2
-        + rod_1_z_above*sum_in_type2_rods_coplanar_below_above_below
+    const double type2_rods_coplanar_above_above_below = (rod_1_x_above
+        *sum_in_type2_rods_coplanar_below_above_below
+        + rod_1_z_above*sum_in_type2_rods_coplanar_below_above_below_2
         - product_in_type2_rods_coplanar_below_above_below)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_above_above_below = type2_rods_coplanar_above_above_below >= min_type2_margin ? 0
         : 3;
-    const double type2_rods_coplanar_above_above_above = -(rod_1_x_above
-        *sum_in_type2_rods_coplanar_below_above_above_2
-        + rod_1_z_above*sum_in_type2_rods_coplanar_below_above_above
+    const double type2_rods_coplanar_above_above_above = (rod_1_x_above
+        *sum_in_type2_rods_coplanar_below_above_above
+        + rod_1_z_above*sum_in_type2_rods_coplanar_below_above_above_2
         - product_in_type2_rods_coplanar_below_above_above)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_above_above_above = type2_rods_coplanar_above_above_above >= min_type2_margin ? 0

@@ -83,27 +83,24 @@ void tripod_p3z_regular_all(const void *machine, const softkin_lanes *given,
       min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
       offset_a3 = k->offset_a3, pivot_1_x = k->pivot_1_x, pivot_1_y = k->pivot_1_y, pivot_2_x = k->pivot_2_x,
       pivot_2_y = k->pivot_2_y, pivot_3_x = k->pivot_3_x, pivot_3_y = k->pivot_3_y,
-      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar,
-      sum_in_span_1_x = k->sum_in_span_1_x, sum_in_span_1_y = k->sum_in_span_1_y,
-      sum_in_span_2_x = k->sum_in_span_2_x, sum_in_span_2_y = k->sum_in_span_2_y,
-      sum_in_span_3_x = k->sum_in_span_3_x, sum_in_span_3_y = k->sum_in_span_3_y;
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane];
     double missed = misses[lane];
-    const double span_1_x = x - sum_in_span_1_x; /* rod 1: known part of its vector */
-    const double span_1_y = y - sum_in_span_1_y;
+    const double span_1_x = x - pivot_1_x; /* rod 1: known part of its vector */
+    const double span_1_y = y - pivot_1_y;
     /* quadratic equation for a1: rod 1 */
     const double radicand_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y;
     /* rod 1 cannot reach */
     missed += radicand_a1 >= -arm_length_squared_times_rounding ? 0.0 : 1.0;
-    const double span_2_x = x - sum_in_span_2_x; /* rod 2: known part of its vector */
-    const double span_2_y = y - sum_in_span_2_y;
+    const double span_2_x = x - pivot_2_x; /* rod 2: known part of its vector */
+    const double span_2_y = y - pivot_2_y;
     /* quadratic equation for a2: rod 2 */
     const double radicand_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y;
     /* rod 2 cannot reach */
     missed += radicand_a2 >= -arm_length_squared_times_rounding ? 0.0 : 1.0;
-    const double span_3_x = x - sum_in_span_3_x; /* rod 3: known part of its vector */
-    const double span_3_y = y - sum_in_span_3_y;
+    const double span_3_x = x - pivot_3_x; /* rod 3: known part of its vector */
+    const double span_3_y = y - pivot_3_y;
     /* quadratic equation for a3: rod 3 */
     const double radicand_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y;
     /* rod 3 cannot reach */
@@ -115,7 +112,7 @@ void tripod_p3z_regular_all(const void *machine, const softkin_lanes *given,
     const double rod_2_y = y - pivot_2_y;
     const double rod_3_x = x - pivot_3_x;
     const double rod_3_y = y - pivot_3_y;
-    const double sum_in_type2_rods_coplanar_above_above_above = rod_2_y*rod_3_x - rod_2_x*rod_3_y;
+    const double sum_in_type2_rods_coplanar_above_above_above = rod_2_x*rod_3_y - rod_2_y*rod_3_x;
     const double product_in_type2_rods_coplanar_above_above_above = rod_1_z_above
         *sum_in_type2_rods_coplanar_above_above_above;
     const double rod_1_x = x - pivot_1_x;
@@ -123,18 +120,18 @@ void tripod_p3z_regular_all(const void *machine, const softkin_lanes *given,
     const double root_of_radicand_a2 = softkin_lane_root(radicand_a2);
     const double a2_above = root_of_radicand_a2 + z;
     const double rod_2_z_above = z - a2_above;
-    const double rod_2_z_above_times_rod_3_x = rod_2_z_above*rod_3_x;
+    const double rod_2_z_above_times_rod_3_y = rod_2_z_above*rod_3_y;
     const double root_of_radicand_a3 = softkin_lane_root(radicand_a3);
     const double a3_above = root_of_radicand_a3 + z;
     const double rod_3_z_above = z - a3_above;
-    const double rod_2_x_times_rod_3_z_above = rod_2_x*rod_3_z_above;
     const double rod_2_y_times_rod_3_z_above = rod_2_y*rod_3_z_above;
-    const double rod_2_z_above_times_rod_3_y = rod_2_z_above*rod_3_y;
-    const double sum_in_type2_rods_coplanar_above_above_above_2 = rod_1_x
-        *(rod_2_y_times_rod_3_z_above - rod_2_z_above_times_rod_3_y)
-        + (rod_2_z_above_times_rod_3_x - rod_2_x_times_rod_3_z_above)*rod_1_y;
-    const double type2_rods_coplanar_above_above_above = (sum_in_type2_rods_coplanar_above_above_above_2
-        - product_in_type2_rods_coplanar_above_above_above)*quotient_in_type2_rods_coplanar;
+    const double rod_2_x_times_rod_3_z_above = rod_2_x*rod_3_z_above;
+    const double rod_2_z_above_times_rod_3_x = rod_2_z_above*rod_3_x;
+    const double sum_in_type2_rods_coplanar_above_above_above_2 = (rod_2_z_above_times_rod_3_y
+        - rod_2_y_times_rod_3_z_above)*rod_1_x
+        + rod_1_y*(rod_2_x_times_rod_3_z_above - rod_2_z_above_times_rod_3_x);
+    const double type2_rods_coplanar_above_above_above = (product_in_type2_rods_coplanar_above_above_above
+        - sum_in_type2_rods_coplanar_above_above_above_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_above_above_above = type2_rods_coplanar_above_above_above >= min_type2_margin ? 0
         : 3;
@@ -143,34 +140,34 @@ void tripod_p3z_regular_all(const void *machine, const softkin_lanes *given,
     const double axis_a3_above = a3_above + offset_a3;
     const double a3_below = z - root_of_radicand_a3;
     const double rod_3_z_below = z - a3_below;
-    const double rod_2_x_times_rod_3_z_below = rod_2_x*rod_3_z_below;
     const double rod_2_y_times_rod_3_z_below = rod_2_y*rod_3_z_below;
-    const double sum_in_type2_rods_coplanar_above_above_below = rod_1_x
-        *(rod_2_y_times_rod_3_z_below - rod_2_z_above_times_rod_3_y)
-        + (rod_2_z_above_times_rod_3_x - rod_2_x_times_rod_3_z_below)*rod_1_y;
-    const double type2_rods_coplanar_above_above_below = (sum_in_type2_rods_coplanar_above_above_below
-        - product_in_type2_rods_coplanar_above_above_above)*quotient_in_type2_rods_coplanar;
+    const double rod_2_x_times_rod_3_z_below = rod_2_x*rod_3_z_below;
+    const double sum_in_type2_rods_coplanar_above_above_below = (rod_2_z_above_times_rod_3_y
+        - rod_2_y_times_rod_3_z_below)*rod_1_x
+        + rod_1_y*(rod_2_x_times_rod_3_z_below - rod_2_z_above_times_rod_3_x);
+    const double type2_rods_coplanar_above_above_below = (product_in_type2_rods_coplanar_above_above_above
+        - sum_in_type2_rods_coplanar_above_above_below)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_above_above_below = type2_rods_coplanar_above_above_below >= min_type2_margin ? 0
         : 3;
     const double axis_a3_below = a3_below + offset_a3;
     const double a2_below = z - root_of_radicand_a2;
     const double rod_2_z_below = z - a2_below;
-    const double rod_2_z_below_times_rod_3_x = rod_2_z_below*rod_3_x;
     const double rod_2_z_below_times_rod_3_y = rod_2_z_below*rod_3_y;
-    const double sum_in_type2_rods_coplanar_above_below_above = (rod_2_z_below_times_rod_3_y
-        - rod_2_y_times_rod_3_z_above)*rod_1_x
-        + rod_1_y*(rod_2_x_times_rod_3_z_above - rod_2_z_below_times_rod_3_x);
-    const double type2_rods_coplanar_above_below_above = -(product_in_type2_rods_coplanar_above_above_above
+    const double rod_2_z_below_times_rod_3_x = rod_2_z_below*rod_3_x;
+    const double sum_in_type2_rods_coplanar_above_below_above = rod_1_x
+        *(rod_2_y_times_rod_3_z_above - rod_2_z_below_times_rod_3_y)
+        + (rod_2_z_below_times_rod_3_x - rod_2_x_times_rod_3_z_above)*rod_1_y;
+    const double type2_rods_coplanar_above_below_above = (product_in_type2_rods_coplanar_above_above_above
         + sum_in_type2_rods_coplanar_above_below_above)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_above_below_above = type2_rods_coplanar_above_below_above >= min_type2_margin ? 0
         : 3;
     const double axis_a2_below = a2_below + offset_a2;
-    const double sum_in_type2_rods_coplanar_above_below_below = (rod_2_z_below_times_rod_3_y
-        - rod_2_y_times_rod_3_z_below)*rod_1_x
-        + rod_1_y*(rod_2_x_times_rod_3_z_below - rod_2_z_below_times_rod_3_x);
-    const double type2_rods_coplanar_above_below_below = -(product_in_type2_rods_coplanar_above_above_above
+    const double sum_in_type2_rods_coplanar_above_below_below = rod_1_x
+        *(rod_2_y_times_rod_3_z_below - rod_2_z_below_times_rod_3_y)
+        + (rod_2_z_below_times_rod_3_x - rod_2_x_times_rod_3_z_below)*rod_1_y;
+    const double type2_rods_coplanar_above_below_below = (product_in_type2_rods_coplanar_above_above_above
         + sum_in_type2_rods_coplanar_above_below_below)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_above_below_below = type2_rods_coplanar_above_below_below >= min_type2_margin ? 0
@@ -179,23 +176,23 @@ void tripod_p3z_regular_all(const void *machine, const softkin_lanes *given,
     const double rod_1_z_below = z - a1_below;
     const double product_in_type2_rods_coplanar_below_above_above = rod_1_z_below
         *sum_in_type2_rods_coplanar_above_above_above;
-    const double type2_rods_coplanar_below_above_above = (sum_in_type2_rods_coplanar_above_above_above_2
-        - product_in_type2_rods_coplanar_below_above_above)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_below_above_above = (product_in_type2_rods_coplanar_below_above_above
+        - sum_in_type2_rods_coplanar_above_above_above_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_below_above_above = type2_rods_coplanar_below_above_above >= min_type2_margin ? 0
         : 3;
     const double axis_a1_below = a1_below + offset_a1;
-    const double type2_rods_coplanar_below_above_below = (sum_in_type2_rods_coplanar_above_above_below
-        - product_in_type2_rods_coplanar_below_above_above)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_below_above_below = (product_in_type2_rods_coplanar_below_above_above
+        - sum_in_type2_rods_coplanar_above_above_below)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_below_above_below = type2_rods_coplanar_below_above_below >= min_type2_margin ? 0
         : 3;
-    const double type2_rods_coplanar_below_below_above = -(product_in_type2_rods_coplanar_below_above_above
+    const double type2_rods_coplanar_below_below_above = (product_in_type2_rods_coplanar_below_above_above
         + sum_in_type2_rods_coplanar_above_below_above)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_below_below_above = type2_rods_coplanar_below_below_above >= min_type2_margin ? 0
         : 3;
-    const double type2_rods_coplanar_below_below_below = -(product_in_type2_rods_coplanar_below_above_above
+    const double type2_rods_coplanar_below_below_below = (product_in_type2_rods_coplanar_below_above_above
         + sum_in_type2_rods_coplanar_above_below_below)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_below_below_below = type2_rods_coplanar_below_below_below >= min_type2_margin ? 0

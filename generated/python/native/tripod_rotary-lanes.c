@@ -154,22 +154,23 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const tripod_rotary_machine *k = machine;
-  const double arm_length_1 = k->arm_length_1,
-      arm_length_1_times_root_of_3_times_half = k->arm_length_1_times_root_of_3_times_half,
-      arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link,
+  const double arm_1_radius = k->arm_1_radius, arm_length_1 = k->arm_length_1,
+      arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link, arm_length_2 = k->arm_length_2,
+      fixed_length_1 = k->fixed_length_1,
       fixed_length_1_minus_arm_1_radius = k->fixed_length_1_minus_arm_1_radius,
       fixed_length_2 = k->fixed_length_2, half_arm_length_1 = k->half_arm_length_1,
       half_by_arm_length_2 = k->half_by_arm_length_2, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       mid_a3 = k->mid_a3, min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1,
       offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, one_by_arm_length_2 = k->one_by_arm_length_2,
       product_in_divisor_a2 = k->product_in_divisor_a2,
-      product_in_scaled_cosine_a1 = k->product_in_scaled_cosine_a1,
       quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar, root_of_3 = k->root_of_3,
-      root_of_3_times_half_by_arm_length_2 = k->root_of_3_times_half_by_arm_length_2,
       sin_max_angle_ball_joint = k->sin_max_angle_ball_joint, single_a1 = k->single_a1 ? 1.0 : 0.0,
       single_a2 = k->single_a2 ? 1.0 : 0.0, single_a3 = k->single_a3 ? 1.0 : 0.0,
-      sum_in_pivot_2_x = k->sum_in_pivot_2_x, sum_in_pivot_2_y = k->sum_in_pivot_2_y,
-      twice_arm_length_1 = k->twice_arm_length_1;
+      sum_in_pivot_2_x = k->sum_in_pivot_2_x, twice_arm_length_1 = k->twice_arm_length_1;
+  const double product_in_scaled_cosine_a1_2 = -2.0*arm_length_1*fixed_length_1_minus_arm_1_radius;
+  const double sum_in_span_2_y = 0.5*arm_1_radius*root_of_3 - 0.5*fixed_length_1*root_of_3;
+  const double arm_length_1_times_root_of_3_times_half_2 = 0.5*arm_length_1*root_of_3;
+  const double root_of_3_times_half_by_arm_length_2_2 = 0.5*root_of_3/arm_length_2;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane],
@@ -181,7 +182,7 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     const double effective_a1 = softkin_lane_root(span_1_x*span_1_x + span_1_z*span_1_z);
     /* a1: its effective length is too short */
     missed += effective_a1 > arm_length_1_times_shortest_link ? 0.0 : 1.0;
-    const double sum_in_scaled_cosine_a1 = (fixed_length_2 - span_1_z)*z - product_in_scaled_cosine_a1;
+    const double sum_in_scaled_cosine_a1 = product_in_scaled_cosine_a1_2 + (fixed_length_2 - span_1_z)*z;
     /* cosine, times the scale, without cancellation */
     const double scaled_cosine_a1 = sum_in_scaled_cosine_a1
         + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y;
@@ -197,7 +198,7 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     /* a1: out of reach */
     missed += fabs(cos_swing_a1) <= 1.0000000000005 ? 0.0 : 1.0;
     const double span_2_x = x - sum_in_pivot_2_x; /* rod 2: known part of its vector */
-    const double span_2_y = y - sum_in_pivot_2_y;
+    const double span_2_y = sum_in_span_2_y + y;
     const double along_a2 = span_2_x - root_of_3*span_2_y;
     const double across_a2 = 2.0*span_1_z;
     const double across_a2_squared = across_a2*across_a2;
@@ -205,9 +206,9 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     const double effective_a2 = softkin_lane_root(across_a2_squared + along_a2*along_a2);
     /* a2: its effective length is too short */
     missed += effective_a2 > product_in_divisor_a2 ? 0.0 : 1.0;
-    const double sum_in_scaled_cosine_a2 = sum_in_scaled_cosine_a1 + (sum_in_pivot_2_x - span_2_x)*x;
+    const double sum_in_scaled_cosine_a2 = (span_2_x - sum_in_pivot_2_x)*x - sum_in_scaled_cosine_a1;
     /* cosine, times the scale, without cancellation */
-    const double scaled_cosine_a2 = (span_2_y - sum_in_pivot_2_y)*y - sum_in_scaled_cosine_a2;
+    const double scaled_cosine_a2 = sum_in_scaled_cosine_a2 + (span_2_y + sum_in_span_2_y)*y;
     const double arm_length_1_times_effective_a2 = arm_length_1*effective_a2;
     /* law of cosines for a2 (rod 2): 1 - cosine, times a scale */
     const double one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2;
@@ -216,17 +217,17 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_a2 = -(one_less_cos_a2 - one_plus_cos_a2)/sum_a2;
+    const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
     /* a2: out of reach */
     missed += fabs(cos_swing_a2) <= 1.0000000000005 ? 0.0 : 1.0;
-    const double span_3_y = sum_in_pivot_2_y + y;
+    const double span_3_y = y - sum_in_span_2_y;
     const double along_a3 = span_2_x + root_of_3*span_3_y;
     /* effective length of the arm that a3 turns */
     const double effective_a3 = softkin_lane_root(across_a2_squared + along_a3*along_a3);
     /* a3: its effective length is too short */
     missed += effective_a3 > product_in_divisor_a2 ? 0.0 : 1.0;
     /* cosine, times the scale, without cancellation */
-    const double scaled_cosine_a3 = (span_3_y + sum_in_pivot_2_y)*y - sum_in_scaled_cosine_a2;
+    const double scaled_cosine_a3 = sum_in_scaled_cosine_a2 + (span_3_y - sum_in_span_2_y)*y;
     const double arm_length_1_times_effective_a3 = arm_length_1*effective_a3;
     /* law of cosines for a3 (rod 3): 1 - cosine, times a scale */
     const double one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3;
@@ -235,12 +236,12 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     /* twice the scale, as the sum of both: then cosine and sine agree */
     const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
     missed += sum_a3 > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_a3 = -(one_less_cos_a3 - one_plus_cos_a3)/sum_a3;
+    const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3;
     /* a3: out of reach */
     missed += fabs(cos_swing_a3) <= 1.0000000000005 ? 0.0 : 1.0;
     /* ball joint of rod 1 */
     missed += fabs(y)*one_by_arm_length_2 <= sin_max_angle_ball_joint ? 0.0 : 1.0;
-    const double shared_product = root_of_3_times_half_by_arm_length_2*x;
+    const double shared_product = root_of_3_times_half_by_arm_length_2_2*x;
     const double half_by_arm_length_2_times_y = half_by_arm_length_2*y;
     /* ball joint of rod 2 */
     missed += fabs(half_by_arm_length_2_times_y + shared_product) <= sin_max_angle_ball_joint ? 0.0 : 1.0;
@@ -251,57 +252,54 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     const double sine_square_a1 = one_less_cos_a1*one_plus_cos_a1;
     const double sin_swing_a1_outward = 2.0*softkin_lane_root(sine_square_a1)/sum_a1;
     const double sin_swing_a1_outward_times_span_1_z = span_1_z*sin_swing_a1_outward;
-    const double one_by_effective_a1 = 1.0/effective_a1;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a1_outward = one_by_effective_a1
-        *(cos_swing_a1_times_span_1_x - sin_swing_a1_outward_times_span_1_z);
+    const double cos_a1_outward = (cos_swing_a1_times_span_1_x - sin_swing_a1_outward_times_span_1_z)
+        /effective_a1;
     const double rod_1_x_outward = span_1_x + arm_length_1*cos_a1_outward;
     const double cos_swing_a1_times_span_1_z = span_1_z*cos_swing_a1;
     const double sin_swing_a1_outward_times_span_1_x = span_1_x*sin_swing_a1_outward;
-    const double sin_a1_outward = one_by_effective_a1
-        *(cos_swing_a1_times_span_1_z + sin_swing_a1_outward_times_span_1_x);
+    const double sin_a1_outward = (cos_swing_a1_times_span_1_z + sin_swing_a1_outward_times_span_1_x)
+        /effective_a1;
     const double rod_1_z_outward = span_1_z + arm_length_1*sin_a1_outward;
     const double along_a2_times_cos_swing_a2 = along_a2*cos_swing_a2;
     /* sine squared, times the squared scale */
     const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
-    const double sin_swing_a2_outward = -2.0*softkin_lane_root(sine_square_a2)/sum_a2;
-    const double across_a2_times_sin_swing_a2_outward = across_a2*sin_swing_a2_outward;
-    const double one_by_effective_a2 = 1.0/effective_a2;
+    const double sin_swing_a2_inward = 2.0*softkin_lane_root(sine_square_a2)/sum_a2;
+    const double across_a2_times_sin_swing_a2_inward = across_a2*sin_swing_a2_inward;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a2_outward = (across_a2_times_sin_swing_a2_outward + along_a2_times_cos_swing_a2)
-        *one_by_effective_a2;
+    const double cos_a2_outward = (along_a2_times_cos_swing_a2 - across_a2_times_sin_swing_a2_inward)
+        /effective_a2;
     const double rod_2_x_outward = span_2_x - half_arm_length_1*cos_a2_outward;
     const double across_a2_times_cos_swing_a2 = across_a2*cos_swing_a2;
-    const double along_a2_times_sin_swing_a2_outward = along_a2*sin_swing_a2_outward;
-    const double sin_a2_outward = (along_a2_times_sin_swing_a2_outward - across_a2_times_cos_swing_a2)
-        *one_by_effective_a2;
+    const double along_a2_times_sin_swing_a2_inward = along_a2*sin_swing_a2_inward;
+    const double sin_a2_outward = (-across_a2_times_cos_swing_a2 - along_a2_times_sin_swing_a2_inward)
+        /effective_a2;
     const double rod_2_z_outward = span_1_z + arm_length_1*sin_a2_outward;
     const double along_a3_times_cos_swing_a3 = along_a3*cos_swing_a3;
     /* sine squared, times the squared scale */
     const double sine_square_a3 = one_less_cos_a3*one_plus_cos_a3;
-    const double sin_swing_a3_outward = -2.0*softkin_lane_root(sine_square_a3)/sum_a3;
-    const double across_a2_times_sin_swing_a3_outward = across_a2*sin_swing_a3_outward;
-    const double one_by_effective_a3 = 1.0/effective_a3;
+    const double sin_swing_a3_inward = 2.0*softkin_lane_root(sine_square_a3)/sum_a3;
+    const double across_a2_times_sin_swing_a3_inward = across_a2*sin_swing_a3_inward;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a3_outward = (across_a2_times_sin_swing_a3_outward + along_a3_times_cos_swing_a3)
-        *one_by_effective_a3;
+    const double cos_a3_outward = (along_a3_times_cos_swing_a3 - across_a2_times_sin_swing_a3_inward)
+        /effective_a3;
     const double rod_3_x_outward = span_2_x - half_arm_length_1*cos_a3_outward;
     const double across_a2_times_cos_swing_a3 = across_a2*cos_swing_a3;
-    const double along_a3_times_sin_swing_a3_outward = along_a3*sin_swing_a3_outward;
-    const double sin_a3_outward = (along_a3_times_sin_swing_a3_outward - across_a2_times_cos_swing_a3)
-        *one_by_effective_a3;
+    const double along_a3_times_sin_swing_a3_inward = along_a3*sin_swing_a3_inward;
+    const double sin_a3_outward = (-across_a2_times_cos_swing_a3 - along_a3_times_sin_swing_a3_inward)
+        /effective_a3;
     const double rod_3_z_outward = span_1_z + arm_length_1*sin_a3_outward;
     const double product_in_type2_rods_coplanar_outward_outward_outward = (rod_2_x_outward*rod_3_z_outward
         - rod_2_z_outward*rod_3_x_outward)*y;
-    const double rod_2_y_outward = span_2_y + arm_length_1_times_root_of_3_times_half*cos_a2_outward;
-    const double rod_3_y_outward = span_3_y - arm_length_1_times_root_of_3_times_half*cos_a3_outward;
-    const double sum_in_type2_rods_coplanar_outward_outward_outward = rod_2_x_outward*rod_3_y_outward
-        - rod_2_y_outward*rod_3_x_outward;
-    const double sum_in_type2_rods_coplanar_outward_outward_outward_2 = rod_2_y_outward*rod_3_z_outward
+    const double rod_2_y_outward = span_2_y + arm_length_1_times_root_of_3_times_half_2*cos_a2_outward;
+    const double rod_3_y_outward = span_3_y - arm_length_1_times_root_of_3_times_half_2*cos_a3_outward;
+    const double sum_in_type2_rods_coplanar_outward_outward_outward = rod_2_y_outward*rod_3_z_outward
         - rod_2_z_outward*rod_3_y_outward;
+    const double sum_in_type2_rods_coplanar_outward_outward_outward_2 = rod_2_x_outward*rod_3_y_outward
+        - rod_2_y_outward*rod_3_x_outward;
     const double type2_rods_coplanar_outward_outward_outward = (rod_1_x_outward
-        *sum_in_type2_rods_coplanar_outward_outward_outward_2
-        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_outward_outward
+        *sum_in_type2_rods_coplanar_outward_outward_outward
+        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_outward_outward_2
         - product_in_type2_rods_coplanar_outward_outward_outward)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_outward_outward_outward =
@@ -313,44 +311,44 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     const double axis_a3_outward = offset_a3
         + softkin_lane_angle(sin_a3_outward, cos_a3_outward)*SOFTKIN_RADIAN;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a3_inward = (along_a3_times_cos_swing_a3 - across_a2_times_sin_swing_a3_outward)
-        *one_by_effective_a3;
+    const double cos_a3_inward = (across_a2_times_sin_swing_a3_inward + along_a3_times_cos_swing_a3)
+        /effective_a3;
     const double rod_3_x_inward = span_2_x - half_arm_length_1*cos_a3_inward;
-    const double sin_a3_inward = (-across_a2_times_cos_swing_a3 - along_a3_times_sin_swing_a3_outward)
-        *one_by_effective_a3;
+    const double sin_a3_inward = (along_a3_times_sin_swing_a3_inward - across_a2_times_cos_swing_a3)
+        /effective_a3;
     const double rod_3_z_inward = span_1_z + arm_length_1*sin_a3_inward;
     const double product_in_type2_rods_coplanar_outward_outward_inward = (rod_2_x_outward*rod_3_z_inward
         - rod_2_z_outward*rod_3_x_inward)*y;
-    const double rod_3_y_inward = span_3_y - arm_length_1_times_root_of_3_times_half*cos_a3_inward;
-    const double sum_in_type2_rods_coplanar_outward_outward_inward = rod_2_x_outward*rod_3_y_inward
-        - rod_2_y_outward*rod_3_x_inward;
-    const double sum_in_type2_rods_coplanar_outward_outward_inward_2 = rod_2_y_outward*rod_3_z_inward
+    const double rod_3_y_inward = span_3_y - arm_length_1_times_root_of_3_times_half_2*cos_a3_inward;
+    const double sum_in_type2_rods_coplanar_outward_outward_inward = rod_2_y_outward*rod_3_z_inward
         - rod_2_z_outward*rod_3_y_inward;
+    const double sum_in_type2_rods_coplanar_outward_outward_inward_2 = rod_2_x_outward*rod_3_y_inward
+        - rod_2_y_outward*rod_3_x_inward;
     const double type2_rods_coplanar_outward_outward_inward = (rod_1_x_outward
-        *sum_in_type2_rods_coplanar_outward_outward_inward_2
-        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_outward_inward
+        *sum_in_type2_rods_coplanar_outward_outward_inward
+        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_outward_inward_2
         - product_in_type2_rods_coplanar_outward_outward_inward)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_outward_outward_inward =
         type2_rods_coplanar_outward_outward_inward >= min_type2_margin ? 0 : 3;
     const double axis_a3_inward = offset_a3 + softkin_lane_angle(sin_a3_inward, cos_a3_inward)*SOFTKIN_RADIAN;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a2_inward = (along_a2_times_cos_swing_a2 - across_a2_times_sin_swing_a2_outward)
-        *one_by_effective_a2;
+    const double cos_a2_inward = (across_a2_times_sin_swing_a2_inward + along_a2_times_cos_swing_a2)
+        /effective_a2;
     const double rod_2_x_inward = span_2_x - half_arm_length_1*cos_a2_inward;
-    const double sin_a2_inward = (-across_a2_times_cos_swing_a2 - along_a2_times_sin_swing_a2_outward)
-        *one_by_effective_a2;
+    const double sin_a2_inward = (along_a2_times_sin_swing_a2_inward - across_a2_times_cos_swing_a2)
+        /effective_a2;
     const double rod_2_z_inward = span_1_z + arm_length_1*sin_a2_inward;
     const double product_in_type2_rods_coplanar_outward_inward_outward = (rod_2_x_inward*rod_3_z_outward
         - rod_2_z_inward*rod_3_x_outward)*y;
-    const double rod_2_y_inward = span_2_y + arm_length_1_times_root_of_3_times_half*cos_a2_inward;
-    const double sum_in_type2_rods_coplanar_outward_inward_outward = rod_2_x_inward*rod_3_y_outward
-        - rod_2_y_inward*rod_3_x_outward;
-    const double sum_in_type2_rods_coplanar_outward_inward_outward_2 = rod_2_y_inward*rod_3_z_outward
+    const double rod_2_y_inward = span_2_y + arm_length_1_times_root_of_3_times_half_2*cos_a2_inward;
+    const double sum_in_type2_rods_coplanar_outward_inward_outward = rod_2_y_inward*rod_3_z_outward
         - rod_2_z_inward*rod_3_y_outward;
+    const double sum_in_type2_rods_coplanar_outward_inward_outward_2 = rod_2_x_inward*rod_3_y_outward
+        - rod_2_y_inward*rod_3_x_outward;
     const double type2_rods_coplanar_outward_inward_outward = (rod_1_x_outward
-        *sum_in_type2_rods_coplanar_outward_inward_outward_2
-        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_inward_outward
+        *sum_in_type2_rods_coplanar_outward_inward_outward
+        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_inward_outward_2
         - product_in_type2_rods_coplanar_outward_inward_outward)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_outward_inward_outward =
@@ -358,49 +356,49 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     const double axis_a2_inward = offset_a2 + softkin_lane_angle(sin_a2_inward, cos_a2_inward)*SOFTKIN_RADIAN;
     const double product_in_type2_rods_coplanar_outward_inward_inward = (rod_2_x_inward*rod_3_z_inward
         - rod_2_z_inward*rod_3_x_inward)*y;
-    const double sum_in_type2_rods_coplanar_outward_inward_inward = rod_2_x_inward*rod_3_y_inward
-        - rod_2_y_inward*rod_3_x_inward;
-    const double sum_in_type2_rods_coplanar_outward_inward_inward_2 = rod_2_y_inward*rod_3_z_inward
+    const double sum_in_type2_rods_coplanar_outward_inward_inward = rod_2_y_inward*rod_3_z_inward
         - rod_2_z_inward*rod_3_y_inward;
+    const double sum_in_type2_rods_coplanar_outward_inward_inward_2 = rod_2_x_inward*rod_3_y_inward
+        - rod_2_y_inward*rod_3_x_inward;
     const double type2_rods_coplanar_outward_inward_inward = (rod_1_x_outward
-        *sum_in_type2_rods_coplanar_outward_inward_inward_2
-        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_inward_inward
+        *sum_in_type2_rods_coplanar_outward_inward_inward
+        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_inward_inward_2
         - product_in_type2_rods_coplanar_outward_inward_inward)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_outward_inward_inward =
         type2_rods_coplanar_outward_inward_inward >= min_type2_margin ? 0 : 3;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a1_inward = one_by_effective_a1
-        *(cos_swing_a1_times_span_1_x + sin_swing_a1_outward_times_span_1_z);
+    const double cos_a1_inward = (cos_swing_a1_times_span_1_x + sin_swing_a1_outward_times_span_1_z)
+        /effective_a1;
     const double rod_1_x_inward = span_1_x + arm_length_1*cos_a1_inward;
-    const double sin_a1_inward = one_by_effective_a1
-        *(cos_swing_a1_times_span_1_z - sin_swing_a1_outward_times_span_1_x);
+    const double sin_a1_inward = (cos_swing_a1_times_span_1_z - sin_swing_a1_outward_times_span_1_x)
+        /effective_a1;
     const double rod_1_z_inward = span_1_z + arm_length_1*sin_a1_inward;
     const double type2_rods_coplanar_inward_outward_outward = (rod_1_x_inward
-        *sum_in_type2_rods_coplanar_outward_outward_outward_2
-        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_outward_outward
+        *sum_in_type2_rods_coplanar_outward_outward_outward
+        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_outward_outward_2
         - product_in_type2_rods_coplanar_outward_outward_outward)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_inward_outward_outward =
         type2_rods_coplanar_inward_outward_outward >= min_type2_margin ? 0 : 3;
     const double axis_a1_inward = offset_a1 + softkin_lane_angle(sin_a1_inward, cos_a1_inward)*SOFTKIN_RADIAN;
     const double type2_rods_coplanar_inward_outward_inward = (rod_1_x_inward
-        *sum_in_type2_rods_coplanar_outward_outward_inward_2
-        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_outward_inward
+        *sum_in_type2_rods_coplanar_outward_outward_inward
+        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_outward_inward_2
         - product_in_type2_rods_coplanar_outward_outward_inward)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_inward_outward_inward =
         type2_rods_coplanar_inward_outward_inward >= min_type2_margin ? 0 : 3;
     const double type2_rods_coplanar_inward_inward_outward = (rod_1_x_inward
-        *sum_in_type2_rods_coplanar_outward_inward_outward_2
-        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_inward_outward
+        *sum_in_type2_rods_coplanar_outward_inward_outward
+        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_inward_outward_2
         - product_in_type2_rods_coplanar_outward_inward_outward)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_inward_inward_outward =
         type2_rods_coplanar_inward_inward_outward >= min_type2_margin ? 0 : 3;
     const double type2_rods_coplanar_inward_inward_inward = (rod_1_x_inward
-        *sum_in_type2_rods_coplanar_outward_inward_inward_2
-        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_inward_inward
+        *sum_in_type2_rods_coplanar_outward_inward_inward
+        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_inward_inward_2
         - product_in_type2_rods_coplanar_outward_inward_inward)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_inward_inward_inward = type2_rods_coplanar_inward_inward_inward >= min_type2_margin

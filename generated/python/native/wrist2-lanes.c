@@ -44,14 +44,14 @@ void wrist2_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const wrist2_machine *k = machine;
   const double mid_a = k->mid_a, mid_b = k->mid_b, offset_a = k->offset_a, offset_b = k->offset_b,
-      one_by_tool_side = k->one_by_tool_side, single_a = k->single_a ? 1.0 : 0.0,
-      single_b = k->single_b ? 1.0 : 0.0;
+      single_a = k->single_a ? 1.0 : 0.0, single_b = k->single_b ? 1.0 : 0.0, tool_side = k->tool_side;
+  const double one_by_tool_side_2 = 1.0/tool_side;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double r13 = given->rotation[2][lane], r23 = given->rotation[5][lane],
         r33 = given->rotation[8][lane], ref_a = given->reference[0][lane], ref_b = given->reference[1][lane];
     double missed = misses[lane];
-    const double r13_of_a = one_by_tool_side*r13;
-    const double r23_of_a = one_by_tool_side*r23;
+    const double r13_of_a = one_by_tool_side_2*r13;
+    const double r23_of_a = one_by_tool_side_2*r23;
     /* polar coordinates: the radius at angle a */
     const double radius_a = softkin_lane_root(r13_of_a*r13_of_a + r23_of_a*r23_of_a);
     missed += radius_a > 1e-11 ? 0.0 : 1.0;

@@ -60,13 +60,14 @@ void wrist3_regular_all(const void *machine, const softkin_lanes *given,
     /* polar coordinates: the radius at angle c */
     const double radius_c = softkin_lane_root(r31*r31 + r32*r32);
     missed += radius_c > 1e-11 ? 0.0 : 1.0;
-    const double scaled_r22_before_c_up = r21*r32 - r22*r31;
-    const double direction_y_a_down = r11*r32 - r12*r31;
+    const double direction_y_c_down = -r32;
+    const double scaled_r22_before_c_down = direction_y_c_down*r21 + r22*r31;
+    const double direction_y_a_down = -direction_y_c_down*r11 - r12*r31;
     const double axis_a_down = offset_a
-        + softkin_lane_angle(direction_y_a_down, -scaled_r22_before_c_up)*SOFTKIN_RADIAN;
+        + softkin_lane_angle(direction_y_a_down, scaled_r22_before_c_down)*SOFTKIN_RADIAN;
     const double quotient_in_axis_b_down = softkin_lane_angle(radius_c, r33)*SOFTKIN_RADIAN;
     const double axis_b_down = offset_b + quotient_in_axis_b_down;
-    const double axis_c_down = offset_c - softkin_lane_angle(r32, r31)*SOFTKIN_RADIAN;
+    const double axis_c_down = offset_c + softkin_lane_angle(direction_y_c_down, r31)*SOFTKIN_RADIAN;
     const double axis_a_up = 180.0 + axis_a_down;
     const double axis_b_up = offset_b - quotient_in_axis_b_down;
     const double axis_c_up = 180.0 + axis_c_down;

@@ -78,7 +78,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_TXTYTZRYRXRZ"
-    KEY = "ac6_txtytzryrxrz 71224eb416509d7b"
+    KEY = "ac6_txtytzryrxrz e801c4ab943b5c77"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),

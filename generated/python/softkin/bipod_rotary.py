@@ -104,7 +104,7 @@ class BipodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Bipod_Rotary"
-    KEY = "bipod_rotary e55ddcc987dd17d2"
+    KEY = "bipod_rotary 3c61917cd74655da"
     AXES = (
         Axis(
             name="A1",

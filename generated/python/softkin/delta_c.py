@@ -129,7 +129,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Delta_C"
-    KEY = "delta_c 9ef8ad04bac557ff"
+    KEY = "delta_c dffe651f7f26e38f"
     AXES = (
         Axis(
             name="A1",

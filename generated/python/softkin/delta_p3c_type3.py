@@ -252,7 +252,7 @@ class DeltaP3CType3(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Delta_P3C_Type3"
-    KEY = "delta_p3c_type3 94c5b16db7af0ad5"
+    KEY = "delta_p3c_type3 1977104a62deda82"
     AXES = (
         Axis(
             name="A1",

@@ -150,7 +150,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_DualScara"
-    KEY = "dualscara 5a98cd1ff2d83474"
+    KEY = "dualscara 850eb670da1f1c1d"
     AXES = (
         Axis(
             name="A1",

@@ -79,7 +79,7 @@ class HeadHeadCB(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_HeadHead_CB"
-    KEY = "headhead_cb f8f03df97b03a652"
+    KEY = "headhead_cb 1af626285ca0eb79"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),

@@ -78,7 +78,7 @@ class HeadTableBC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_HeadTable_BC"
-    KEY = "headtable_bc 5d0ebc263cf962ee"
+    KEY = "headtable_bc 9821196aeab6097b"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X: the head against the table", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),

@@ -77,7 +77,7 @@ class Kin5Axes(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_5Axes"
-    KEY = "kin_5axes ea73cd2c88c85d1f"
+    KEY = "kin_5axes 8b9bcbfac13863e6"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),

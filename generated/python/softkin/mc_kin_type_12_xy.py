@@ -166,7 +166,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
-    KEY = "mc_kin_type_12_xy 0f0741262c0321e0"
+    KEY = "mc_kin_type_12_xy 8268a67c218e9976"
     AXES = (
         Axis(
             name="A1",

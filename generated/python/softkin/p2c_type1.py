@@ -104,7 +104,7 @@ class P2CType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type1"
-    KEY = "p2c_type1 304db976653a14c9"
+    KEY = "p2c_type1 7c202f9a122f5a4e"
     AXES = (
         Axis(
             name="A1",

@@ -108,7 +108,7 @@ class P2CType2(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type2"
-    KEY = "p2c_type2 ab88adaff98230e5"
+    KEY = "p2c_type2 7811593f842ce882"
     AXES = (
         Axis(
             name="A1",

@@ -111,7 +111,7 @@ class P2XType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2X_Type1"
-    KEY = "p2x_type1 e5d5cbda1a4ddaf2"
+    KEY = "p2x_type1 09c08805f2675120"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),

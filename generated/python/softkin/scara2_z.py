@@ -84,7 +84,7 @@ class Scara2Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara2_Z"
-    KEY = "scara2_z f42932c7a86ba1a0"
+    KEY = "scara2_z 1d4aa7f11830a138"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

@@ -94,7 +94,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCCC"
-    KEY = "scara4_zccc 0d940b0b6d4945b4"
+    KEY = "scara4_zccc 5eb7995f1514d80d"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Column along Z, up", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),

@@ -78,7 +78,7 @@ class TableTableAC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_TableTable_AC"
-    KEY = "tabletable_ac 02eeebb0485ba667"
+    KEY = "tabletable_ac 1e84d7ba1edd4996"
     AXES = (
         Axis(
             name="X",

@@ -140,7 +140,7 @@ class TripodLinear(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Linear"
-    KEY = "tripod_linear dab33b322bf1df06"
+    KEY = "tripod_linear 4c01909d4f80d944"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1; positive goes down its rail", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2; positive goes down its rail", multi_turn=False),

@@ -142,7 +142,7 @@ class TripodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
-    KEY = "tripod_rotary 1ddc8858907ddc74"
+    KEY = "tripod_rotary e5ddc4ec67e8dced"
     AXES = (
         Axis(
             name="A1",

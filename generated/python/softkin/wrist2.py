@@ -85,7 +85,7 @@ class Wrist2(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist2"
-    KEY = "wrist2 0806261897884dd8"
+    KEY = "wrist2 27b2f76e9440e3f8"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Yaw about Z", multi_turn=True),
         Axis(

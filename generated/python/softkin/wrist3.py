@@ -71,7 +71,7 @@ class Wrist3(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist3"
-    KEY = "wrist3 f85422ba439b4ee6"
+    KEY = "wrist3 5834051e02e6b1bb"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Turn about Z", multi_turn=True),
         Axis(name="B", kind="rotary", unit="deg", meaning="Turn about the turned -Y", multi_turn=True),
