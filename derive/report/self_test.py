@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
+from itertools import chain, islice
 
 import numpy as np
 
@@ -219,7 +220,7 @@ class _Vectors:
 
     def _singular(self) -> Iterator[Reals]:
         """A pose at which a margin is nearly zero, and axis values at which there is no pose."""
-        yield from [*self._crossing(), *self._square()][:1]
+        yield from islice(chain(self._crossing(), self._square()), 1)
         nowhere = np.flatnonzero(np.isnan(margins(self.machine, self._candidates)).any(axis=0))
         yield from (self._candidates[k] for k in nowhere[:1])
 

@@ -20,6 +20,8 @@ _CONVERGED = 1e-9
 _SAME = 1e-6
 _ROUNDING = 1e-13
 """An equation of order one is met but for rounding."""
+_EXACT = 4e-15
+"""It is met to the last digits: no step can bring a row nearer."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,7 @@ def same(one: Array, others: Array, angles: NDArray[np.bool_]) -> NDArray[np.boo
 def _newton(problem: Problem, start: Array, iterations: int) -> Array:
     """Levenberg-Marquardt, every row with its own damping.
 
-    A row is at its end where it meets the equations but for rounding, and a step no longer brings it nearer.
+    A row is at its end where it meets the equations exactly, or but for rounding and a step does not bring it nearer.
     """
     unknowns, residual, identity = start.copy(), problem.residual(start), np.eye(start.shape[1])
     rows, damping = np.arange(len(start)), np.full(len(start), 1e-2)
@@ -136,11 +138,12 @@ def _newton(problem: Problem, start: Array, iterations: int) -> Array:
         after = np.linalg.norm(missed, axis=1)
         better = after < before
         unknowns[rows[better]] = trial[better]
-        going = np.flatnonzero(better | (before > _ROUNDING))
+        now = np.where(better, after, before)
+        going = np.flatnonzero(now > np.where(better, _EXACT, _ROUNDING))
         if not len(going):
             break
         residual = np.where(better[:, None], missed, residual)[going]
-        before = np.where(better, after, before)[going]
+        before = now[going]
         damping = np.clip(np.where(better, damping * 0.1, damping * 10.0), 1e-15, 1e6)[going]
         rows, part = rows[going], part if len(going) == len(rows) else part.take(going)
         here = unknowns[rows]
