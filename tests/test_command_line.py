@@ -126,11 +126,26 @@ def test_a_broken_file_is_one_clear_message(folder: Path, capsys: pytest.Capture
     assert {p.name for p in folder.parent.iterdir()} <= {"generated", "generated.cache", "mechanisms"}
 
 
-def test_two_files_with_one_name(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Two descriptions with the same name are refused."""
-    (folder / "twin.py").write_text((folder / "right.py").read_text())
+@pytest.mark.parametrize(
+    ("name", "like"),
+    [("Kin_Right", ""), ("kin_right", ""), ("Softkin_Right", ", where"), ("Kin_Ri_ght", ", where"),
+     ("Kin_Right_Machine", ", where")],
+)  # fmt: skip
+def test_two_files_with_one_name(folder: Path, capsys: pytest.CaptureFixture[str], name: str, like: str) -> None:
+    """Two descriptions with the same name are refused, and with names that would be one file or one class."""
+    text = (folder / "right.py").read_text()
+    assert text.count('"Kin_Right"') == 1
+    (folder / "twin.py").write_text(text.replace('"Kin_Right"', f'"{name}"'))
     message = refusal(capsys, "generate", "--mechanisms", folder, "--output", folder.parent / "out")
-    assert "twin.py: the name 'Kin_Right' is taken by" in message
+    assert f"twin.py: the name {name!r} is taken by {folder / 'right.py'}{like}" in message
+
+
+def test_two_classes_with_one_name(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A class that is called like another machine would replace it."""
+    text = (folder / "right.py").read_text().replace('"Kin_Right"', '"Kin_Other", class_name="Right"')
+    (folder / "twin.py").write_text(text)
+    message = refusal(capsys, "generate", "--mechanisms", folder, "--output", folder.parent / "out")
+    assert "twin.py: the name 'Kin_Other' is taken by" in message and "where it is 'Kin_Right'" in message
 
 
 def test_no_traceback_and_exit_status_1(folder: Path) -> None:

@@ -109,10 +109,23 @@ def _with_aliases(mechanism: Mechanism) -> tuple[Mechanism, ...]:
 
 
 def _refuse_taken(path: Path, mechanisms: tuple[Mechanism, ...], entries: Sequence[Entry]) -> None:
-    owners = {mechanism.name.lower(): owner for owner, mechanism in entries}
-    for name in (mechanism.name for mechanism in mechanisms):
-        if name.lower() in owners:
-            raise DescriptionError(f"{path}: the name {name!r} is taken by {owners[name.lower()]}")
+    """Files and classes of two machines must not have one name: the second would replace the first."""
+    owners = {key: (owner, mechanism.name) for owner, mechanism in entries for key in _in_files(mechanism)}
+    for mechanism in mechanisms:
+        for owner, other in (owners[key] for key in sorted(_in_files(mechanism)) if key in owners):
+            is_same = mechanism.name.lower() == other.lower()
+            like = "" if is_same else f", where it is {other!r}: _, capitals, Kin_ and Machine do not count"
+            raise DescriptionError(f"{path}: the name {mechanism.name!r} is taken by {owner}{like}")
+        owners |= dict.fromkeys(_in_files(mechanism), (path, mechanism.name))
+
+
+def _in_files(mechanism: Mechanism) -> set[str]:
+    """The name of a mechanism, and what languages make of it and of that of its class, but for `_`, capitals, and the
+    word that they add to a name which is taken.
+    """
+    names = (mechanism.name, mechanism.class_name or mechanism.name)
+    short = (name.removeprefix("Kin_").removeprefix("Softkin_") for name in names)
+    return {mechanism.name.lower(), *(name.replace("_", "").lower().removesuffix("machine") for name in short)}
 
 
 def _line_of(problem: BaseException, path: Path) -> str:

@@ -18,6 +18,7 @@ _FIELDS = (
     (r"^closure reads|^the closure has", ("closure", "rods")),
     (r"^positive reads", ("positive",)),
     (r"cannot name a function block", ("name", "aliases")),
+    (r"cannot name a class", ("class_name",)),
     (r"cannot name a family", ("family",)),
     (r"^periods", ("periods",)),
     (r"^held|held joints|too many: .* held=", ("held", "task")),

@@ -24,6 +24,7 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"unsupported operand type\(s\) for \+: 'Chain'", "a chain is a product: Rz(A1) * Tx(L1)"),
     (r"ends the program", "let the file define MECHANISM, and nothing else"),
     (r"cannot name a function block", "take letters, digits and single _, a letter first"),
+    (r"cannot name a class", 'take letters and digits, as in class_name="MyMachine"'),
     (r"cannot name a family", 'take one word, as in family="own"'),
     (r"the mechanism has no joints", "list them in the order of the axes: joints=(A1, A2)"),
     (r"is given \d+ times", "give each thing a name of its own, whatever its capital letters"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from keyword import iskeyword
 
 import sympy as sp
 
@@ -28,6 +29,7 @@ from derive.ir.constants import (
 )
 
 _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
+_CLASS = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 _PARAMETER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _BRANCH = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _LEG = re.compile(r"[a-z0-9]+(_[a-z0-9]+)*\Z")
@@ -83,6 +85,8 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
     for name in (mechanism.name, *mechanism.aliases):
         if not _BLOCK.match(name):
             yield f"{name!r} cannot name a function block"
+    if mechanism.class_name is not None and (not _CLASS.match(mechanism.class_name) or iskeyword(mechanism.class_name)):
+        yield f"{mechanism.class_name!r} cannot name a class of Python"
     if not _FAMILY.match(mechanism.family):
         yield f"{mechanism.family!r} cannot name a family, which is a folder of CODESYS: words joined by _"
     if not mechanism.joints and (mechanism.task.position or mechanism.task.turning is not Turning.NONE):

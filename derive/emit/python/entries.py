@@ -30,14 +30,27 @@ _USUAL: dict[Role, tuple[float, float, float | None]] = {
 """The range and the default of a parameter by its kind, where they are not "any number" and 0."""
 
 
+_CLASSES = frozenset(
+    "ArrayPrograms Axis Configuration ConfigurationByte Coupled CoupledPrograms Criterion Diagnosis Frame FrameLike "
+    "Image IterativeForward KinematicsError Limits Matrix Mechanism Mounted OffsetKinematics OrientationImage "
+    "OrientationKinematics OrientationPrograms Parameter PlainFrame Pose Programs Reals Rotation SearchedInverse Signs "
+    "Singularity Solution StartedPrograms Status TotalImage Turns TwistChoice Values Vector".split()
+)
+"""What the package offers, and what modules of mechanisms import: no class of a mechanism is called so."""
+_MODULES = frozenset("annotations catalogue core import_module orthonormalize".split())
+"""What stands in the package beside its modules: to import one of this name would replace it."""
+
+
 def class_name(name: str, better: str | None) -> str:
-    """`Kin_Scara4_ZCcoupled_Type1` → `Scara4ZCcoupledType1`."""
-    return better or "".join(word[:1].upper() + word[1:] for word in _short(name).split("_"))
+    """`Kin_Scara4_ZCcoupled_Type1` → `Scara4ZCcoupledType1`; `Kin_Frame` → `FrameMachine`, for `Frame` is taken."""
+    found = better or "".join(word[:1].upper() + word[1:] for word in _short(name).split("_"))
+    return f"{found}Machine" if found in _CLASSES or iskeyword(found) else found
 
 
 def module_name(name: str) -> str:
-    """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`."""
-    return _short(name).lower()
+    """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`; `Kin_Class` → `class_machine`, a word of Python."""
+    found = _short(name).lower()
+    return f"{found}_machine" if found in _MODULES or iskeyword(found) else found
 
 
 def role(mechanism: Mechanism) -> str:

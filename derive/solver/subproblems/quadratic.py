@@ -75,6 +75,7 @@ def _known_sign(problem: Problem, determinant: sp.Expr, unknown: sp.Symbol) -> s
     """The sign of a determinant that is a multiple of a positive quantity, with other unknowns eliminated by affine
     equations. It may be a sign of the machine.
     """
+    determinant = cancelled(determinant) if problem.positive else determinant
     for quantity in problem.positive:
         value = _through(problem, quantity, unknown)
         if value == 0 or not (determinant.free_symbols ^ value.free_symbols) <= {*problem.signs}:

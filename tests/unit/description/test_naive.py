@@ -138,6 +138,14 @@ FAULTS = {
     ),
     "a word for a vendor": (written(vendor='"Acme"'), "vendor must not be 'Acme': as in vendor=Vendor.TEXTBOOK"),
     "a name with a blank": (written(name='"Kin Naive"'), "'Kin Naive' cannot name a function block"),
+    "a class with a blank": (
+        written(class_name='"My Arm"'),
+        "'My Arm' cannot name a class of Python; take letters and",
+    ),
+    "a class called as a word": (
+        written(class_name='"class"'),
+        "'class' cannot name a class of Python; take letters and",
+    ),
     "no mechanism": (HEAD, "defines no MECHANISM"),
     "a name for a held joint": (written(held='("A1",)'), "held must not hold 'A1': as in held=(E1,)"),
     "three numbers in a row of a table": (
