@@ -49,6 +49,14 @@ def is_never_negative(radicand: sp.Expr) -> bool:
     return bool(radicand.is_Add) and all(term.is_Pow and term.exp == 2 for term in radicand.args)
 
 
+def is_larger(expression: sp.Basic) -> bool:
+    """Whether a choice takes the larger of two values."""
+    if not isinstance(expression, Select):
+        return False
+    condition, first, second = expression.args
+    return isinstance(condition, sp.Gt) and condition.args == (first, second)
+
+
 class ExpressionPrinter(ABC):
     """Writes an expression in a language. Subclasses spell names, numbers, calls and logical words."""
 
@@ -63,6 +71,10 @@ class ExpressionPrinter(ABC):
     @abstractmethod
     def call(self, key: str, arguments: Sequence[str]) -> str:
         """A primitive applied to printed arguments; `key` is a value of `FUNCTION_KEYS`."""
+
+    def larger(self, first: str, second: str) -> str:
+        """The larger of two printed numbers, the second where one is NaN; "" where it is written as a choice."""
+        return ""
 
     @abstractmethod
     def logic(self, word: str) -> str:
@@ -120,6 +132,8 @@ class ExpressionPrinter(ABC):
             return self._joined(node, "and", COMPARE), _AND
         if isinstance(node, sp.Or):
             return self._joined(node, "or", _AND), _OR
+        if is_larger(node) and (text := self.larger(*(self._text(a, _OR) for a in node.args[1:]))):
+            return text, ATOM
         key = FUNCTION_KEYS[type(node)]
         return self.call(key, [self._text(a, _OR) for a in node.args]), ATOM
 

@@ -24,6 +24,7 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
     Select,
+    larger,
 )
 from derive.ir.program import (
     Let,
@@ -96,7 +97,7 @@ def _small(errors: list[Let], why: Why) -> Require:
 
 def _largest(values: Sequence[sp.Expr]) -> sp.Expr:
     first, *others = values
-    return reduce(lambda most, value: Select(sp.Gt(value, most), value, most), others, first)
+    return reduce(lambda most, value: larger(value, most), others, first)
 
 
 def _repaired() -> tuple[list[Let], sp.Matrix]:

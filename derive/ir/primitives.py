@@ -101,6 +101,11 @@ def angle_of_sine(sine: sp.Expr) -> sp.Expr:
     return Atan2(sine, Root(1 - sine**2))
 
 
+def larger(first: sp.Expr, second: sp.Expr) -> Select:
+    """The larger of two numbers; the second where one of them is NaN."""
+    return Select(sp.Gt(first, second), first, second)
+
+
 PRIMITIVES: tuple[type[sp.Function], ...] = (
     sp.sin,
     sp.cos,

@@ -90,6 +90,9 @@ class JavaScript(ExpressionPrinter):
             return f"({condition} ? {first} : {second})"
         return f"{_FUNCTIONS[key]}({', '.join(arguments)})"
 
+    def larger(self, first: str, second: str) -> str:
+        return f"Math.max({second}, {first})"
+
     def logic(self, word: str) -> str:
         return {"and": "&&", "or": "||", "not": "!"}.get(word, word)
 

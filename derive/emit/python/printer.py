@@ -132,6 +132,9 @@ class ScalarPrinter(ExpressionPrinter):
             )
         return f"{key}({', '.join(arguments)})"
 
+    def larger(self, first: str, second: str) -> str:
+        return f"max({second}, {first})"
+
     def logic(self, word: str) -> str:
         return {"true": "True", "false": "False"}.get(word, word)
 
@@ -145,6 +148,9 @@ class ArrayPrinter(ScalarPrinter):
         """constants: the names of the constants; modulo_turns: as in `ScalarPrinter`."""
         super().__init__(modulo_turns=modulo_turns)
         self.constants = frozenset(constants)
+
+    def larger(self, first: str, second: str) -> str:
+        return ""  # NumPy's maximum of NaN and a number is NaN
 
     def name(self, symbol: sp.Symbol) -> str:
         return f"k.{spelled(symbol.name)}" if symbol.name in self.constants else super().name(symbol)

@@ -175,7 +175,7 @@ def _templates() -> Environment:
         held=literal(float(HELD)),
         pivot=literal(float(PIVOT)),
         solvable=literal(float(SOLVABLE)),
-        smallest=literal(1.0 / float(SOLVABLE)),
+        smallest=literal(float(1 / SOLVABLE)),
         tolerance=literal(TOLERANCE),
         search=SEARCH,
         statuses=[status.name for status in Status],

@@ -47,11 +47,6 @@ def is_size_test(condition: sp.Basic) -> bool:
     return bool(condition.lhs.args[0].is_Symbol)
 
 
-def is_larger(expression: sp.Basic) -> bool:
-    """Whether a choice takes the larger of two values."""
-    return isinstance(expression, Select) and _is_comparison(expression.args[0], sp.Gt, *expression.args[1:])
-
-
 def limits_of(expression: sp.Basic) -> tuple[sp.Expr, sp.Expr, sp.Expr] | None:
     """The lower limit, the value and the upper limit of a choice that keeps a value inside limits."""
     if not (isinstance(expression, Select) and isinstance(expression.args[2], Select)):
@@ -75,8 +70,6 @@ class StructuredText(ExpressionPrinter):
         """The expression as text. The size of an input is tested by comparisons, which are defined for every input."""
         if is_size_test(expression):
             return " AND ".join(f"({part})" for part in self.parts(expression))
-        if is_larger(expression):
-            return f"MAX({self.print(expression.args[2])}, {self.print(expression.args[1])})"
         if (limits := limits_of(expression)) is not None:
             return f"LIMIT({', '.join(map(self.print, limits))})"
         return super().print(expression)
@@ -109,6 +102,10 @@ class StructuredText(ExpressionPrinter):
             condition, if_true, if_false = arguments
             return f"SEL({condition}, {if_false}, {if_true})"
         return f"{_FUNCTIONS[key]}({', '.join(arguments)})"
+
+    def larger(self, first: str, second: str) -> str:
+        """The larger of two printed numbers."""
+        return f"MAX({second}, {first})"
 
     def factor(self, expression: sp.Basic) -> str:
         """A whole number converted to a real number."""

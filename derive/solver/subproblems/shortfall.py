@@ -1,8 +1,9 @@
 """How much is missing where the radicand of a two-root step is negative: the amount of its reason.
 
-For a product of lengths, (l1 + l2 - r)(l1 + l2 + r)(l1 - l2 + r)(l2 + r - l1) or (r - l)(r + l), this is the size of
-the smallest factor, whatever signs the lengths have. For a length that occurs only as its square, such as the rod l in
-l^2 - x^2 - y^2, it is by how much the rod is too short or too long.
+For two lengths, (r - l)(r + l), this is |l| - |r|. For the three sides of a triangle, (l1 + l2 - r)(l1 + l2 + r)
+(l1 - l2 + r)(l2 + r - l1), it is the larger of r - (l1 + l2) and |l1 - l2| - r, with the sizes of lengths that have a
+sign. For a length that occurs only as its square, such as the rod l in l^2 - x^2 - y^2, it is by how much the rod is
+too short or too long.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.ir.passes import plain
-from derive.ir.primitives import Root, Select
+from derive.ir.primitives import Root, Select, larger
 from derive.ir.program import Let
 from derive.ir.reason import Reason, Unit, Why, about, about_joint
 from derive.ir.symbols import real
@@ -42,7 +43,7 @@ def _missing(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: 
     if not sums:
         return None
     if all(t.as_coeff_Mul()[1].is_Symbol for f in sums for t in f.args):
-        return _least_factor(sums, values, lengths)
+        return _of_lengths(sums, values, lengths)
     return _of_rod(sums, values, lengths)
 
 
@@ -62,11 +63,36 @@ def _negative_terms(value: sp.Expr) -> int:
     return sum(1 if term.could_extract_minus_sign() else -1 for term in value.args)
 
 
-def _least_factor(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr:
-    """The size of the one negative factor in a product of sums of lengths, whatever signs the lengths have."""
-    whole = sp.Add(*sums) / 2
-    signed = {s for s in whole.free_symbols - lengths if not isinstance(values.get(s), Root | Select)}
-    return sp.Add(*[sp.Abs(f) / 2 for f in sums]) - whole.xreplace({s: sp.Abs(s) for s in signed})
+def _of_lengths(
+    sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]
+) -> sp.Expr | None:
+    """By how much one length is too short for another, or the third side of a triangle too long or too short."""
+
+    def size(value: sp.Expr) -> sp.Expr:
+        """The size of a length, which may have a sign."""
+        known = {s for s in value.free_symbols if s in lengths or isinstance(values.get(s), Root | Select)}
+        return value if value.free_symbols == known and not _has_minus(value) else sp.Abs(value)
+
+    if len(sums) == 1:
+        return -sums[0]
+    if len(sums) == 2:
+        first, second = sums
+        return size((first - second) / 2) - size((first + second) / 2)
+    sides = _sides(sums)
+    if sides is None:
+        return None
+    *two, third = map(size, sorted(sides, key=lambda side: (side in values, str(side))))
+    return larger(third - sp.Add(*two), sp.Abs(two[0] - two[1]) - third)
+
+
+def _has_minus(value: sp.Expr) -> bool:
+    return any(term.could_extract_minus_sign() for term in sp.Add.make_args(value))
+
+
+def _sides(sums: list[sp.Expr]) -> list[sp.Expr] | None:
+    """The sides of the triangle in Heron's product; None where the product is another one."""
+    perimeter = next((f for f in sums if 2 * f == sp.Add(*sums)), None)
+    return None if len(sums) != 4 or perimeter is None else [(perimeter - f) / 2 for f in sums if f != perimeter]
 
 
 def _of_rod(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr | None:

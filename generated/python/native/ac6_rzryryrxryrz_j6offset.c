@@ -886,11 +886,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* q3: out of reach */
   if (!(k->searched || (fabs(cos_swing_q3_closed) <= 1.0000000000005))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        0.5*(fabs(k->a2_minus_effective_q3_tried - reach_closed)
-        + fabs(k->a2_minus_effective_q3_tried + reach_closed)
-        + fabs(k->a2_plus_effective_q3_tried - reach_closed)
-        + fabs(k->a2_plus_effective_q3_tried + reach_closed)) - k->a2_plus_effective_q3_tried - reach_closed,
-        0);
+        (reach_closed - k->a2_plus_effective_q3_tried > fabs(k->a2_minus_effective_q3_tried) - reach_closed
+        ? reach_closed - k->a2_plus_effective_q3_tried : fabs(k->a2_minus_effective_q3_tried)
+        - reach_closed), 0);
   }
   /* without an offset, only the first branch of the crossing has a solution */
   if (!(k->searched || (sigma_crossing > 0))) {
@@ -1538,8 +1536,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const bool searched = fabs(p->j6_offset_x) > 0.0; /* whether to scan A6 for a root */
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double size_of_j6_offset_x = fabs(p->j6_offset_x);
-  const double a2_plus_effective_q3_tried = p->a2 + effective_q3_tried;
   const double a2_minus_effective_q3_tried = p->a2 - effective_q3_tried;
+  const double a2_plus_effective_q3_tried = p->a2 + effective_q3_tried;
   const double d4_by_effective_q3_tried = p->d4/effective_q3_tried;
   const double a3_by_effective_q3_tried = p->a3/effective_q3_tried;
   const double one_by_machine_scale = 1.0/machine_scale;
@@ -1585,8 +1583,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.searched = searched;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.size_of_j6_offset_x = size_of_j6_offset_x;
-  made.a2_plus_effective_q3_tried = a2_plus_effective_q3_tried;
   made.a2_minus_effective_q3_tried = a2_minus_effective_q3_tried;
+  made.a2_plus_effective_q3_tried = a2_plus_effective_q3_tried;
   made.d4_by_effective_q3_tried = d4_by_effective_q3_tried;
   made.a3_by_effective_q3_tried = a3_by_effective_q3_tried;
   made.one_by_machine_scale = one_by_machine_scale;

@@ -241,8 +241,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double distance_q1_squared = distance_q1*distance_q1;
   /* q1: out of reach */
   if (!(ahead_squared_q1 >= -1e-12*distance_q1_squared - k->rounding_q1)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: out of reach", "u",
-        0.5*(fabs(k->d4 - distance_q1) + fabs(k->d4 + distance_q1)) - distance_q1, 0);
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: out of reach", "u", fabs(k->d4) - distance_q1, 0);
   }
   const double sign_shoulder = sigma_shoulder; /* shoulder: +1 left, -1 right */
   /* how far ahead of the axis the point is; negative: behind it */
@@ -604,8 +603,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* q3: out of reach */
   if (!(fabs(cos_q3) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        0.5*(fabs(k->a2_minus_a3 - reach) + fabs(k->a2_minus_a3 + reach) + fabs(k->a2_plus_a3 - reach)
-        + fabs(k->a2_plus_a3 + reach)) - reach - fabs(k->a2) - fabs(k->a3), 0);
+        (reach - fabs(k->a2) - fabs(k->a3) > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - fabs(k->a2)
+        - fabs(k->a3) : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
   }
   /* A1: without a commanded turn, the value nearest to this */
   const double open_a1 = k->single_a1 ? k->mid_a1 : ref_a1;

@@ -222,11 +222,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a1: out of reach */
   if (!(fabs(cos_swing_a1) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: out of reach", "u",
-        0.5*fabs(k->arm_length_1_minus_rod_length_1 - effective_a1)
-        + 0.5*fabs(k->arm_length_1_minus_rod_length_1 + effective_a1)
-        + 0.5*fabs(k->arm_length_1_plus_rod_length_1 - effective_a1)
-        + 0.5*fabs(k->arm_length_1_plus_rod_length_1 + effective_a1) - k->arm_length_1_plus_rod_length_1
-        - effective_a1, 0);
+        (effective_a1 - k->arm_length_1_plus_rod_length_1 > fabs(k->arm_length_1_minus_rod_length_1)
+        - effective_a1 ? effective_a1 - k->arm_length_1_plus_rod_length_1
+        : fabs(k->arm_length_1_minus_rod_length_1) - effective_a1), 0);
   }
   const double span_2_x = x - k->half_base_distance; /* rod 2: known part of its vector */
   /* effective length of the arm that a2 turns */
@@ -248,11 +246,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a2: out of reach */
   if (!(fabs(cos_swing_a2) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "u",
-        0.5*fabs(k->arm_length_2_minus_rod_length_2 - effective_a2)
-        + 0.5*fabs(k->arm_length_2_minus_rod_length_2 + effective_a2)
-        + 0.5*fabs(k->arm_length_2_plus_rod_length_2 - effective_a2)
-        + 0.5*fabs(k->arm_length_2_plus_rod_length_2 + effective_a2) - k->arm_length_2_plus_rod_length_2
-        - effective_a2, 0);
+        (effective_a2 - k->arm_length_2_plus_rod_length_2 > fabs(k->arm_length_2_minus_rod_length_2)
+        - effective_a2 ? effective_a2 - k->arm_length_2_plus_rod_length_2
+        : fabs(k->arm_length_2_minus_rod_length_2) - effective_a2), 0);
   }
   const double sign_elbow_1 = sigma_elbow_1; /* elbow_1: +1 outward, -1 inward */
   /* sine squared, times the squared scale */
@@ -729,13 +725,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double rod_length_1_minus_rod_length_2 = p->rod_length_1 - p->rod_length_2;
   const double product_in_foot_fraction = rod_length_1_minus_rod_length_2*rod_length_1_plus_rod_length_2;
   const double arm_length_1_times_shortest_link = 1e-9*p->arm_length_1;
+  const double arm_length_1_minus_rod_length_1 = p->arm_length_1 - p->rod_length_1;
   const double arm_length_2_times_shortest_link = 1e-9*p->arm_length_2;
+  const double arm_length_2_minus_rod_length_2 = p->arm_length_2 - p->rod_length_2;
   const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
   const double one_by_rod_length_1 = 1.0/p->rod_length_1;
   const double one_by_rod_length_2 = 1.0/p->rod_length_2;
-  const double arm_length_1_minus_rod_length_1 = p->arm_length_1 - p->rod_length_1;
   const double arm_length_1_plus_rod_length_1 = p->arm_length_1 + p->rod_length_1;
-  const double arm_length_2_minus_rod_length_2 = p->arm_length_2 - p->rod_length_2;
   const double arm_length_2_plus_rod_length_2 = p->arm_length_2 + p->rod_length_2;
   const double quotient_in_type2_rods_aligned = assembly_sign/(p->rod_length_1*p->rod_length_2);
   const double quotient_in_margin_rods_aligned = 1.0/(p->rod_length_1*p->rod_length_2);
@@ -771,13 +767,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.rod_length_1_minus_rod_length_2 = rod_length_1_minus_rod_length_2;
   made.product_in_foot_fraction = product_in_foot_fraction;
   made.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link;
+  made.arm_length_1_minus_rod_length_1 = arm_length_1_minus_rod_length_1;
   made.arm_length_2_times_shortest_link = arm_length_2_times_shortest_link;
+  made.arm_length_2_minus_rod_length_2 = arm_length_2_minus_rod_length_2;
   made.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle;
   made.one_by_rod_length_1 = one_by_rod_length_1;
   made.one_by_rod_length_2 = one_by_rod_length_2;
-  made.arm_length_1_minus_rod_length_1 = arm_length_1_minus_rod_length_1;
   made.arm_length_1_plus_rod_length_1 = arm_length_1_plus_rod_length_1;
-  made.arm_length_2_minus_rod_length_2 = arm_length_2_minus_rod_length_2;
   made.arm_length_2_plus_rod_length_2 = arm_length_2_plus_rod_length_2;
   made.quotient_in_type2_rods_aligned = quotient_in_type2_rods_aligned;
   made.quotient_in_margin_rods_aligned = quotient_in_margin_rods_aligned;

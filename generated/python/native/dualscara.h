@@ -94,11 +94,11 @@ typedef struct {
       highest_a4, mid_a4, base_distance, arm_length_1, arm_length_2, offset_a1, offset_a2, offset_a3,
       offset_a4, min_type2_margin, assembly_sign, half_base_distance, product_in_normal_divisor,
       rod_length_1_squared_times_rounding, rod_length_1_plus_rod_length_2, rod_length_1_minus_rod_length_2,
-      product_in_foot_fraction, arm_length_1_times_shortest_link, arm_length_2_times_shortest_link,
+      product_in_foot_fraction, arm_length_1_times_shortest_link, arm_length_1_minus_rod_length_1,
+      arm_length_2_times_shortest_link, arm_length_2_minus_rod_length_2,
       machine_scale_squared_times_free_angle, one_by_rod_length_1, one_by_rod_length_2,
-      arm_length_1_minus_rod_length_1, arm_length_1_plus_rod_length_1, arm_length_2_minus_rod_length_2,
-      arm_length_2_plus_rod_length_2, quotient_in_type2_rods_aligned, quotient_in_margin_rods_aligned,
-      twice_arm_length_1, twice_arm_length_2;
+      arm_length_1_plus_rod_length_1, arm_length_2_plus_rod_length_2, quotient_in_type2_rods_aligned,
+      quotient_in_margin_rods_aligned, twice_arm_length_1, twice_arm_length_2;
   bool single_a1, single_a2, single_a4;
 } dualscara_machine;
 

@@ -275,11 +275,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   }
   if (!(fabs(cos_swing_a1) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: out of reach", "u",
-        0.5*(fabs(divisor_a1 - k->link_length_1_minus_link_length_2)
-        + fabs(divisor_a1 + k->link_length_1_minus_link_length_2)
-        + fabs(divisor_a1 - k->link_length_1_plus_link_length_2)
-        + fabs(divisor_a1 + k->link_length_1_plus_link_length_2)) - divisor_a1
-        - k->link_length_1_plus_link_length_2, 0);
+        (divisor_a1 - k->link_length_1_plus_link_length_2 > fabs(k->link_length_1_minus_link_length_2)
+        - divisor_a1 ? divisor_a1 - k->link_length_1_plus_link_length_2
+        : fabs(k->link_length_1_minus_link_length_2) - divisor_a1), 0);
   }
   /* a2: its effective length is too short */
   if (!(effective_a2 > k->link_length_5_times_shortest_link)) {
@@ -287,11 +285,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   }
   if (!(fabs(cos_swing_a2) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "u",
-        0.5*(fabs(divisor_a2 - k->link_length_4_plus_link_length_5)
-        + fabs(divisor_a2 + k->link_length_4_plus_link_length_5)
-        + fabs(divisor_a2 - k->link_length_5_minus_link_length_4)
-        + fabs(divisor_a2 + k->link_length_5_minus_link_length_4)) - divisor_a2
-        - k->link_length_4_plus_link_length_5, 0);
+        (divisor_a2 - k->link_length_4_plus_link_length_5 > fabs(k->link_length_5_minus_link_length_4)
+        - divisor_a2 ? divisor_a2 - k->link_length_4_plus_link_length_5
+        : fabs(k->link_length_5_minus_link_length_4) - divisor_a2), 0);
   }
   const double rod_1_x = x - centre_1_x;
   const double rod_1_y = y - centre_1_y;
@@ -874,7 +870,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double product_in_foot_fraction = link_length_2_minus_radius_2*link_length_2_plus_radius_2;
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double link_length_1_times_shortest_link = 1e-9*p->link_length_1;
+  const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double link_length_5_times_shortest_link = 1e-9*p->link_length_5;
+  const double link_length_5_minus_link_length_4 = p->link_length_5 - p->link_length_4;
   const double link_length_3_by_link_length_2 = p->link_length_3/p->link_length_2;
   const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
   const double link_length_2_by_link_length_3 = p->link_length_2/p->link_length_3;
@@ -885,9 +883,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double sum_in_pivot_rear_x = p->link_length_1 + p->link_length_1*p->link_length_3/p->link_length_2;
   const double quotient_in_scaled_pivot_rear_y = p->link_length_2*sum_in_pivot_rear_x/p->link_length_3;
   const double quotient_in_scaled_pivot_rear_y_2 = p->link_length_2*p->link_length_5/p->link_length_3;
-  const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
-  const double link_length_5_minus_link_length_4 = p->link_length_5 - p->link_length_4;
   const double link_length_4_plus_link_length_5 = p->link_length_4 + p->link_length_5;
   const double quotient_in_type2_arms_aligned = assembly_sign*p->link_length_3
       /(p->link_length_4*p->link_length_2*p->link_length_2);
@@ -924,7 +920,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.product_in_foot_fraction = product_in_foot_fraction;
   made.machine_scale_times_plane = machine_scale_times_plane;
   made.link_length_1_times_shortest_link = link_length_1_times_shortest_link;
+  made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.link_length_5_times_shortest_link = link_length_5_times_shortest_link;
+  made.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4;
   made.link_length_3_by_link_length_2 = link_length_3_by_link_length_2;
   made.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle;
   made.link_length_2_by_link_length_3 = link_length_2_by_link_length_3;
@@ -934,9 +932,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.sum_in_pivot_rear_x = sum_in_pivot_rear_x;
   made.quotient_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y;
   made.quotient_in_scaled_pivot_rear_y_2 = quotient_in_scaled_pivot_rear_y_2;
-  made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
-  made.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4;
   made.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5;
   made.quotient_in_type2_arms_aligned = quotient_in_type2_arms_aligned;
   made.quotient_in_along_a2 = quotient_in_along_a2;

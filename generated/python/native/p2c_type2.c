@@ -183,11 +183,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a1: out of reach */
   if (!(fabs(cos_swing_a1) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: out of reach", "u",
-        0.5*fabs(effective_a1 - k->inner_arm_minus_outer_arm)
-        + 0.5*fabs(effective_a1 + k->inner_arm_minus_outer_arm)
-        + 0.5*fabs(effective_a1 - k->inner_arm_plus_outer_arm)
-        + 0.5*fabs(effective_a1 + k->inner_arm_plus_outer_arm) - effective_a1 - k->inner_arm_plus_outer_arm,
-        0);
+        (effective_a1 - k->inner_arm_plus_outer_arm > fabs(k->inner_arm_minus_outer_arm) - effective_a1
+        ? effective_a1 - k->inner_arm_plus_outer_arm : fabs(k->inner_arm_minus_outer_arm) - effective_a1), 0);
   }
   const double span_2_x = k->sum_in_pivot_1_x + x; /* rod 2: known part of its vector */
   /* effective length of the arm that a2 turns */
@@ -209,11 +206,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a2: out of reach */
   if (!(fabs(cos_swing_a2) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "u",
-        0.5*fabs(effective_a2 - k->inner_arm_minus_outer_arm)
-        + 0.5*fabs(effective_a2 + k->inner_arm_minus_outer_arm)
-        + 0.5*fabs(effective_a2 - k->inner_arm_plus_outer_arm)
-        + 0.5*fabs(effective_a2 + k->inner_arm_plus_outer_arm) - effective_a2 - k->inner_arm_plus_outer_arm,
-        0);
+        (effective_a2 - k->inner_arm_plus_outer_arm > fabs(k->inner_arm_minus_outer_arm) - effective_a2
+        ? effective_a2 - k->inner_arm_plus_outer_arm : fabs(k->inner_arm_minus_outer_arm) - effective_a2), 0);
   }
   const double sign_knee_1 = sigma_knee_1; /* knee_1: +1 outward, -1 inward */
   /* sine squared, times the squared scale */
@@ -589,11 +583,11 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double outer_arm_squared_times_rounding = 1e-12*p->outer_arm*p->outer_arm;
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double inner_arm_times_shortest_link = 1e-9*p->inner_arm;
+  const double inner_arm_minus_outer_arm = p->inner_arm - p->outer_arm;
   const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
   const double sum_in_pivot_1_x = 0.5*p->tcp_link_distance - p->displacement;
   const double one_by_outer_arm = 1.0/p->outer_arm;
   const double inner_arm_plus_outer_arm = p->inner_arm + p->outer_arm;
-  const double inner_arm_minus_outer_arm = p->inner_arm - p->outer_arm;
   const double assembly_sign_by_outer_arm_squared = assembly_sign/(p->outer_arm*p->outer_arm);
   const double one_by_outer_arm_squared = 1.0/(p->outer_arm*p->outer_arm);
   const double twice_inner_arm = 2.0*p->inner_arm;
@@ -616,11 +610,11 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.outer_arm_squared_times_rounding = outer_arm_squared_times_rounding;
   made.machine_scale_times_plane = machine_scale_times_plane;
   made.inner_arm_times_shortest_link = inner_arm_times_shortest_link;
+  made.inner_arm_minus_outer_arm = inner_arm_minus_outer_arm;
   made.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle;
   made.sum_in_pivot_1_x = sum_in_pivot_1_x;
   made.one_by_outer_arm = one_by_outer_arm;
   made.inner_arm_plus_outer_arm = inner_arm_plus_outer_arm;
-  made.inner_arm_minus_outer_arm = inner_arm_minus_outer_arm;
   made.assembly_sign_by_outer_arm_squared = assembly_sign_by_outer_arm_squared;
   made.one_by_outer_arm_squared = one_by_outer_arm_squared;
   made.twice_inner_arm = twice_inner_arm;

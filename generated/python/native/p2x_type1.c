@@ -167,7 +167,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* rod 1 cannot reach */
   if (!(radicand_a1 >= -k->arm_length_1_squared_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "rod 1 cannot reach", "u",
-        0.5*(fabs(k->arm_length_1 - span_1_y) + fabs(k->arm_length_1 + span_1_y)) - k->arm_length_1, 0);
+        fabs(span_1_y) - k->arm_length_1, 0);
   }
   const double span_2_y = y - k->rail_y_2;
   /* quadratic equation for a2: rod 2 */
@@ -175,7 +175,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* rod 2 cannot reach */
   if (!(radicand_a2 >= -k->arm_length_2_squared_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "rod 2 cannot reach", "u",
-        0.5*(fabs(k->arm_length_2 - span_2_y) + fabs(k->arm_length_2 + span_2_y)) - k->arm_length_2, 0);
+        fabs(span_2_y) - k->arm_length_2, 0);
   }
   const double span_1_x = x - k->tcp_offset_1; /* rod 1: known part of its vector */
   const double sign_carriage_1 = sigma_carriage_1; /* carriage_1: +1 left, -1 right */

@@ -89,7 +89,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   /* rod 1 cannot reach */
   if (!(radicand_y >= -k->arm_length_squared_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "rod 1 cannot reach", "u",
-        0.5*(fabs(k->arm_length - pivot_1_x) + fabs(k->arm_length + pivot_1_x)) - k->arm_length, 0);
+        fabs(pivot_1_x) - k->arm_length, 0);
   }
   const double x = 0.5*(a1 + a2); /* x from the x equation, which is linear in it */
   const double y = softkin_root(radicand_y)*k->assembly_sign;
@@ -129,7 +129,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* rod 1 (through x) cannot reach */
   if (!(radicand_a2 >= -k->shared_product)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "rod 1 (through x) cannot reach", "u",
-        0.5*(fabs(k->arm_length - y) + fabs(k->arm_length + y)) - k->arm_length, 0);
+        fabs(y) - k->arm_length, 0);
   }
   const double type2_flat = k->assembly_sign_by_arm_length*y;
   /* flat: in the other assembly mode, or too close to a type 2 singularity */
@@ -194,7 +194,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   /* rod 1 cannot reach */
   if (!(radicand_y >= -k->arm_length_squared_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "rod 1 cannot reach", "u",
-        0.5*(fabs(k->arm_length - pivot_1_x) + fabs(k->arm_length + pivot_1_x)) - k->arm_length, 0);
+        fabs(pivot_1_x) - k->arm_length, 0);
   }
   const double x = 0.5*(a1 + a2); /* x from the x equation, which is linear in it */
   const double margin_meet_a2 = -2.0*(k->span_1_x + x - a2)*k->one_by_arm_length;
@@ -226,7 +226,7 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   /* rod 1 cannot reach */
   if (!(radicand_y >= -k->arm_length_squared_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "rod 1 cannot reach", "u",
-        0.5*(fabs(k->arm_length - pivot_1_x) + fabs(k->arm_length + pivot_1_x)) - k->arm_length, 0);
+        fabs(pivot_1_x) - k->arm_length, 0);
   }
   const double y = softkin_root(radicand_y)*k->assembly_sign;
   const double slope_2_by_y = 2.0*y;

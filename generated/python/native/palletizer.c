@@ -209,10 +209,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a3_from_a2: out of reach */
   if (!(fabs(cos_swing_a3_from_a2) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "a3_from_a2: out of reach", "u",
-        0.5*(fabs(k->link_length_1_minus_link_length_2 - reach)
-        + fabs(k->link_length_1_minus_link_length_2 + reach)
-        + fabs(k->link_length_1_plus_link_length_2 - reach)
-        + fabs(k->link_length_1_plus_link_length_2 + reach)) - k->link_length_1_plus_link_length_2 - reach,
+        (reach - k->link_length_1_plus_link_length_2 > fabs(k->link_length_1_minus_link_length_2) - reach
+        ? reach - k->link_length_1_plus_link_length_2 : fabs(k->link_length_1_minus_link_length_2) - reach),
         0);
   }
   double direction_x_a1, direction_y_a1;
@@ -724,13 +722,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   /* characteristic length of the machine */
   const double machine_scale = p->link_length_1 + p->link_length_2 + p->shoulder_offset;
+  const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double shoulder_offset_plus_wrist_offset_x = p->shoulder_offset + p->wrist_offset_x;
   const double quotient_in_branch_shoulder = shoulder_offset_plus_wrist_offset_x/machine_scale;
   const double link_length_2_by_machine_scale = p->link_length_2/machine_scale;
   const double link_length_1_by_machine_scale = p->link_length_1/machine_scale;
   const double base_height_plus_wrist_offset_z = p->base_height + p->wrist_offset_z;
-  const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
   const double quotient_in_cos_swing_a3_from_a2 = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);
@@ -762,13 +760,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a2 = p->offset_a2;
   made.offset_a3 = p->offset_a3;
   made.offset_a4 = p->offset_a4;
+  made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.shoulder_offset_plus_wrist_offset_x = shoulder_offset_plus_wrist_offset_x;
   made.quotient_in_branch_shoulder = quotient_in_branch_shoulder;
   made.link_length_2_by_machine_scale = link_length_2_by_machine_scale;
   made.link_length_1_by_machine_scale = link_length_1_by_machine_scale;
   made.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z;
-  made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
   made.quotient_in_cos_swing_a3_from_a2 = quotient_in_cos_swing_a3_from_a2;
   made.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2;

@@ -382,11 +382,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a1: out of reach */
   if (!(fabs(cos_swing_a1) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: out of reach", "u",
-        0.5*fabs(k->arm_length_1_minus_rod_length_1 - effective_a1)
-        + 0.5*fabs(k->arm_length_1_minus_rod_length_1 + effective_a1)
-        + 0.5*fabs(k->arm_length_1_plus_rod_length_1 - effective_a1)
-        + 0.5*fabs(k->arm_length_1_plus_rod_length_1 + effective_a1) - k->arm_length_1_plus_rod_length_1
-        - effective_a1, 0);
+        (effective_a1 - k->arm_length_1_plus_rod_length_1 > fabs(k->arm_length_1_minus_rod_length_1)
+        - effective_a1 ? effective_a1 - k->arm_length_1_plus_rod_length_1
+        : fabs(k->arm_length_1_minus_rod_length_1) - effective_a1), 0);
   }
   const double arm_2_x = k->platform_2_x*cos_heading - k->platform_2_y*sin_heading;
   const double span_2_x = arm_2_x + x - k->base_2_x; /* rod 2: known part of its vector */
@@ -411,11 +409,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a2: out of reach */
   if (!(fabs(cos_swing_a2) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "u",
-        0.5*fabs(k->arm_length_2_minus_rod_length_2 - effective_a2)
-        + 0.5*fabs(k->arm_length_2_minus_rod_length_2 + effective_a2)
-        + 0.5*fabs(k->arm_length_2_plus_rod_length_2 - effective_a2)
-        + 0.5*fabs(k->arm_length_2_plus_rod_length_2 + effective_a2) - k->arm_length_2_plus_rod_length_2
-        - effective_a2, 0);
+        (effective_a2 - k->arm_length_2_plus_rod_length_2 > fabs(k->arm_length_2_minus_rod_length_2)
+        - effective_a2 ? effective_a2 - k->arm_length_2_plus_rod_length_2
+        : fabs(k->arm_length_2_minus_rod_length_2) - effective_a2), 0);
   }
   const double arm_3_x = k->platform_3_x*cos_heading - k->platform_3_y*sin_heading;
   const double span_3_x = arm_3_x + x - k->base_3_x; /* rod 3: known part of its vector */
@@ -440,11 +436,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a3: out of reach */
   if (!(fabs(cos_swing_a3) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        0.5*fabs(k->arm_length_3_minus_rod_length_3 - effective_a3)
-        + 0.5*fabs(k->arm_length_3_minus_rod_length_3 + effective_a3)
-        + 0.5*fabs(k->arm_length_3_plus_rod_length_3 - effective_a3)
-        + 0.5*fabs(k->arm_length_3_plus_rod_length_3 + effective_a3) - k->arm_length_3_plus_rod_length_3
-        - effective_a3, 0);
+        (effective_a3 - k->arm_length_3_plus_rod_length_3 > fabs(k->arm_length_3_minus_rod_length_3)
+        - effective_a3 ? effective_a3 - k->arm_length_3_plus_rod_length_3
+        : fabs(k->arm_length_3_minus_rod_length_3) - effective_a3), 0);
   }
   const double sign_elbow_1 = sigma_elbow_1; /* elbow_1: +1 right, -1 left */
   /* sine squared, times the squared scale */
@@ -1229,18 +1223,18 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale_times_shortest_link = 1e-9*machine_scale;
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double arm_length_1_times_shortest_link = 1e-9*p->arm_length_1;
+  const double arm_length_1_minus_rod_length_1 = p->arm_length_1 - p->rod_length_1;
   const double arm_length_2_times_shortest_link = 1e-9*p->arm_length_2;
+  const double arm_length_2_minus_rod_length_2 = p->arm_length_2 - p->rod_length_2;
   const double arm_length_3_times_shortest_link = 1e-9*p->arm_length_3;
+  const double arm_length_3_minus_rod_length_3 = p->arm_length_3 - p->rod_length_3;
   const double one_by_platform_radius = 1.0/platform_radius;
   const double one_by_machine_scale_squared = 1.0/(machine_scale*machine_scale);
   const double one_by_rod_length_1 = 1.0/p->rod_length_1;
   const double one_by_rod_length_2 = 1.0/p->rod_length_2;
   const double one_by_rod_length_3 = 1.0/p->rod_length_3;
-  const double arm_length_1_minus_rod_length_1 = p->arm_length_1 - p->rod_length_1;
   const double arm_length_1_plus_rod_length_1 = p->arm_length_1 + p->rod_length_1;
-  const double arm_length_2_minus_rod_length_2 = p->arm_length_2 - p->rod_length_2;
   const double arm_length_2_plus_rod_length_2 = p->arm_length_2 + p->rod_length_2;
-  const double arm_length_3_minus_rod_length_3 = p->arm_length_3 - p->rod_length_3;
   const double arm_length_3_plus_rod_length_3 = p->arm_length_3 + p->rod_length_3;
   const double quotient_in_determinant = 1.0/(p->rod_length_1*p->rod_length_2*p->rod_length_3);
   made.lowest_a1 = window_of_a1.lowest;
@@ -1286,18 +1280,18 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.machine_scale_times_shortest_link = machine_scale_times_shortest_link;
   made.machine_scale_times_plane = machine_scale_times_plane;
   made.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link;
+  made.arm_length_1_minus_rod_length_1 = arm_length_1_minus_rod_length_1;
   made.arm_length_2_times_shortest_link = arm_length_2_times_shortest_link;
+  made.arm_length_2_minus_rod_length_2 = arm_length_2_minus_rod_length_2;
   made.arm_length_3_times_shortest_link = arm_length_3_times_shortest_link;
+  made.arm_length_3_minus_rod_length_3 = arm_length_3_minus_rod_length_3;
   made.one_by_platform_radius = one_by_platform_radius;
   made.one_by_machine_scale_squared = one_by_machine_scale_squared;
   made.one_by_rod_length_1 = one_by_rod_length_1;
   made.one_by_rod_length_2 = one_by_rod_length_2;
   made.one_by_rod_length_3 = one_by_rod_length_3;
-  made.arm_length_1_minus_rod_length_1 = arm_length_1_minus_rod_length_1;
   made.arm_length_1_plus_rod_length_1 = arm_length_1_plus_rod_length_1;
-  made.arm_length_2_minus_rod_length_2 = arm_length_2_minus_rod_length_2;
   made.arm_length_2_plus_rod_length_2 = arm_length_2_plus_rod_length_2;
-  made.arm_length_3_minus_rod_length_3 = arm_length_3_minus_rod_length_3;
   made.arm_length_3_plus_rod_length_3 = arm_length_3_plus_rod_length_3;
   made.quotient_in_determinant = quotient_in_determinant;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};

@@ -137,11 +137,11 @@ typedef struct {
       platform_2_y, platform_3_x, platform_3_y, arm_length_1, arm_length_2, arm_length_3, rod_length_1,
       rod_length_2, rod_length_3, home_x, home_y, offset_a1, offset_a2, offset_a3, min_type2_margin,
       assembly_sign, within, cos_home_heading_2, sin_home_heading_2, machine_scale_times_shortest_link,
-      machine_scale_times_plane, arm_length_1_times_shortest_link, arm_length_2_times_shortest_link,
-      arm_length_3_times_shortest_link, one_by_platform_radius, one_by_machine_scale_squared,
-      one_by_rod_length_1, one_by_rod_length_2, one_by_rod_length_3, arm_length_1_minus_rod_length_1,
-      arm_length_1_plus_rod_length_1, arm_length_2_minus_rod_length_2, arm_length_2_plus_rod_length_2,
-      arm_length_3_minus_rod_length_3, arm_length_3_plus_rod_length_3, quotient_in_determinant;
+      machine_scale_times_plane, arm_length_1_times_shortest_link, arm_length_1_minus_rod_length_1,
+      arm_length_2_times_shortest_link, arm_length_2_minus_rod_length_2, arm_length_3_times_shortest_link,
+      arm_length_3_minus_rod_length_3, one_by_platform_radius, one_by_machine_scale_squared,
+      one_by_rod_length_1, one_by_rod_length_2, one_by_rod_length_3, arm_length_1_plus_rod_length_1,
+      arm_length_2_plus_rod_length_2, arm_length_3_plus_rod_length_3, quotient_in_determinant;
   bool single_a1, single_a2, single_a3;
 } planar_3rrr_machine;
 

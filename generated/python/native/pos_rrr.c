@@ -161,8 +161,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double distance_q1_squared = distance_q1*distance_q1;
   /* q1: out of reach */
   if (!(ahead_squared_q1 >= -1e-12*distance_q1_squared - k->rounding_q1)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: out of reach", "u",
-        0.5*(fabs(k->d3 - distance_q1) + fabs(k->d3 + distance_q1)) - distance_q1, 0);
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: out of reach", "u", fabs(k->d3) - distance_q1, 0);
   }
   /* coordinate of the point that the remaining links must reach */
   const double wrist_y_from_q1 = z - k->d1;
@@ -242,9 +241,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* q3: out of reach */
   if (!(fabs(cos_swing_q3) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        0.5*(fabs(k->a2_minus_effective_q3_2 - reach) + fabs(k->a2_minus_effective_q3_2 + reach)
-        + fabs(k->a2_plus_effective_q3_2 - reach) + fabs(k->a2_plus_effective_q3_2 + reach))
-        - k->a2_plus_effective_q3_2 - reach, 0);
+        (reach - k->a2_plus_effective_q3_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
+        - k->a2_plus_effective_q3_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
   }
   /* A1: without a commanded turn, the value nearest to this */
   const double open_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
@@ -638,13 +636,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale;
   const double machine_scale_times_rounding = 1e-12*machine_scale;
+  const double a2_minus_effective_q3_2 = p->a2 - effective_q3_2;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double d4_by_effective_q3_2 = p->d4/effective_q3_2;
   const double a3_by_effective_q3_2 = p->a3/effective_q3_2;
   const double a2_squared_plus_effective_q3_2_squared = a2_squared + effective_q3_2*effective_q3_2;
   const double twice_d3 = 2.0*p->d3;
   const double a2_plus_effective_q3_2 = p->a2 + effective_q3_2;
-  const double a2_minus_effective_q3_2 = p->a2 - effective_q3_2;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -673,13 +671,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.machine_scale_squared_times_plane = machine_scale_squared_times_plane;
   made.machine_scale_times_rounding = machine_scale_times_rounding;
+  made.a2_minus_effective_q3_2 = a2_minus_effective_q3_2;
   made.one_by_machine_scale = one_by_machine_scale;
   made.d4_by_effective_q3_2 = d4_by_effective_q3_2;
   made.a3_by_effective_q3_2 = a3_by_effective_q3_2;
   made.a2_squared_plus_effective_q3_2_squared = a2_squared_plus_effective_q3_2_squared;
   made.twice_d3 = twice_d3;
   made.a2_plus_effective_q3_2 = a2_plus_effective_q3_2;
-  made.a2_minus_effective_q3_2 = a2_minus_effective_q3_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(pos_rrr_machine *)machine = made;
   return SOFTKIN_OK;

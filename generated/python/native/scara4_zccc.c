@@ -167,10 +167,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a3: out of reach */
   if (!(fabs(cos_a3) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        0.5*(fabs(k->link_length_1_minus_link_length_2 - reach)
-        + fabs(k->link_length_1_minus_link_length_2 + reach)
-        + fabs(k->link_length_1_plus_link_length_2 - reach)
-        + fabs(k->link_length_1_plus_link_length_2 + reach)) - k->link_length_1_plus_link_length_2 - reach,
+        (reach - k->link_length_1_plus_link_length_2 > fabs(k->link_length_1_minus_link_length_2) - reach
+        ? reach - k->link_length_1_plus_link_length_2 : fabs(k->link_length_1_minus_link_length_2) - reach),
         0);
   }
   const double axis_a1 = k->offset_a1 + z;
@@ -463,9 +461,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   /* characteristic length of the machine */
   const double machine_scale = p->link_length_1 + p->link_length_2 + p->link_length_3;
+  const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
-  const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double quotient_in_cos_a3 = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);
   made.lowest_a1 = window_of_a1.lowest;
@@ -489,9 +487,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a2 = p->offset_a2;
   made.offset_a3 = p->offset_a3;
   made.offset_a4 = p->offset_a4;
+  made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
-  made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.quotient_in_cos_a3 = quotient_in_cos_a3;
   made.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};

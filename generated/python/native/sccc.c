@@ -185,10 +185,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a2: out of reach */
   if (!(fabs(cos_a2) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "u",
-        0.5*(fabs(k->link_length_1_minus_link_length_2 - reach)
-        + fabs(k->link_length_1_minus_link_length_2 + reach)
-        + fabs(k->link_length_1_plus_link_length_2 - reach)
-        + fabs(k->link_length_1_plus_link_length_2 + reach)) - k->link_length_1_plus_link_length_2 - reach,
+        (reach - k->link_length_1_plus_link_length_2 > fabs(k->link_length_1_minus_link_length_2) - reach
+        ? reach - k->link_length_1_plus_link_length_2 : fabs(k->link_length_1_minus_link_length_2) - reach),
         0);
   }
   const double sign_elbow = sigma_elbow; /* elbow: +1 right, -1 left */
@@ -498,11 +496,11 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* characteristic length of the machine */
   const double machine_scale = p->link_length_1 + p->link_length_2 + p->link_length_3;
   const double machine_scale_times_plane = 1e-6*machine_scale;
+  const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double coupling_12_plus_coupling_13_plus_one = 1.0 + p->coupling_12 + p->coupling_13;
   const double coupling_23_plus_one = 1.0 + p->coupling_23;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
-  const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double quotient_in_cos_a2 = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);
   const double quotient_in_open_a2 = p->coupling_12*SOFTKIN_RADIAN;
@@ -535,11 +533,11 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a2 = p->offset_a2;
   made.offset_a3 = p->offset_a3;
   made.machine_scale_times_plane = machine_scale_times_plane;
+  made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.coupling_12_plus_coupling_13_plus_one = coupling_12_plus_coupling_13_plus_one;
   made.coupling_23_plus_one = coupling_23_plus_one;
   made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
-  made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.quotient_in_cos_a2 = quotient_in_cos_a2;
   made.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2;
   made.quotient_in_open_a2 = quotient_in_open_a2;

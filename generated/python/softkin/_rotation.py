@@ -31,22 +31,14 @@ def made_rotation(rotation: Rotation) -> Rotation | Diagnosis:
     uneven_z = abs(r13 * r13 + r23 * r23 + r33 * r33 - 1.0)
     # columns not of length one; was the frame converted from REAL?
     if not (uneven_x <= 0.0001 and uneven_y <= 0.0001 and uneven_z <= 0.0001):
-        missing = (
-            uneven_z
-            if uneven_z > (uneven_y if uneven_y > uneven_x else uneven_x)
-            else (uneven_y if uneven_y > uneven_x else uneven_x)
-        )
+        missing = max(max(uneven_x, uneven_y), uneven_z)
         return Diagnosis(Status.BAD_INPUT, "columns not of length one; was the frame converted from REAL?", missing)
     askew_xy = abs(r11 * r12 + r21 * r22 + r31 * r32)
     askew_xz = abs(r11 * r13 + r21 * r23 + r31 * r33)
     askew_yz = abs(r12 * r13 + r22 * r23 + r32 * r33)
     # columns not at right angles; was the frame converted from REAL?
     if not (askew_xy <= 0.0001 and askew_xz <= 0.0001 and askew_yz <= 0.0001):
-        missing = (
-            askew_yz
-            if askew_yz > (askew_xz if askew_xz > askew_xy else askew_xy)
-            else (askew_xz if askew_xz > askew_xy else askew_xy)
-        )
+        missing = max(max(askew_xy, askew_xz), askew_yz)
         return Diagnosis(Status.BAD_INPUT, "columns not at right angles; was the frame converted from REAL?", missing)
     # a right-handed frame
     if not (r11 * (r22 * r33 - r23 * r32) + (r13 * r32 - r12 * r33) * r21 + (r12 * r23 - r13 * r22) * r31 > 0.0):

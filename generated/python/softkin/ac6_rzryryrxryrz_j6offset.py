@@ -88,8 +88,8 @@ class Constants:
         searched = abs(j6_offset_x) > 0.0  # whether to scan A6 for a root
         machine_scale_times_free_angle = 1e-11 * machine_scale
         size_of_j6_offset_x = abs(j6_offset_x)
-        a2_plus_effective_q3_tried = a2 + effective_q3_tried
         a2_minus_effective_q3_tried = a2 - effective_q3_tried
+        a2_plus_effective_q3_tried = a2 + effective_q3_tried
         d4_by_effective_q3_tried = d4 / effective_q3_tried
         a3_by_effective_q3_tried = a3 / effective_q3_tried
         one_by_machine_scale = 1.0 / machine_scale
@@ -98,8 +98,8 @@ class Constants:
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.offset_a5, self.offset_a6, self.effective_q3_tried = offset_a5, offset_a6, effective_q3_tried
         self.searched, self.machine_scale_times_free_angle = searched, machine_scale_times_free_angle
-        self.size_of_j6_offset_x, self.a2_plus_effective_q3_tried = size_of_j6_offset_x, a2_plus_effective_q3_tried
-        self.a2_minus_effective_q3_tried = a2_minus_effective_q3_tried
+        self.size_of_j6_offset_x, self.a2_minus_effective_q3_tried = size_of_j6_offset_x, a2_minus_effective_q3_tried
+        self.a2_plus_effective_q3_tried = a2_plus_effective_q3_tried
         self.d4_by_effective_q3_tried = d4_by_effective_q3_tried
         self.a3_by_effective_q3_tried, self.one_by_machine_scale = a3_by_effective_q3_tried, one_by_machine_scale
         self.quotient_in_fits = quotient_in_fits
@@ -114,7 +114,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 4734b91b82d185c1"
+    KEY = "ac6_rzryryrxryrz_j6offset e5957ecfb02b3e68"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1338,17 +1338,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
         # q3: out of reach
         if not (searched or (-1.0000000000005 <= cos_swing_q3_closed <= 1.0000000000005)):
-            missing = (
-                0.5
-                * (
-                    abs(a2_minus_effective_q3_tried - reach_closed)
-                    + abs(a2_minus_effective_q3_tried + reach_closed)
-                    + abs(a2_plus_effective_q3_tried - reach_closed)
-                    + abs(a2_plus_effective_q3_tried + reach_closed)
-                )
-                - a2_plus_effective_q3_tried
-                - reach_closed
-            )
+            missing = max(abs(a2_minus_effective_q3_tried) - reach_closed, reach_closed - a2_plus_effective_q3_tried)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # without an offset, only the first branch of the crossing has a solution
         if not (searched or (sigma_crossing > 0)):

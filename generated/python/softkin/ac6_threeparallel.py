@@ -114,7 +114,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 00c2519dc3a18ff7"
+    KEY = "ac6_threeparallel 73793f590a9a44ce"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -422,7 +422,7 @@ class Ac6ThreeParallel(Mechanism):
         distance_q1_squared = distance_q1 * distance_q1
         # q1: out of reach
         if not (ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1):
-            missing = 0.5 * (abs(d4 - distance_q1) + abs(d4 + distance_q1)) - distance_q1
+            missing = abs(d4) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_shoulder
@@ -827,18 +827,7 @@ class Ac6ThreeParallel(Mechanism):
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(a2_minus_a3 - reach)
-                    + abs(a2_minus_a3 + reach)
-                    + abs(a2_plus_a3 - reach)
-                    + abs(a2_plus_a3 + reach)
-                )
-                - reach
-                - abs(a2)
-                - abs(a3)
-            )
+            missing = max(abs(abs(a2) - abs(a3)) - reach, reach - abs(a2) - abs(a3))
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1

@@ -79,13 +79,13 @@ class Constants:
         machine_scale_times_free_angle = 1e-11 * machine_scale
         machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
         machine_scale_times_rounding = 1e-12 * machine_scale
+        a2_minus_effective_q3 = a2 - effective_q3
         one_by_machine_scale = 1.0 / machine_scale
         d4_by_effective_q3 = d4 / effective_q3
         a3_by_effective_q3 = a3 / effective_q3
         a2_squared_plus_effective_q3_squared = a2 * a2 + effective_q3 * effective_q3
         twice_d3 = 2.0 * d3
         a2_plus_effective_q3 = a2 + effective_q3
-        a2_minus_effective_q3 = a2 - effective_q3
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.d6 = d1, a1, a2, d3, a3, d4, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.offset_a5, self.offset_a6, self.effective_q3 = offset_a5, offset_a6, effective_q3
@@ -94,10 +94,10 @@ class Constants:
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
         self.machine_scale_times_rounding = machine_scale_times_rounding
-        self.one_by_machine_scale, self.d4_by_effective_q3 = one_by_machine_scale, d4_by_effective_q3
-        self.a3_by_effective_q3 = a3_by_effective_q3
+        self.a2_minus_effective_q3, self.one_by_machine_scale = a2_minus_effective_q3, one_by_machine_scale
+        self.d4_by_effective_q3, self.a3_by_effective_q3 = d4_by_effective_q3, a3_by_effective_q3
         self.a2_squared_plus_effective_q3_squared, self.twice_d3 = a2_squared_plus_effective_q3_squared, twice_d3
-        self.a2_plus_effective_q3, self.a2_minus_effective_q3 = a2_plus_effective_q3, a2_minus_effective_q3
+        self.a2_plus_effective_q3 = a2_plus_effective_q3
 
 
 class ArticulatedRobot6DOF(Mechanism):
@@ -109,7 +109,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof ddccf27ca636ae3a"
+    KEY = "articulatedrobot_6dof 99ef33ce85ecb202"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -433,7 +433,7 @@ class ArticulatedRobot6DOF(Mechanism):
         distance_q1_squared = distance_q1 * distance_q1
         # q1: out of reach
         if not (ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1):
-            missing = 0.5 * (abs(d3 - distance_q1) + abs(d3 + distance_q1)) - distance_q1
+            missing = abs(d3) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         wrist_z = z - d6 * r33
         wrist_y_from_q1 = wrist_z - d1  # coordinate of the point that the remaining links must reach
@@ -508,17 +508,7 @@ class ArticulatedRobot6DOF(Mechanism):
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(a2_minus_effective_q3 - reach)
-                    + abs(a2_minus_effective_q3 + reach)
-                    + abs(a2_plus_effective_q3 - reach)
-                    + abs(a2_plus_effective_q3 + reach)
-                )
-                - a2_plus_effective_q3
-                - reach
-            )
+            missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1

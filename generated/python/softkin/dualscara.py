@@ -108,13 +108,13 @@ class Constants:
         rod_length_1_minus_rod_length_2 = rod_length_1 - rod_length_2
         product_in_foot_fraction = rod_length_1_minus_rod_length_2 * rod_length_1_plus_rod_length_2
         arm_length_1_times_shortest_link = 1e-9 * arm_length_1
+        arm_length_1_minus_rod_length_1 = arm_length_1 - rod_length_1
         arm_length_2_times_shortest_link = 1e-9 * arm_length_2
+        arm_length_2_minus_rod_length_2 = arm_length_2 - rod_length_2
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         one_by_rod_length_1 = 1.0 / rod_length_1
         one_by_rod_length_2 = 1.0 / rod_length_2
-        arm_length_1_minus_rod_length_1 = arm_length_1 - rod_length_1
         arm_length_1_plus_rod_length_1 = arm_length_1 + rod_length_1
-        arm_length_2_minus_rod_length_2 = arm_length_2 - rod_length_2
         arm_length_2_plus_rod_length_2 = arm_length_2 + rod_length_2
         quotient_in_type2_rods_aligned = assembly_sign / (rod_length_1 * rod_length_2)
         quotient_in_margin_rods_aligned = 1.0 / (rod_length_1 * rod_length_2)
@@ -129,12 +129,12 @@ class Constants:
         self.rod_length_1_minus_rod_length_2 = rod_length_1_minus_rod_length_2
         self.product_in_foot_fraction = product_in_foot_fraction
         self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
+        self.arm_length_1_minus_rod_length_1 = arm_length_1_minus_rod_length_1
         self.arm_length_2_times_shortest_link = arm_length_2_times_shortest_link
+        self.arm_length_2_minus_rod_length_2 = arm_length_2_minus_rod_length_2
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
         self.one_by_rod_length_1, self.one_by_rod_length_2 = one_by_rod_length_1, one_by_rod_length_2
-        self.arm_length_1_minus_rod_length_1 = arm_length_1_minus_rod_length_1
         self.arm_length_1_plus_rod_length_1 = arm_length_1_plus_rod_length_1
-        self.arm_length_2_minus_rod_length_2 = arm_length_2_minus_rod_length_2
         self.arm_length_2_plus_rod_length_2 = arm_length_2_plus_rod_length_2
         self.quotient_in_type2_rods_aligned = quotient_in_type2_rods_aligned
         self.quotient_in_margin_rods_aligned = quotient_in_margin_rods_aligned
@@ -150,7 +150,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_DualScara"
-    KEY = "dualscara 850eb670da1f1c1d"
+    KEY = "dualscara 7fd78556bc29dc3c"
     AXES = (
         Axis(
             name="A1",
@@ -460,13 +460,8 @@ class DualScara(OffsetKinematics, TwistChoice):
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(arm_length_1_minus_rod_length_1 - effective_a1)
-                + 0.5 * abs(arm_length_1_minus_rod_length_1 + effective_a1)
-                + 0.5 * abs(arm_length_1_plus_rod_length_1 - effective_a1)
-                + 0.5 * abs(arm_length_1_plus_rod_length_1 + effective_a1)
-                - arm_length_1_plus_rod_length_1
-                - effective_a1
+            missing = max(
+                abs(arm_length_1_minus_rod_length_1) - effective_a1, effective_a1 - arm_length_1_plus_rod_length_1
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = x - half_base_distance  # rod 2: known part of its vector
@@ -488,13 +483,8 @@ class DualScara(OffsetKinematics, TwistChoice):
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(arm_length_2_minus_rod_length_2 - effective_a2)
-                + 0.5 * abs(arm_length_2_minus_rod_length_2 + effective_a2)
-                + 0.5 * abs(arm_length_2_plus_rod_length_2 - effective_a2)
-                + 0.5 * abs(arm_length_2_plus_rod_length_2 + effective_a2)
-                - arm_length_2_plus_rod_length_2
-                - effective_a2
+            missing = max(
+                abs(arm_length_2_minus_rod_length_2) - effective_a2, effective_a2 - arm_length_2_plus_rod_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
@@ -861,13 +851,8 @@ class DualScara(OffsetKinematics, TwistChoice):
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(arm_length_1_minus_rod_length_1 - effective_a1)
-                + 0.5 * abs(arm_length_1_minus_rod_length_1 + effective_a1)
-                + 0.5 * abs(arm_length_1_plus_rod_length_1 - effective_a1)
-                + 0.5 * abs(arm_length_1_plus_rod_length_1 + effective_a1)
-                - arm_length_1_plus_rod_length_1
-                - effective_a1
+            missing = max(
+                abs(arm_length_1_minus_rod_length_1) - effective_a1, effective_a1 - arm_length_1_plus_rod_length_1
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = flange_x - half_base_distance  # rod 2: known part of its vector
@@ -889,13 +874,8 @@ class DualScara(OffsetKinematics, TwistChoice):
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(arm_length_2_minus_rod_length_2 - effective_a2)
-                + 0.5 * abs(arm_length_2_minus_rod_length_2 + effective_a2)
-                + 0.5 * abs(arm_length_2_plus_rod_length_2 - effective_a2)
-                + 0.5 * abs(arm_length_2_plus_rod_length_2 + effective_a2)
-                - arm_length_2_plus_rod_length_2
-                - effective_a2
+            missing = max(
+                abs(arm_length_2_minus_rod_length_2) - effective_a2, effective_a2 - arm_length_2_plus_rod_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale

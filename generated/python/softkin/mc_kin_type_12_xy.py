@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 26 additions, 37 multiplications, 1 divisions, 2 square roots, 4 sines
-    inverse: 51 additions, 44 multiplications, 10 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 164 additions, 121 multiplications, 27 divisions, 9 square roots, 6 sines
+    inverse: 46 additions, 43 multiplications, 10 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 144 additions, 117 multiplications, 27 divisions, 9 square roots, 6 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -103,7 +103,9 @@ class Constants:
         product_in_foot_fraction = link_length_2_minus_radius_2 * link_length_2_plus_radius_2
         machine_scale_times_plane = 1e-6 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_5_times_shortest_link = 1e-9 * link_length_5
+        link_length_5_minus_link_length_4 = link_length_5 - link_length_4
         link_length_3_by_link_length_2 = link_length_3 / link_length_2
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         link_length_2_by_link_length_3 = link_length_2 / link_length_3
@@ -114,9 +116,7 @@ class Constants:
         sum_in_pivot_rear_x = link_length_1 + link_length_1 * link_length_3 / link_length_2
         quotient_in_scaled_pivot_rear_y = link_length_2 * sum_in_pivot_rear_x / link_length_3
         quotient_in_scaled_pivot_rear_y_2 = link_length_2 * link_length_5 / link_length_3
-        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        link_length_5_minus_link_length_4 = link_length_5 - link_length_4
         link_length_4_plus_link_length_5 = link_length_4 + link_length_5
         quotient_in_type2_arms_aligned = assembly_sign * link_length_3 / (link_length_4 * link_length_2 * link_length_2)
         quotient_in_along_a2 = link_length_1 * link_length_2_plus_link_length_3 / link_length_2
@@ -137,7 +137,9 @@ class Constants:
         self.product_in_foot_fraction = product_in_foot_fraction
         self.machine_scale_times_plane = machine_scale_times_plane
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
+        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.link_length_5_times_shortest_link = link_length_5_times_shortest_link
+        self.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4
         self.link_length_3_by_link_length_2 = link_length_3_by_link_length_2
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
         self.link_length_2_by_link_length_3 = link_length_2_by_link_length_3
@@ -145,9 +147,7 @@ class Constants:
         self.quotient_in_branch_w, self.sum_in_pivot_rear_x = quotient_in_branch_w, sum_in_pivot_rear_x
         self.quotient_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y
         self.quotient_in_scaled_pivot_rear_y_2 = quotient_in_scaled_pivot_rear_y_2
-        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
-        self.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4
         self.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5
         self.quotient_in_type2_arms_aligned = quotient_in_type2_arms_aligned
         self.quotient_in_along_a2 = quotient_in_along_a2
@@ -166,7 +166,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
-    KEY = "mc_kin_type_12_xy 8268a67c218e9976"
+    KEY = "mc_kin_type_12_xy 5f799896e83af5fc"
     AXES = (
         Axis(
             name="A1",
@@ -473,32 +473,16 @@ class KinType12XY(OffsetKinematics):
         if not (effective_a1 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(divisor_a1 - link_length_1_minus_link_length_2)
-                    + abs(divisor_a1 + link_length_1_minus_link_length_2)
-                    + abs(divisor_a1 - link_length_1_plus_link_length_2)
-                    + abs(divisor_a1 + link_length_1_plus_link_length_2)
-                )
-                - divisor_a1
-                - link_length_1_plus_link_length_2
+            missing = max(
+                abs(link_length_1_minus_link_length_2) - divisor_a1, divisor_a1 - link_length_1_plus_link_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         # a2: its effective length is too short
         if not (effective_a2 > link_length_5_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(divisor_a2 - link_length_4_plus_link_length_5)
-                    + abs(divisor_a2 + link_length_4_plus_link_length_5)
-                    + abs(divisor_a2 - link_length_5_minus_link_length_4)
-                    + abs(divisor_a2 + link_length_5_minus_link_length_4)
-                )
-                - divisor_a2
-                - link_length_4_plus_link_length_5
+            missing = max(
+                abs(link_length_5_minus_link_length_4) - divisor_a2, divisor_a2 - link_length_4_plus_link_length_5
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         rod_1_x = x - centre_1_x
@@ -848,32 +832,16 @@ class KinType12XY(OffsetKinematics):
         if not (effective_a1 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(divisor_a1 - link_length_1_minus_link_length_2)
-                    + abs(divisor_a1 + link_length_1_minus_link_length_2)
-                    + abs(divisor_a1 - link_length_1_plus_link_length_2)
-                    + abs(divisor_a1 + link_length_1_plus_link_length_2)
-                )
-                - divisor_a1
-                - link_length_1_plus_link_length_2
+            missing = max(
+                abs(link_length_1_minus_link_length_2) - divisor_a1, divisor_a1 - link_length_1_plus_link_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         # a2: its effective length is too short
         if not (effective_a2 > link_length_5_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(divisor_a2 - link_length_4_plus_link_length_5)
-                    + abs(divisor_a2 + link_length_4_plus_link_length_5)
-                    + abs(divisor_a2 - link_length_5_minus_link_length_4)
-                    + abs(divisor_a2 + link_length_5_minus_link_length_4)
-                )
-                - divisor_a2
-                - link_length_4_plus_link_length_5
+            missing = max(
+                abs(link_length_5_minus_link_length_4) - divisor_a2, divisor_a2 - link_length_4_plus_link_length_5
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         rod_1_x = flange_x - centre_1_x

@@ -71,10 +71,10 @@ class Constants:
         outer_arm_squared_times_rounding = 1e-12 * outer_arm * outer_arm
         machine_scale_times_plane = 1e-6 * machine_scale
         inner_arm_times_shortest_link = 1e-9 * inner_arm
+        inner_arm_minus_outer_arm = inner_arm - outer_arm
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         tcp_displacement_minus_displacement = tcp_displacement - displacement
         one_by_outer_arm = 1.0 / outer_arm
-        inner_arm_minus_outer_arm = inner_arm - outer_arm
         inner_arm_plus_outer_arm = inner_arm + outer_arm
         assembly_sign_by_outer_arm_squared = assembly_sign / (outer_arm * outer_arm)
         one_by_outer_arm_squared = 1.0 / (outer_arm * outer_arm)
@@ -86,10 +86,10 @@ class Constants:
         self.outer_arm_squared_times_rounding = outer_arm_squared_times_rounding
         self.machine_scale_times_plane = machine_scale_times_plane
         self.inner_arm_times_shortest_link = inner_arm_times_shortest_link
+        self.inner_arm_minus_outer_arm = inner_arm_minus_outer_arm
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
         self.tcp_displacement_minus_displacement = tcp_displacement_minus_displacement
-        self.one_by_outer_arm, self.inner_arm_minus_outer_arm = one_by_outer_arm, inner_arm_minus_outer_arm
-        self.inner_arm_plus_outer_arm = inner_arm_plus_outer_arm
+        self.one_by_outer_arm, self.inner_arm_plus_outer_arm = one_by_outer_arm, inner_arm_plus_outer_arm
         self.assembly_sign_by_outer_arm_squared = assembly_sign_by_outer_arm_squared
         self.one_by_outer_arm_squared, self.twice_inner_arm = one_by_outer_arm_squared, twice_inner_arm
         self.sum_in_slope_1_by_x = sum_in_slope_1_by_x
@@ -104,7 +104,7 @@ class P2CType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type1"
-    KEY = "p2c_type1 7c202f9a122f5a4e"
+    KEY = "p2c_type1 6d1d179d1344ac30"
     AXES = (
         Axis(
             name="A1",
@@ -319,14 +319,7 @@ class P2CType1(OffsetKinematics):
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(effective_a1 - inner_arm_minus_outer_arm)
-                + 0.5 * abs(effective_a1 + inner_arm_minus_outer_arm)
-                + 0.5 * abs(effective_a1 - inner_arm_plus_outer_arm)
-                + 0.5 * abs(effective_a1 + inner_arm_plus_outer_arm)
-                - effective_a1
-                - inner_arm_plus_outer_arm
-            )
+            missing = max(abs(inner_arm_minus_outer_arm) - effective_a1, effective_a1 - inner_arm_plus_outer_arm)
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
         effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
@@ -343,14 +336,7 @@ class P2CType1(OffsetKinematics):
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(effective_a2 - inner_arm_minus_outer_arm)
-                + 0.5 * abs(effective_a2 + inner_arm_minus_outer_arm)
-                + 0.5 * abs(effective_a2 - inner_arm_plus_outer_arm)
-                + 0.5 * abs(effective_a2 + inner_arm_plus_outer_arm)
-                - effective_a2
-                - inner_arm_plus_outer_arm
-            )
+            missing = max(abs(inner_arm_minus_outer_arm) - effective_a2, effective_a2 - inner_arm_plus_outer_arm)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1
@@ -572,14 +558,7 @@ class P2CType1(OffsetKinematics):
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(effective_a1 - inner_arm_minus_outer_arm)
-                + 0.5 * abs(effective_a1 + inner_arm_minus_outer_arm)
-                + 0.5 * abs(effective_a1 - inner_arm_plus_outer_arm)
-                + 0.5 * abs(effective_a1 + inner_arm_plus_outer_arm)
-                - effective_a1
-                - inner_arm_plus_outer_arm
-            )
+            missing = max(abs(inner_arm_minus_outer_arm) - effective_a1, effective_a1 - inner_arm_plus_outer_arm)
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_2_x = flange_x + tcp_displacement_minus_displacement  # rod 2: known part of its vector
         effective_a2 = root(flange_y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
@@ -596,14 +575,7 @@ class P2CType1(OffsetKinematics):
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(effective_a2 - inner_arm_minus_outer_arm)
-                + 0.5 * abs(effective_a2 + inner_arm_minus_outer_arm)
-                + 0.5 * abs(effective_a2 - inner_arm_plus_outer_arm)
-                + 0.5 * abs(effective_a2 + inner_arm_plus_outer_arm)
-                - effective_a2
-                - inner_arm_plus_outer_arm
-            )
+            missing = max(abs(inner_arm_minus_outer_arm) - effective_a2, effective_a2 - inner_arm_plus_outer_arm)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
         sin_swing_a1 = 2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_knee_1 / divisor_of_cos_a1

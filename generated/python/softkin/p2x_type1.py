@@ -111,7 +111,7 @@ class P2XType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2X_Type1"
-    KEY = "p2x_type1 09c08805f2675120"
+    KEY = "p2x_type1 70455d8230a63709"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),
@@ -306,13 +306,13 @@ class P2XType1(OffsetKinematics):
         radicand_a1 = (arm_length_1 + span_1_y) * (arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_1_squared_times_rounding):
-            missing = 0.5 * (abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
+            missing = abs(span_1_y) - arm_length_1
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_y = y - rail_y_2
         radicand_a2 = (arm_length_2 + span_2_y) * (arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_2_squared_times_rounding):
-            missing = 0.5 * (abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
+            missing = abs(span_2_y) - arm_length_2
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
         a1 = span_1_x - (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1
@@ -495,13 +495,13 @@ class P2XType1(OffsetKinematics):
         radicand_a1 = (arm_length_1 + span_1_y) * (arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_1_squared_times_rounding):
-            missing = 0.5 * (abs(arm_length_1 - span_1_y) + abs(arm_length_1 + span_1_y)) - arm_length_1
+            missing = abs(span_1_y) - arm_length_1
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
         span_2_y = flange_y - rail_y_2
         radicand_a2 = (arm_length_2 + span_2_y) * (arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_2_squared_times_rounding):
-            missing = 0.5 * (abs(arm_length_2 - span_2_y) + abs(arm_length_2 + span_2_y)) - arm_length_2
+            missing = abs(span_2_y) - arm_length_2
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
         flange_x = x - point_x  # position of the flange: the point less its offset
         span_1_x = flange_x - tcp_offset_1  # rod 1: known part of its vector

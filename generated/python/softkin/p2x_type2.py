@@ -80,7 +80,7 @@ class P2XType2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_P2X_Type2"
-    KEY = "p2x_type2 b7712860b6bf350c"
+    KEY = "p2x_type2 02c260cafbf93ff1"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),
@@ -223,7 +223,7 @@ class P2XType2(OffsetKinematics):
         radicand_a2 = (arm_length + y) * (arm_length - y)  # quadratic equation for a2: rod 1 (through x)
         # rod 1 (through x) cannot reach
         if not (radicand_a2 >= -shared_product):
-            missing = 0.5 * (abs(arm_length - y) + abs(arm_length + y)) - arm_length
+            missing = abs(y) - arm_length
             return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
         type2_flat = assembly_sign_by_arm_length * y
         # flat: in the other assembly mode, or too close to a type 2 singularity
@@ -331,7 +331,7 @@ class P2XType2(OffsetKinematics):
         radicand_a2 = (arm_length + flange_y) * (arm_length - flange_y)
         # rod 1 (through x) cannot reach
         if not (radicand_a2 >= -shared_product):
-            missing = 0.5 * (abs(arm_length - flange_y) + abs(arm_length + flange_y)) - arm_length
+            missing = abs(flange_y) - arm_length
             return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
         type2_flat = assembly_sign_by_arm_length * flange_y
         # flat: in the other assembly mode, or too close to a type 2 singularity

@@ -73,6 +73,7 @@ class Constants:
         machine_scale = link_length_1 + link_length_2 + shoulder_offset  # characteristic length of the machine
         rounding_a1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
         size_a1_for_a3_from_a2 = 2.0 * link_length_1 * link_length_2
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         size_a1_for_a3_from_a2_times_rounding = 1e-12 * size_a1_for_a3_from_a2
         machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
@@ -83,7 +84,6 @@ class Constants:
         link_length_2_by_machine_scale = link_length_2 / machine_scale
         link_length_1_by_machine_scale = link_length_1 / machine_scale
         base_height_plus_wrist_offset_z = base_height + wrist_offset_z
-        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         quotient_in_cos_swing_a3_from_a2 = 0.25 / (link_length_1 * link_length_2)
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
@@ -92,6 +92,7 @@ class Constants:
         self.link_length_2, self.wrist_offset_x, self.wrist_offset_z = link_length_2, wrist_offset_x, wrist_offset_z
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.rounding_a1, self.size_a1_for_a3_from_a2 = rounding_a1, size_a1_for_a3_from_a2
+        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.size_a1_for_a3_from_a2_times_rounding = size_a1_for_a3_from_a2_times_rounding
         self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
@@ -101,7 +102,6 @@ class Constants:
         self.link_length_2_by_machine_scale = link_length_2_by_machine_scale
         self.link_length_1_by_machine_scale = link_length_1_by_machine_scale
         self.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z
-        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.quotient_in_cos_swing_a3_from_a2 = quotient_in_cos_swing_a3_from_a2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
@@ -117,7 +117,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer"
-    KEY = "palletizer ed0ad40ba751333b"
+    KEY = "palletizer 8ed4c0e29c54268b"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),
@@ -373,17 +373,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) * quotient_in_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(link_length_1_minus_link_length_2 - reach)
-                    + abs(link_length_1_minus_link_length_2 + reach)
-                    + abs(link_length_1_plus_link_length_2 - reach)
-                    + abs(link_length_1_plus_link_length_2 + reach)
-                )
-                - link_length_1_plus_link_length_2
-                - reach
-            )
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
         # polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
         # reference
@@ -671,7 +661,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         distance_a1_squared = distance_a1 * distance_a1
         # a1: out of reach
         if not (ahead_squared_a1 >= -1e-12 * distance_a1_squared - rounding_a1):
-            missing = 0.5 * (abs(distance_a1 - tool_y) + abs(distance_a1 + tool_y)) - distance_a1
+            missing = abs(tool_y) - distance_a1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         tool_z = point_z + wrist_offset_z  # commanded point, in the frame of the last moving joint
         wrist_z_from_a1 = z - base_height - tool_z  # coordinate of the point that the remaining links must reach
@@ -759,17 +749,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) * quotient_in_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(link_length_1_minus_link_length_2 - reach)
-                    + abs(link_length_1_minus_link_length_2 + reach)
-                    + abs(link_length_1_plus_link_length_2 - reach)
-                    + abs(link_length_1_plus_link_length_2 + reach)
-                )
-                - link_length_1_plus_link_length_2
-                - reach
-            )
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1

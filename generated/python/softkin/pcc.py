@@ -60,16 +60,16 @@ class Constants:
         self.lowest_elbow, self.highest_elbow, *_ = machine._window("elbow")
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
         machine_scale_times_plane = 1e-6 * machine_scale
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         quotient_in_cos_a2_from_a1 = 0.25 / (link_length_1 * link_length_2)
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         self.link_length_1, self.link_length_2, self.offset_a1 = link_length_1, link_length_2, offset_a1
         self.offset_a2, self.machine_scale_times_plane = offset_a2, machine_scale_times_plane
+        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
-        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.quotient_in_cos_a2_from_a1 = quotient_in_cos_a2_from_a1
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
 
@@ -83,7 +83,7 @@ class PCC(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_PCC"
-    KEY = "pcc 3118ae4e00305a05"
+    KEY = "pcc c52d8d87409dd1fd"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Inner arm about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Outer arm about Z, its absolute angle", multi_turn=True),
@@ -239,17 +239,7 @@ class PCC(OffsetKinematics):
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * quotient_in_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(link_length_1_minus_link_length_2 - reach)
-                    + abs(link_length_1_minus_link_length_2 + reach)
-                    + abs(link_length_1_plus_link_length_2 - reach)
-                    + abs(link_length_1_plus_link_length_2 + reach)
-                )
-                - link_length_1_plus_link_length_2
-                - reach
-            )
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
@@ -399,17 +389,7 @@ class PCC(OffsetKinematics):
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * quotient_in_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(link_length_1_minus_link_length_2 - reach)
-                    + abs(link_length_1_minus_link_length_2 + reach)
-                    + abs(link_length_1_plus_link_length_2 - reach)
-                    + abs(link_length_1_plus_link_length_2 + reach)
-                )
-                - link_length_1_plus_link_length_2
-                - reach
-            )
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1

@@ -275,18 +275,18 @@ class Constants:
         machine_scale_times_shortest_link = 1e-9 * machine_scale
         machine_scale_times_plane = 1e-6 * machine_scale
         arm_length_1_times_shortest_link = 1e-9 * arm_length_1
+        arm_length_1_minus_rod_length_1 = arm_length_1 - rod_length_1
         arm_length_2_times_shortest_link = 1e-9 * arm_length_2
+        arm_length_2_minus_rod_length_2 = arm_length_2 - rod_length_2
         arm_length_3_times_shortest_link = 1e-9 * arm_length_3
+        arm_length_3_minus_rod_length_3 = arm_length_3 - rod_length_3
         one_by_platform_radius = 1.0 / platform_radius
         one_by_machine_scale_squared = 1.0 / (machine_scale * machine_scale)
         one_by_rod_length_1 = 1.0 / rod_length_1
         one_by_rod_length_2 = 1.0 / rod_length_2
         one_by_rod_length_3 = 1.0 / rod_length_3
-        arm_length_1_minus_rod_length_1 = arm_length_1 - rod_length_1
         arm_length_1_plus_rod_length_1 = arm_length_1 + rod_length_1
-        arm_length_2_minus_rod_length_2 = arm_length_2 - rod_length_2
         arm_length_2_plus_rod_length_2 = arm_length_2 + rod_length_2
-        arm_length_3_minus_rod_length_3 = arm_length_3 - rod_length_3
         arm_length_3_plus_rod_length_3 = arm_length_3 + rod_length_3
         quotient_in_determinant = 1.0 / (rod_length_1 * rod_length_2 * rod_length_3)
         self.base_1_x, self.base_1_y, self.base_2_x, self.base_2_y = base_1_x, base_1_y, base_2_x, base_2_y
@@ -301,16 +301,16 @@ class Constants:
         self.machine_scale_times_shortest_link = machine_scale_times_shortest_link
         self.machine_scale_times_plane = machine_scale_times_plane
         self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
+        self.arm_length_1_minus_rod_length_1 = arm_length_1_minus_rod_length_1
         self.arm_length_2_times_shortest_link = arm_length_2_times_shortest_link
+        self.arm_length_2_minus_rod_length_2 = arm_length_2_minus_rod_length_2
         self.arm_length_3_times_shortest_link = arm_length_3_times_shortest_link
+        self.arm_length_3_minus_rod_length_3 = arm_length_3_minus_rod_length_3
         self.one_by_platform_radius = one_by_platform_radius
         self.one_by_machine_scale_squared, self.one_by_rod_length_1 = one_by_machine_scale_squared, one_by_rod_length_1
         self.one_by_rod_length_2, self.one_by_rod_length_3 = one_by_rod_length_2, one_by_rod_length_3
-        self.arm_length_1_minus_rod_length_1 = arm_length_1_minus_rod_length_1
         self.arm_length_1_plus_rod_length_1 = arm_length_1_plus_rod_length_1
-        self.arm_length_2_minus_rod_length_2 = arm_length_2_minus_rod_length_2
         self.arm_length_2_plus_rod_length_2 = arm_length_2_plus_rod_length_2
-        self.arm_length_3_minus_rod_length_3 = arm_length_3_minus_rod_length_3
         self.arm_length_3_plus_rod_length_3 = arm_length_3_plus_rod_length_3
         self.quotient_in_determinant = quotient_in_determinant
 
@@ -324,7 +324,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Planar_3RRR"
-    KEY = "planar_3rrr fd991b4feec229d7"
+    KEY = "planar_3rrr 7721263b7913ad22"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z, from +X", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z, from +X", multi_turn=True),
@@ -813,13 +813,8 @@ class Planar3RRR(IterativeForward, TwistChoice):
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(arm_length_1_minus_rod_length_1 - effective_a1)
-                + 0.5 * abs(arm_length_1_minus_rod_length_1 + effective_a1)
-                + 0.5 * abs(arm_length_1_plus_rod_length_1 - effective_a1)
-                + 0.5 * abs(arm_length_1_plus_rod_length_1 + effective_a1)
-                - arm_length_1_plus_rod_length_1
-                - effective_a1
+            missing = max(
+                abs(arm_length_1_minus_rod_length_1) - effective_a1, effective_a1 - arm_length_1_plus_rod_length_1
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         arm_2_x = platform_2_x * cos_heading - platform_2_y * sin_heading
@@ -844,13 +839,8 @@ class Planar3RRR(IterativeForward, TwistChoice):
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(arm_length_2_minus_rod_length_2 - effective_a2)
-                + 0.5 * abs(arm_length_2_minus_rod_length_2 + effective_a2)
-                + 0.5 * abs(arm_length_2_plus_rod_length_2 - effective_a2)
-                + 0.5 * abs(arm_length_2_plus_rod_length_2 + effective_a2)
-                - arm_length_2_plus_rod_length_2
-                - effective_a2
+            missing = max(
+                abs(arm_length_2_minus_rod_length_2) - effective_a2, effective_a2 - arm_length_2_plus_rod_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         arm_3_x = platform_3_x * cos_heading - platform_3_y * sin_heading
@@ -875,13 +865,8 @@ class Planar3RRR(IterativeForward, TwistChoice):
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(arm_length_3_minus_rod_length_3 - effective_a3)
-                + 0.5 * abs(arm_length_3_minus_rod_length_3 + effective_a3)
-                + 0.5 * abs(arm_length_3_plus_rod_length_3 - effective_a3)
-                + 0.5 * abs(arm_length_3_plus_rod_length_3 + effective_a3)
-                - arm_length_3_plus_rod_length_3
-                - effective_a3
+            missing = max(
+                abs(arm_length_3_minus_rod_length_3) - effective_a3, effective_a3 - arm_length_3_plus_rod_length_3
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale

@@ -68,6 +68,7 @@ class Constants:
         machine_scale_times_free_angle = 1e-11 * machine_scale
         machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
         machine_scale_times_rounding = 1e-12 * machine_scale
+        a2_minus_effective_q3_2 = a2 - effective_q3_2
         a2_times_shortest_link = 1e-9 * a2
         one_by_machine_scale = 1.0 / machine_scale
         d4_by_effective_q3_2 = d4 / effective_q3_2
@@ -75,7 +76,6 @@ class Constants:
         a2_squared_plus_effective_q3_2_squared = a2_squared + effective_q3_2 * effective_q3_2
         twice_d3 = 2.0 * d3
         a2_plus_effective_q3_2 = a2 + effective_q3_2
-        a2_minus_effective_q3_2 = a2 - effective_q3_2
         twice_a2 = 2.0 * a2
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.offset_a1 = d1, a1, a2, d3, a3, d4, offset_a1
         self.offset_a2, self.offset_a3, self.effective_q3_2 = offset_a2, offset_a3, effective_q3_2
@@ -84,11 +84,11 @@ class Constants:
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
         self.machine_scale_times_rounding = machine_scale_times_rounding
-        self.a2_times_shortest_link, self.one_by_machine_scale = a2_times_shortest_link, one_by_machine_scale
-        self.d4_by_effective_q3_2, self.a3_by_effective_q3_2 = d4_by_effective_q3_2, a3_by_effective_q3_2
+        self.a2_minus_effective_q3_2, self.a2_times_shortest_link = a2_minus_effective_q3_2, a2_times_shortest_link
+        self.one_by_machine_scale, self.d4_by_effective_q3_2 = one_by_machine_scale, d4_by_effective_q3_2
+        self.a3_by_effective_q3_2 = a3_by_effective_q3_2
         self.a2_squared_plus_effective_q3_2_squared, self.twice_d3 = a2_squared_plus_effective_q3_2_squared, twice_d3
-        self.a2_plus_effective_q3_2, self.a2_minus_effective_q3_2 = a2_plus_effective_q3_2, a2_minus_effective_q3_2
-        self.twice_a2 = twice_a2
+        self.a2_plus_effective_q3_2, self.twice_a2 = a2_plus_effective_q3_2, twice_a2
 
 
 class PosRRR(OffsetKinematics):
@@ -100,7 +100,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr c03752bd19add5bf"
+    KEY = "pos_rrr 28e561ae93eb8b52"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -306,7 +306,7 @@ class PosRRR(OffsetKinematics):
         distance_q1_squared = distance_q1 * distance_q1
         # q1: out of reach
         if not (ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1):
-            missing = 0.5 * (abs(d3 - distance_q1) + abs(d3 + distance_q1)) - distance_q1
+            missing = abs(d3) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
@@ -382,17 +382,7 @@ class PosRRR(OffsetKinematics):
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(a2_minus_effective_q3_2 - reach)
-                    + abs(a2_minus_effective_q3_2 + reach)
-                    + abs(a2_plus_effective_q3_2 - reach)
-                    + abs(a2_plus_effective_q3_2 + reach)
-                )
-                - a2_plus_effective_q3_2
-                - reach
-            )
+            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -590,7 +580,7 @@ class PosRRR(OffsetKinematics):
         distance_q1_squared = distance_q1 * distance_q1
         # q1: out of reach
         if not (ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1):
-            missing = 0.5 * (abs(distance_q1 - tool_z) + abs(distance_q1 + tool_z)) - distance_q1
+            missing = abs(tool_z) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         tool_x = a3 + point_x  # commanded point, in the frame of the last moving joint
         tool_y = -d4 - point_z  # commanded point, in the frame of the last moving joint
@@ -674,18 +664,7 @@ class PosRRR(OffsetKinematics):
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(a2_minus_effective_q3 - reach)
-                    + abs(a2_minus_effective_q3 + reach)
-                    + abs(a2_plus_effective_q3 - reach)
-                    + abs(a2_plus_effective_q3 + reach)
-                )
-                - a2
-                - effective_q3
-                - reach
-            )
+            missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1

@@ -57,19 +57,19 @@ class Constants:
         self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
         self.lowest_z, self.highest_z, *_ = machine._window("z")
         machine_scale = arm_length_1 + arm_length_2  # characteristic length of the machine
+        arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         arm_length_1_times_shortest_link = 1e-9 * arm_length_1
         arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
-        arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
         quotient_in_cos_a2 = 0.25 / (arm_length_1 * arm_length_2)
         half_by_arm_length_1_by_arm_length_2 = 0.5 / (arm_length_1 * arm_length_2)
         one_by_machine_scale = 1.0 / machine_scale
         self.arm_length_1, self.arm_length_2, self.offset_a1 = arm_length_1, arm_length_2, offset_a1
         self.offset_a2, self.offset_z = offset_a2, offset_z
+        self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
         self.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2
-        self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
         self.quotient_in_cos_a2 = quotient_in_cos_a2
         self.half_by_arm_length_1_by_arm_length_2 = half_by_arm_length_1_by_arm_length_2
         self.one_by_machine_scale = one_by_machine_scale
@@ -84,7 +84,7 @@ class Scara2Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara2_Z"
-    KEY = "scara2_z 1d4aa7f11830a138"
+    KEY = "scara2_z 520ff4b3f1694539"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -240,17 +240,7 @@ class Scara2Z(OffsetKinematics):
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(arm_length_1_minus_arm_length_2 - reach)
-                    + abs(arm_length_1_minus_arm_length_2 + reach)
-                    + abs(arm_length_1_plus_arm_length_2 - reach)
-                    + abs(arm_length_1_plus_arm_length_2 + reach)
-                )
-                - arm_length_1_plus_arm_length_2
-                - reach
-            )
+            missing = max(abs(arm_length_1_minus_arm_length_2) - reach, reach - arm_length_1_plus_arm_length_2)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
@@ -390,15 +380,7 @@ class Scara2Z(OffsetKinematics):
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(arm_length_1_minus_reach - effective_a2)
-                + 0.5 * abs(arm_length_1_minus_reach + effective_a2)
-                + 0.5 * abs(arm_length_1_plus_reach - effective_a2)
-                + 0.5 * abs(arm_length_1_plus_reach + effective_a2)
-                - arm_length_1
-                - effective_a2
-                - reach
-            )
+            missing = max(abs(arm_length_1 - effective_a2) - reach, -arm_length_1_minus_reach - effective_a2)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2

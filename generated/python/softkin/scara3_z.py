@@ -63,16 +63,16 @@ class Constants:
         self.lowest_a3, self.highest_a3, self.single_a3, self.mid_a3 = machine._window("a3")
         self.lowest_z, self.highest_z, *_ = machine._window("z")
         machine_scale = arm_length_1 + arm_length_2 + arm_length_3  # characteristic length of the machine
+        arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
-        arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
         quotient_in_cos_a2 = 0.25 / (arm_length_1 * arm_length_2)
         half_by_arm_length_1_by_arm_length_2 = 0.5 / (arm_length_1 * arm_length_2)
         self.arm_length_1, self.arm_length_2, self.arm_length_3 = arm_length_1, arm_length_2, arm_length_3
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_z = offset_a1, offset_a2, offset_a3, offset_z
+        self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2
-        self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
         self.quotient_in_cos_a2 = quotient_in_cos_a2
         self.half_by_arm_length_1_by_arm_length_2 = half_by_arm_length_1_by_arm_length_2
 
@@ -86,7 +86,7 @@ class Scara3Z(TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_Z"
-    KEY = "scara3_z c8c2572781c37ae3"
+    KEY = "scara3_z 0559d7b8afe604e6"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -278,17 +278,7 @@ class Scara3Z(TwistChoice):
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(arm_length_1_minus_arm_length_2 - reach)
-                    + abs(arm_length_1_minus_arm_length_2 + reach)
-                    + abs(arm_length_1_plus_arm_length_2 - reach)
-                    + abs(arm_length_1_plus_arm_length_2 + reach)
-                )
-                - arm_length_1_plus_arm_length_2
-                - reach
-            )
+            missing = max(abs(arm_length_1_minus_arm_length_2) - reach, reach - arm_length_1_plus_arm_length_2)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (

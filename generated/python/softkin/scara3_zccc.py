@@ -67,19 +67,19 @@ class Constants:
         self.lowest_a3, self.highest_a3, self.single_a3, self.mid_a3 = machine._window("a3")
         self.lowest_a4, self.highest_a4, self.single_a4, self.mid_a4 = machine._window("a4")
         machine_scale = link_length_1 + link_length_2 + link_length_3  # characteristic length of the machine
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         quotient_in_cos_a3 = 0.25 / (link_length_1 * link_length_2)
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
+        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
-        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.quotient_in_cos_a3 = quotient_in_cos_a3
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
         self.one_by_machine_scale = one_by_machine_scale
@@ -94,7 +94,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_ZCCC"
-    KEY = "scara3_zccc e60e839b0660dbc7"
+    KEY = "scara3_zccc 56b535d5118b248c"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Column along Z, up", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
@@ -286,17 +286,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) * quotient_in_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(link_length_1_minus_link_length_2 - reach)
-                    + abs(link_length_1_minus_link_length_2 + reach)
-                    + abs(link_length_1_plus_link_length_2 - reach)
-                    + abs(link_length_1_plus_link_length_2 + reach)
-                )
-                - link_length_1_plus_link_length_2
-                - reach
-            )
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         axis_a1 = offset_a1 + z
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
@@ -486,15 +476,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(effective_a3 - link_length_1_minus_reach)
-                + 0.5 * abs(effective_a3 + link_length_1_minus_reach)
-                + 0.5 * abs(effective_a3 - link_length_1_plus_reach)
-                + 0.5 * abs(effective_a3 + link_length_1_plus_reach)
-                - effective_a3
-                - link_length_1
-                - reach
-            )
+            missing = max(abs(effective_a3 - link_length_1) - reach, -effective_a3 - link_length_1_minus_reach)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         a1 = z - point_z  # a1 from the z equation, which is linear in it
         axis_a1 = a1 + offset_a1

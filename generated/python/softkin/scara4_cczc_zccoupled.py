@@ -75,21 +75,21 @@ class Constants:
         )
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
         shared_value = -1.0 if flange_down else 1.0
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         shared_sum = gear_coupling * RADIAN - pitch_zc / 360.0 * RADIAN
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         quotient_in_z = (gear_coupling - pitch_zc / 360.0) * RADIAN
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         quotient_in_cos_a2 = 0.25 / (link_length_1 * link_length_2)
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.flange_down = link_length_1, link_length_2, flange_down
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.shared_value, self.machine_scale_times_free_angle = shared_value, machine_scale_times_free_angle
-        self.shared_sum, self.link_length_1_times_shortest_link = shared_sum, link_length_1_times_shortest_link
-        self.quotient_in_z, self.link_length_1_plus_link_length_2 = quotient_in_z, link_length_1_plus_link_length_2
-        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
+        self.shared_value, self.link_length_1_minus_link_length_2 = shared_value, link_length_1_minus_link_length_2
+        self.machine_scale_times_free_angle, self.shared_sum = machine_scale_times_free_angle, shared_sum
+        self.link_length_1_times_shortest_link, self.quotient_in_z = link_length_1_times_shortest_link, quotient_in_z
+        self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.quotient_in_cos_a2 = quotient_in_cos_a2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
         self.one_by_machine_scale = one_by_machine_scale
@@ -104,7 +104,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_CCZC_ZCcoupled"
-    KEY = "scara4_cczc_zccoupled 105421ae85c63247"
+    KEY = "scara4_cczc_zccoupled 82f9f366adca5fc4"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -330,17 +330,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(link_length_1_minus_link_length_2 - reach)
-                    + abs(link_length_1_minus_link_length_2 + reach)
-                    + abs(link_length_1_plus_link_length_2 - reach)
-                    + abs(link_length_1_plus_link_length_2 + reach)
-                )
-                - link_length_1_plus_link_length_2
-                - reach
-            )
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
@@ -545,15 +535,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(effective_a2 - link_length_1_minus_reach)
-                + 0.5 * abs(effective_a2 + link_length_1_minus_reach)
-                + 0.5 * abs(effective_a2 - link_length_1_plus_reach)
-                + 0.5 * abs(effective_a2 + link_length_1_plus_reach)
-                - effective_a2
-                - link_length_1
-                - reach
-            )
+            missing = max(abs(effective_a2 - link_length_1) - reach, -effective_a2 - link_length_1_minus_reach)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2

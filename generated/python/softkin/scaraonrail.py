@@ -68,19 +68,19 @@ class Constants:
         self.lowest_a3, self.highest_a3, *_ = machine._window("a3")
         self.lowest_a4, self.highest_a4, self.single_a4, self.mid_a4 = machine._window("a4")
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         quotient_in_cos_a2 = 0.25 / (link_length_1 * link_length_2)
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.offset_e1 = link_length_1, link_length_2, offset_e1
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
+        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
-        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.quotient_in_cos_a2 = quotient_in_cos_a2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
         self.one_by_machine_scale = one_by_machine_scale
@@ -95,7 +95,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_ScaraOnRail"
-    KEY = "scaraonrail 63e22e69a1a605fb"
+    KEY = "scaraonrail f0ff9530b2ed849a"
     AXES = (
         Axis(name="E1", kind="linear", unit="u", meaning="Rail along X: carries the arm", multi_turn=False),
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
@@ -295,17 +295,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(link_length_1_minus_link_length_2 - reach)
-                    + abs(link_length_1_minus_link_length_2 + reach)
-                    + abs(link_length_1_plus_link_length_2 - reach)
-                    + abs(link_length_1_plus_link_length_2 + reach)
-                )
-                - link_length_1_plus_link_length_2
-                - reach
-            )
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
@@ -483,15 +473,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(effective_a2 - link_length_1_minus_reach)
-                + 0.5 * abs(effective_a2 + link_length_1_minus_reach)
-                + 0.5 * abs(effective_a2 - link_length_1_plus_reach)
-                + 0.5 * abs(effective_a2 + link_length_1_plus_reach)
-                - effective_a2
-                - link_length_1
-                - reach
-            )
+            missing = max(abs(effective_a2 - link_length_1) - reach, -effective_a2 - link_length_1_minus_reach)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2

@@ -72,12 +72,12 @@ class Constants:
         self.lowest_joint_3, self.highest_joint_3, *_ = machine._window("joint_3")
         machine_scale = link_length_1 + link_length_2 + link_length_3  # characteristic length of the machine
         machine_scale_times_plane = 1e-6 * machine_scale
+        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         coupling_12_plus_coupling_13_plus_one = 1.0 + coupling_12 + coupling_13
         coupling_23_plus_one = 1.0 + coupling_23
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         quotient_in_cos_a2 = 0.25 / (link_length_1 * link_length_2)
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         quotient_in_open_a2 = coupling_12 * RADIAN
@@ -89,12 +89,12 @@ class Constants:
         self.coupling_12, self.coupling_13, self.coupling_23 = coupling_12, coupling_13, coupling_23
         self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
         self.machine_scale_times_plane = machine_scale_times_plane
+        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.coupling_12_plus_coupling_13_plus_one = coupling_12_plus_coupling_13_plus_one
         self.coupling_23_plus_one = coupling_23_plus_one
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
-        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.quotient_in_cos_a2 = quotient_in_cos_a2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
         self.quotient_in_open_a2, self.shared_sum, self.shared_sum_2 = quotient_in_open_a2, shared_sum, shared_sum_2
@@ -110,7 +110,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_SCCC"
-    KEY = "sccc cf6e1132c3566a32"
+    KEY = "sccc 4a0803a2ae7d7af0"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Link 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Link 2 about Z", multi_turn=True),
@@ -328,17 +328,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
-            missing = (
-                0.5
-                * (
-                    abs(link_length_1_minus_link_length_2 - reach)
-                    + abs(link_length_1_minus_link_length_2 + reach)
-                    + abs(link_length_1_plus_link_length_2 - reach)
-                    + abs(link_length_1_plus_link_length_2 + reach)
-                )
-                - link_length_1_plus_link_length_2
-                - reach
-            )
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
@@ -627,15 +617,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
-            missing = (
-                0.5 * abs(effective_a2 - link_length_1_minus_reach)
-                + 0.5 * abs(effective_a2 + link_length_1_minus_reach)
-                + 0.5 * abs(effective_a2 - link_length_1_plus_reach)
-                + 0.5 * abs(effective_a2 + link_length_1_plus_reach)
-                - effective_a2
-                - link_length_1
-                - reach
-            )
+            missing = max(abs(effective_a2 - link_length_1) - reach, -effective_a2 - link_length_1_minus_reach)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = 2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a2

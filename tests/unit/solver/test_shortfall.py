@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
+from derive.ir.primitives import Root, larger
 from derive.ir.program import Let, Output
 from derive.ir.reason import Reason, Unit, Why
 from derive.ir.symbols import real
@@ -53,6 +54,27 @@ def test_whatever_signs_the_lengths_have(left: float, right: float, reach: float
     assume(missing > 1e-6)
     reason = out_of_reach(Q, triangle(LEFT, RIGHT, REACH), [])
     assert abs(value(reason, left=left, right=right, reach=reach) - missing) < 1e-9 * (abs(left) + abs(right) + reach)
+
+
+def test_the_amount_is_the_larger_of_two_differences() -> None:
+    """The amount of a triangle is written as one would write it by hand, with the distance to reach alone."""
+    first, second, reach = (real(n) for n in ("first", "second", "reach"))
+    reason = out_of_reach(Q, triangle(FIRST, SECOND, reach), [Let(reach, Root(X**2 + Y**2))])
+    assert reason.amount == larger(reach - first - second, sp.Abs(first - second) - reach)
+
+
+@given(SIGNED, st.floats(0.0, 800.0))
+def test_a_length_is_so_much_too_short_for_another(left: float, reach: float) -> None:
+    """Where a length of either sign does not fit beside another, the difference of their sizes is missing."""
+    assume(abs(left) > reach + 1e-6)
+    reason = out_of_reach(Q, (REACH - LEFT) * (REACH + LEFT), [])
+    assert abs(value(reason, left=left, reach=reach) - (abs(left) - reach)) < 1e-9 * abs(left)
+
+
+def test_a_product_that_is_no_triangle_has_no_amount() -> None:
+    """Four sums of lengths that are not Heron's have no amount, rather than a wrong one."""
+    reason = out_of_reach(Q, (FIRST - SECOND) * (FIRST + SECOND) * (FIRST - REACH) * (FIRST + REACH), [])
+    assert (reason.amount, reason.unit) == (None, Unit.NONE)
 
 
 @given(LENGTH, st.floats(-800.0, 800.0), st.floats(-800.0, 800.0))
