@@ -104,6 +104,16 @@ def is_branch_sign(name: sp.Symbol) -> bool:
     return is_count(name) and name.name.startswith(_SIGN)
 
 
+def branch_with(sign: sp.Symbol) -> str:
+    """The branch whose sign has this name."""
+    return str(sign.name.removeprefix(_SIGN))
+
+
+def angle_word(name: sp.Symbol) -> str:
+    """What an angle is called whose cosine, or whose direction's x, has this name: `cos_q2` → `q2`."""
+    return str(name.name.removeprefix(_COSINE).removeprefix("direction_x_"))
+
+
 _COSINE, _SIGN = "cos_", "sigma_"
 COORDINATE_NAMES = ("x", "y", "z")
 ROTATION_ENTRIES: tuple[sp.Symbol, ...] = tuple(real(f"r{i}{j}") for i in "123" for j in "123")

@@ -10,7 +10,7 @@ from derive.equations.choices import with_choices
 from derive.equations.windows import windows
 from derive.ir.passes import hoist
 from derive.ir.program import Program, Statement, shared
-from derive.ir.symbols import BASE_AXIS, FLANGE_AXIS, ROTATION_ENTRIES, START_POSITION, START_ROTATION
+from derive.ir.symbols import BASE_AXIS, FLANGE_AXIS, ROTATION_ENTRIES, START_POSITION, START_ROTATION, branch_sign
 from derive.ir.types import Type, output_types
 from derive.ir.verify import BrokenProgram
 from derive.kinematics.differential import jacobian_rows
@@ -96,7 +96,7 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
     in a generated file.
     """
     allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
-    allowed |= {f"sigma_{b.name}" for b in mechanism.branches}
+    allowed |= {branch_sign(b.name).name for b in mechanism.branches}
     allowed |= {j.symbol.name for j in mechanism.joints} if program.name == "from_joints" else set()
     allowed |= {s.name for j in mechanism.joints for s in (j.axis, j.reference, j.turn)}
     allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS)}

@@ -35,6 +35,7 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     angle_of,
+    angle_word,
     is_branch_sign,
     real,
     symbols_of,
@@ -107,7 +108,7 @@ def _read_by_name(program: Program, names: Mapping[sp.Basic, sp.Basic]) -> tuple
 
 def _name_of(pair: Pair) -> str:
     """`angle_q2` of `cos_q2` or `direction_x_q2`."""
-    return f"angle_{pair[1].name.removeprefix('cos_').removeprefix('direction_x_')}"
+    return f"angle_{angle_word(pair[1])}"
 
 
 def _angle(pair: Pair, known: _Known) -> sp.Expr | None:
@@ -191,7 +192,7 @@ def _with_angles(
     parts: dict[sp.Basic, sp.Symbol] = {}
     for part in (p for angle in angles.values() for p in sorted(angle.atoms(Atan2), key=str)):
         if part not in parts and part.args[1].is_Symbol:
-            parts[part] = taken.fresh(f"angle_of_{part.args[1].name.removeprefix('cos_')}")
+            parts[part] = taken.fresh(f"angle_of_{angle_word(part.args[1])}")
     lets: list[Statement] = [Let(name, sp.sympify(part)) for part, name in parts.items()]
     lets += [Let(names[pair], angle.xreplace(parts)) for pair, angle in angles.items()]
     sines: dict[sp.Symbol, sp.Expr] = {}

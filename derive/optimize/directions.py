@@ -36,6 +36,8 @@ from derive.ir.program import (
     told,
 )
 from derive.ir.symbols import (
+    angle_of,
+    angle_word,
     is_condition,
     symbols_of,
 )
@@ -103,8 +105,8 @@ def _with_sums(program: Program, sums: Mapping[Pair, _Amount]) -> Program:
 
 def _angle_name(pair: Pair, whole: Pair) -> str:
     """`angle_q2` of `sin_q2`, `cos_q2`; what has no angle's name is called after the angle that it leads to."""
-    own = pair[1].name.removeprefix("cos_")
-    return f"angle_{own}" if own != pair[1].name else f"angle_with_{whole[1].name.removeprefix('cos_')}"
+    own = angle_of(pair[1])
+    return f"angle_with_{angle_word(whole[1])}" if own is None else f"angle_{own}"
 
 
 def direction_of(let: Let) -> Pair | None:

@@ -15,7 +15,7 @@ import sympy as sp
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import ToReal
 from derive.ir.program import Let, Program, Require, told
-from derive.ir.symbols import names_in
+from derive.ir.symbols import is_branch_sign, names_in
 from derive.ir.tree import If, Item, bound_in, expressions_in, given_to, read_in
 from derive.ir.types import Type, type_of
 from derive.kept import kept_by_identity
@@ -23,7 +23,6 @@ from derive.lowering.scheduling import structured
 
 MOST_SIDES, MOST_KEPT = 16, 80
 """What branches can share at most: stretches, one for every side of their signs, and values."""
-_SIGN = "sigma_"
 
 
 @dataclass(frozen=True)
@@ -47,7 +46,7 @@ class Stretch:
 def stretches_of(program: Program) -> tuple[Stretch, ...]:
     """The stretches of a branch; one that is not shared where there is nothing to share."""
     items = structured(program)
-    signs = tuple(s for s in program.inputs if s.name.startswith(_SIGN))
+    signs = tuple(s for s in program.inputs if is_branch_sign(s))
     if len(items) < 2 or not signs or not all(isinstance(i, Let | Require | If) for i in items):
         return (Stretch(items, signs, (), is_shared=False),)
     groups = _groups(items, signs)

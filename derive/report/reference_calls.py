@@ -24,6 +24,7 @@ from derive.ir.program import (
 )
 from derive.ir.symbols import (
     ROTATION_ENTRIES,
+    branch_sign,
 )
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, has_length
@@ -157,7 +158,8 @@ def branches(
         values |= made
     values |= {j.reference.name: np.asarray(r) for j, r in zip(kinematics.mechanism.joints, reference, strict=True)}
     values |= {
-        f"sigma_{b.name}": np.array([3.0 - 2.0 * slot[k] for slot in slots]) for k, b in enumerate(kinematics.branches)
+        branch_sign(b.name).name: np.array([3.0 - 2.0 * slot[k] for slot in slots])
+        for k, b in enumerate(kinematics.branches)
     }
     values |= {
         j.turn.name: np.asarray(float(n)) for j, n in zip(kinematics.period_joints, configuration[count:], strict=True)

@@ -21,7 +21,7 @@ from derive.ir.interpret import evaluate, run
 from derive.ir.passes import normalise
 from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Why
-from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, cosine, sine
+from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, branch_sign, cosine, sine
 from derive.kinematics.reference_cases import Reals
 from derive.kinematics.sampling import sample_axes, size_of
 from derive.plate.legs import angles, by_angles
@@ -197,7 +197,7 @@ def _of_platform(machine: Machine, derived: Derived, name: str) -> SingularPose 
     kept = [m.name for m in machine.kinematics.margins]
     place = kept.index(name)
     ways = {b.name: machine.given.get(home_flag(b), 0.0) for b in mechanism.branches}
-    signs = {f"sigma_{name}": np.asarray(1.0 - 2.0 * way) for name, way in ways.items()}
+    signs = {branch_sign(name).name: np.asarray(1.0 - 2.0 * way) for name, way in ways.items()}
 
     def solved(rows: Array) -> tuple[Array, dict[str, Array]]:
         values = {**machine.values, **signs, **_named_frames(mechanism, rows)}

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from derive.ir.interpret import run
 from derive.ir.program import Status
+from derive.ir.symbols import branch_sign
 from derive.kinematics.reference_cases import Reals
 from derive.kinematics.sampling import sample_axes, size_of
 from derive.report.reference_calls import FRAME, Machine
@@ -120,7 +121,7 @@ def _solved(
     joints, count = kinematics.mechanism.joints, values["x"].size
     given = {**machine.values, **values}
     given |= {j.reference.name: np.full(count, v) for j, v in zip(joints, axes, strict=True)}
-    given |= {f"sigma_{b.name}": np.full(count, s) for b, s in zip(kinematics.branches, signs, strict=True)}
+    given |= {branch_sign(b.name).name: np.full(count, s) for b, s in zip(kinematics.branches, signs, strict=True)}
     given |= {j.turn.name: np.zeros(count) for j in kinematics.period_joints}
     given |= {"cos_heading": values["r11"], "sin_heading": values["r21"]}
     found, status = run(kinematics.branch, given)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from derive.ir.interpret import Array, run
 from derive.ir.program import Program, Status
-from derive.ir.symbols import COORDINATE_NAMES
+from derive.ir.symbols import COORDINATE_NAMES, branch_sign
 from derive.kinematics.kinematics import Kinematics
 from derive.witness.assembly import in_own_mode, starts_for
 from derive.witness.checks import CLOSURE_TOLERANCE, clear_of_zero, least_move, worst
@@ -123,7 +123,7 @@ def _in_reach(kin: Kinematics, rotation: Array, offset: Array) -> Array:
 def run_slots(kin: Kinematics, program: Program, samples: Samples, commands: dict[str, Array]) -> Slots:
     """Run an inverse program for all slots at once: a root scan takes as many passes for one row as for all."""
     slots, count = np.array(_signs(kin)), len(samples)
-    sigmas = {f"sigma_{b.name}": np.repeat(slots[:, i], count) for i, b in enumerate(kin.branches)}
+    sigmas = {branch_sign(b.name).name: np.repeat(slots[:, i], count) for i, b in enumerate(kin.branches)}
     repeated = {name: np.tile(column, len(slots)) for name, column in (samples.values | commands).items()}
     outputs, status = run(program, repeated | sigmas)
     axes = np.stack([outputs[j.axis.name] for j in kin.mechanism.joints], axis=1)

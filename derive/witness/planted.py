@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from derive.ir.interpret import Array, run
 from derive.ir.program import Status
+from derive.ir.symbols import branch_sign
 from derive.kinematics.kinematics import Kinematics
 from derive.witness.closure import POSE, Closure
 from derive.witness.samples import SEED, Samples
@@ -48,7 +49,7 @@ def refused_when_planted(kin: Kinematics, closure: Closure, samples: Samples) ->
     for side in (1.0, -1.0):  # where branches coincide, on either
         margins = [outputs[f"branch_{b.name}"] for b in kin.branches]
         signs = {
-            f"sigma_{b.name}": np.where(np.abs(m) < _FREE, side, np.where(m > 0, 1.0, -1.0))
+            branch_sign(b.name).name: np.where(np.abs(m) < _FREE, side, np.where(m > 0, 1.0, -1.0))
             for b, m in zip(kin.branches, margins, strict=True)
         }
         answered |= run(kin.branch, values | signs)[1] == Status.OK

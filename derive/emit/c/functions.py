@@ -9,7 +9,7 @@ from derive.equations.limits import value_of
 from derive.equations.rotation_repair import rotation_program
 from derive.ir.passes import normalise
 from derive.ir.program import FindRoot, Output, Program, expressions, told
-from derive.ir.symbols import COORDINATE_NAMES, PLACE, symbols_of
+from derive.ir.symbols import COORDINATE_NAMES, PLACE, branch_sign, symbols_of
 from derive.kinematics.kinematics import Kinematics
 
 _ROTATION = tuple((f"r{i + 1}{j + 1}", f"rotation[{i}][{j}]") for i in range(3) for j in range(3))
@@ -69,7 +69,7 @@ def functions(kin: Kinematics) -> list[Function]:
     start = {f"start_{name}": f"start->{place}" for name, place in FRAME}
     turns = _places("turns", [j.turn.name for j in kin.period_joints])
     reference = _places("reference", [j.reference.name for j in joints])
-    choice = _places("signs", [f"sigma_{b.name}" for b in kin.branches]) | turns | reference
+    choice = _places("signs", [branch_sign(b.name).name for b in kin.branches]) | turns | reference
     margins = _places("margins", [f"branch_{b.name}" for b in kin.branches])
     placed = (*frame.items(), *margins.items())
     values, given_axes = tuple(axes.items()), "const double *axes"

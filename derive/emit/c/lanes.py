@@ -22,7 +22,7 @@ from derive.emit.every_branch import constants, known_constants, read_of, signs
 from derive.equations.rotation_repair import surely_exact
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Program, Require
-from derive.ir.symbols import COORDINATE_NAMES, REFUSAL, ROTATION_ENTRIES, choices, suffixed, symbols_of
+from derive.ir.symbols import COORDINATE_NAMES, REFUSAL, ROTATION_ENTRIES, branch_sign, choices, suffixed, symbols_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.lower import lowered
@@ -138,7 +138,7 @@ def _places(kin: Kinematics) -> dict[str, str]:
     """What differs from lane to lane, and where it stands."""
     position = {name: f"given->position[{i}][lane]" for i, name in enumerate(COORDINATE_NAMES)}
     rotation = {r.name: f"given->rotation[{i}][lane]" for i, r in enumerate(ROTATION_ENTRIES)}
-    own = {f"sigma_{b.name}": f"given->signs[{i}][lane]" for i, b in enumerate(kin.branches)}
+    own = {branch_sign(b.name).name: f"given->signs[{i}][lane]" for i, b in enumerate(kin.branches)}
     reference = {j.reference.name: f"given->reference[{i}][lane]" for i, j in enumerate(kin.mechanism.joints)}
     return position | rotation | own | reference
 

@@ -11,6 +11,7 @@ from derive.equations.limits import value_of
 from derive.equations.rotation_repair import rotation_program
 from derive.ir.passes import normalise
 from derive.ir.program import Output, Program
+from derive.ir.symbols import branch_sign
 from derive.kinematics.kinematics import Kinematics
 
 Shape = str | tuple["Shape", ...]
@@ -69,7 +70,7 @@ def functions(kin: Kinematics, parts: Parts | None) -> list[Function]:
     margins = tuple(f"branch_{b.name}" for b in kin.branches)
     turns = ("turns", tuple(j.turn.name for j in kin.period_joints))
     reference = ("reference", tuple(j.reference.name for j in joints))
-    choice = (("signs", tuple(f"sigma_{b.name}" for b in kin.branches)), turns, reference)
+    choice = (("signs", tuple(branch_sign(b.name).name for b in kin.branches)), turns, reference)
     placed = (POSITION, ROTATION, margins)
     values = axes[0][1]
 

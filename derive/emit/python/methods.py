@@ -7,6 +7,7 @@ from derive.emit.python.program import Argument, Method, Shape
 from derive.equations.limits import value_of
 from derive.ir.passes import normalise
 from derive.ir.program import Output
+from derive.ir.symbols import branch_sign
 from derive.kinematics.differential import TWIST_ROWS
 from derive.kinematics.kinematics import Kinematics
 
@@ -191,7 +192,7 @@ def _branch_margins(kin: Kinematics) -> tuple[Shape, ...]:
 
 def _choice(kin: Kinematics) -> tuple[Argument, ...]:
     return (
-        Argument("signs", "Signs", tuple(f"sigma_{b.name}" for b in kin.branches)),
+        Argument("signs", "Signs", tuple(branch_sign(b.name).name for b in kin.branches)),
         Argument("turns", "Turns", tuple(j.turn.name for j in kin.period_joints)),
         Argument("reference", "Reals", tuple(j.reference.name for j in kin.mechanism.joints)),
     )

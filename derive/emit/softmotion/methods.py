@@ -29,6 +29,7 @@ from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st.shared import method_name, own_names, signature_of
 from derive.equations.windows import windows
 from derive.ir.program import FindRoot, Program, shared
+from derive.ir.symbols import branch_sign
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import reasons_of, texts
@@ -88,7 +89,7 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
             f"flangeAxis.d{axis.upper()}",
             f"baseAxis.d{axis.upper()}",
         )
-    spelled |= {f"sigma_{b.name}": f"choice.aSigns[{k}]" for k, b in enumerate(kinematics.branches)}
+    spelled |= {branch_sign(b.name).name: f"choice.aSigns[{k}]" for k, b in enumerate(kinematics.branches)}
     for number, joint in enumerate(kinematics.period_joints):
         spelled[joint.turn.name] = f"choice.aTurns[{number}]"
         index = kinematics.mechanism.joints.index(joint)

@@ -12,6 +12,7 @@ from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import INSIDE, WIDTH, indented
 from derive.emit.st.refusal import Refusal
 from derive.ir.program import Program, Require
+from derive.ir.symbols import branch_with
 from derive.ir.tree import Item
 from derive.report.branch_stretches import Stretch, stretches_of
 
@@ -48,7 +49,7 @@ def _shared(
     times = f"{len(stretch.kept)}*" if len(stretch.kept) > 1 else ""
     further = f" + {times}{SIDE}" if stretch.signs else ""
     places = [(f"{KEPT}[{first + k}{further}]", printer.name(name)) for k, name in enumerate(stretch.kept)]
-    words = " and ".join(sign.name.removeprefix("sigma_") for sign in stretch.signs)
+    words = " and ".join(branch_with(sign) for sign in stretch.signs)
     yield f"// The same in all branches{f' with this {words}' if words else ''}: computed once a call"
     if stretch.signs:
         sides = (f"SEL({printer.name(s)} > 0, {2**k}, 0)" for k, s in enumerate(stretch.signs))
