@@ -9,6 +9,7 @@ of machines with Python, as an extension beside the package.
 
 braces: the layout of languages with braces
 c/: C99
+conditions: the conditions of a refusal, one by one
 every_branch: all branches of the inverse as one straight line, for Python and C
 expression: the walk over an expression that all languages share
 inputs: what the inputs of a machine are called in a language
@@ -21,6 +22,7 @@ page/: the derivation of a machine as HTML
 picture/: the drawing of a machine as PNG and SVG
 plcopen/: objects of a Structured Text project, and PLCopenXML
 python/: the Python package
+setup: the setup program of a machine, for Python, C and JavaScript
 softmotion/: function blocks for SoftMotion
 st/: Structured Text
 """

@@ -10,7 +10,7 @@ import sympy as sp
 from derive.emit.braces import block, indented
 from derive.emit.c.layout import comment
 from derive.emit.c.printer import C, status, text
-from derive.ir.constants import LARGEST
+from derive.emit.conditions import parts_of, sized
 from derive.ir.program import Iterate, Require, Status
 from derive.ir.reason import OtherTurn, Unit
 from derive.report.reasons import Check, Reasons
@@ -25,7 +25,7 @@ class Refusals:
 
     def lines(self, requires: Sequence[Require]) -> list[str]:
         """The lines that refuse where conditions about one subject do not all hold."""
-        notes = [] if _sized(r.condition for r in requires) else comment(requires[0].comment)
+        notes = [] if sized(r.condition for r in requires) else comment(requires[0].comment)
         explained = [r for r in requires if r.reason is not None]
         if len(explained) < len(requires):  # nobody is told why
             head = f"if (!({self.condition([r.condition for r in requires])}))"
@@ -38,7 +38,7 @@ class Refusals:
 
     def condition(self, conditions: Iterable[sp.Basic]) -> str:
         """Conditions that must all hold, as one."""
-        parts = _parts(conditions)
+        parts = parts_of(conditions)
         if len(parts) == 1:
             return self.printer.print(parts[0])
         printed = ((part, self.printer.print(part)) for part in parts)
@@ -47,9 +47,9 @@ class Refusals:
     def _check(self, check: Check) -> list[str]:
         missing = "0.0" if check.missing is None else self.printer.print(check.missing)
         inner = [line for turn, reason in check.turns for line in self._on_another(turn, reason, check, missing)]
-        sized = [self.printer.print(value) for value in _sized(check.conditions)]
-        if sized:
-            head = f"softkin_are_reasonable((const double[]){{{', '.join(sized)}}}, {len(sized)})"
+        values = [self.printer.print(value) for value in sized(check.conditions)]
+        if values:
+            head = f"softkin_are_reasonable((const double[]){{{', '.join(values)}}}, {len(values)})"
         else:
             head = f"({self.condition(check.conditions)})"
         return block(f"if (!{head})", [*inner, f"return {refused(check.status, check.reason, missing)};"])
@@ -75,18 +75,3 @@ def refused(outcome: Status, reason: str, missing: str = "0.0", turn: str = "0")
     unit = next((u.value for u in Unit if u.value and reason.endswith(f" [{u.value}]")), "")
     words = reason.removesuffix(f" [{unit}]") if unit else reason
     return f"softkin_refuse(why, {status(outcome)}, {text(words)}, {text(unit)}, {missing}, {turn})"
-
-
-def _sized(conditions: Iterable[sp.Basic]) -> list[sp.Expr]:
-    """The values, if the conditions test that several values are numbers of reasonable size."""
-    parts = _parts(conditions)
-    sized = [
-        part.lhs.args[0]
-        for part in parts
-        if isinstance(part, sp.LessThan) and isinstance(part.lhs, sp.Abs) and part.rhs == LARGEST
-    ]
-    return sized if len(sized) == len(parts) > 1 else []
-
-
-def _parts(conditions: Iterable[sp.Basic]) -> list[sp.Basic]:
-    return [p for c in conditions for p in (sp.ordered(c.args) if isinstance(c, sp.And) else [c])]

@@ -6,7 +6,7 @@ The shared source tests the range of each parameter, and computes the range of e
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import sympy as sp
 
@@ -16,12 +16,12 @@ from derive.emit.c.layout import comment
 from derive.emit.c.printer import C, member, number, text, type_of
 from derive.emit.c.program import Body, function_of
 from derive.emit.inputs import Inputs
+from derive.emit.setup import own_setup
 from derive.equations.windows import Window, windows
 from derive.ir.constants import TIE
-from derive.ir.program import Let, Program, Require, Solve, Statement, binds, reads
-from derive.ir.symbols import symbols_of
+from derive.ir.program import Let, Require, Solve
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.parameters import CHECK_LIMITS, TIE_OF_LENGTHS, WARNING_DISTANCE, chooses_by_lengths, ranges
+from derive.kinematics.parameters import CHECK_LIMITS, TIE_OF_LENGTHS, WARNING_DISTANCE, chooses_by_lengths
 from derive.report.reasons import Reasons
 
 SEARCHED = "searched"
@@ -46,7 +46,7 @@ def constants_read(kin: Kinematics) -> set[str]:
 def setup(kin: Kinematics, prefix: str, read: Collection[str], inputs: Inputs) -> Setup:
     """The function. read: the constants that other functions read; inputs: what the parameters are called."""
     by_refusal = {window.refusal: (i, window) for i, window in enumerate(windows(kin.mechanism))}
-    program = _own(kin, read)
+    program = own_setup(kin, read)
     body = Body(C(_members(kin, inputs)), Reasons({}))
     lines: list[str] = []
     values: dict[str, tuple[str, str]] = {}
@@ -96,21 +96,6 @@ def _base(kin: Kinematics, values: Mapping[str, tuple[str, str]], inputs: Inputs
         yield "true" if kin.search_given is not None else "false"
     yield f"p->{inputs.names[WARNING_DISTANCE]}"
     yield values[TIE_OF_LENGTHS.name][1] if chooses_by_lengths(kin.mechanism) else number(TIE)
-
-
-def _own(kin: Kinematics, read: Collection[str]) -> Program:
-    """The setup program without the steps of the shared source, and without values that no program reads."""
-    tested = ranges(kin.parameters)
-    elsewhere = {let.name for window in windows(kin.mechanism) for let in (*window.limits, *window.ends)}
-    outputs = tuple(o for o in kin.setup.outputs if o.name in read)
-    wanted = {s for o in outputs for s in symbols_of(o.value)}
-    body: list[Statement] = []
-    for statement in reversed(kin.setup.body):
-        bound = set(binds(statement))
-        if statement.reason not in tested if isinstance(statement, Require) else bound & wanted - elsewhere:
-            wanted |= reads(statement)
-            body.append(statement)
-    return replace(kin.setup, body=tuple(reversed(body)), outputs=outputs)
 
 
 def _window(index: int, window: Window, inputs: Inputs, printer: C) -> list[str]:

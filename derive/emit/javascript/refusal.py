@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.emit.braces import block, indented
+from derive.emit.conditions import parts_of, sized
 from derive.emit.javascript.layout import comment
 from derive.emit.javascript.printer import PRINTER, status, text
-from derive.ir.constants import LARGEST
 from derive.ir.program import Iterate, Require
 from derive.ir.reason import OtherTurn
 from derive.report.reasons import Check, Reasons
@@ -24,7 +24,7 @@ class Refusals:
 
     def lines(self, requires: Sequence[Require]) -> list[str]:
         """The lines that refuse where conditions about one subject do not all hold."""
-        notes = [] if _sized(r.condition for r in requires) else comment(requires[0].comment)
+        notes = [] if sized(r.condition for r in requires) else comment(requires[0].comment)
         explained = [r for r in requires if r.reason is not None]
         if len(explained) < len(requires):  # nobody is told why
             head = f"if (!({condition_of([r.condition for r in requires])}))"
@@ -40,10 +40,8 @@ class Refusals:
         given = [status(check.status), text(check.reason)]
         given += [] if check.missing is None else [PRINTER.print(check.missing)]
         inner = [line for turn, reason in check.turns for line in _on_another(turn, reason, check)]
-        sized = _sized(check.conditions)
-        head = (
-            f"isReasonable({', '.join(map(PRINTER.print, sized))})" if sized else f"({condition_of(check.conditions)})"
-        )
+        values = ", ".join(map(PRINTER.print, sized(check.conditions)))
+        head = f"isReasonable({values})" if values else f"({condition_of(check.conditions)})"
         return block(f"if (!{head})", [*inner, f"return refuse({', '.join(given)});"])
 
 
@@ -64,7 +62,7 @@ def _one(word: str, ends: Sequence[sp.Expr]) -> str:
 
 def condition_of(conditions: Iterable[sp.Basic]) -> str:
     """Conditions that must all hold, as one."""
-    parts = _parts(conditions)
+    parts = parts_of(conditions)
     if len(parts) == 1:
         return PRINTER.print(parts[0])
     return " && ".join(PRINTER.print(p) if _is_plain(p) else f"({PRINTER.print(p)})" for p in parts)
@@ -72,18 +70,3 @@ def condition_of(conditions: Iterable[sp.Basic]) -> str:
 
 def _is_plain(condition: sp.Basic) -> bool:
     return not isinstance(condition, sp.Or)
-
-
-def _sized(conditions: Iterable[sp.Basic]) -> list[sp.Expr]:
-    """The values, if the conditions test that several values are numbers of reasonable size."""
-    parts = _parts(conditions)
-    sized = [
-        part.lhs.args[0]
-        for part in parts
-        if isinstance(part, sp.LessThan) and isinstance(part.lhs, sp.Abs) and part.rhs == LARGEST
-    ]
-    return sized if len(sized) == len(parts) > 1 else []
-
-
-def _parts(conditions: Iterable[sp.Basic]) -> list[sp.Basic]:
-    return [p for c in conditions for p in (sp.ordered(c.args) if isinstance(c, sp.And) else [c])]

@@ -6,28 +6,25 @@ The runtime tests the range of each parameter, and computes the range of each ax
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
 
 import sympy as sp
 
-from derive.description.mechanism import Parameter
 from derive.emit.braces import block
 from derive.emit.inputs import Inputs
 from derive.emit.javascript.layout import comment, commented
 from derive.emit.javascript.printer import PRINTER, list_of, spelled, text
 from derive.emit.javascript.program import solved, without_brackets
 from derive.emit.javascript.refusal import condition_of
+from derive.emit.setup import own_setup, parameters_read
 from derive.equations.windows import Window, windows
-from derive.ir.program import Let, Program, Require, Solve, Statement, binds, reads
-from derive.ir.symbols import symbols_of
+from derive.ir.program import Let, Require, Solve
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.parameters import ranges
 
 
 def setup_lines(kin: Kinematics, read: Collection[str], inputs: Inputs) -> list[str]:
     """The function. read: the constants that other functions read; inputs: what the parameters are called."""
     by_refusal = {window.refusal: window for window in windows(kin.mechanism)}
-    program = _own(kin, read)
+    program = own_setup(kin, read)
     lines: list[str] = []
     values: dict[str, str] = {}
     for statement in program.body:
@@ -45,7 +42,7 @@ def setup_lines(kin: Kinematics, read: Collection[str], inputs: Inputs) -> list[
             raise TypeError("what depends on parameters alone is straight-line: it neither iterates nor calls")
     ends = {o.name for window in by_refusal.values() for o in window.outputs}
     values |= {o.name: PRINTER.print(o.value) for o in program.outputs if o.name not in ends}
-    given = [(inputs.names[p.name], spelled(p.name)) for p in _given(kin, program, by_refusal.values())]
+    given = [(inputs.names[p.name], spelled(p.name)) for p in parameters_read(kin, program, by_refusal.values())]
     taken = [name if name == inner else f"{name}: {inner}" for name, inner in given]
     head = [f"const {{ {', '.join(taken)} }} = p;"] if taken else []
     result = [f"{name}: {value}," if name != value else f"{name}," for name, value in values.items()]
@@ -54,34 +51,6 @@ def setup_lines(kin: Kinematics, read: Collection[str], inputs: Inputs) -> list[
         "/** The values that depend on the parameters alone, or why the parameters are refused. */",
         *block("function findConstants(p, window)", body),
     ]
-
-
-def _own(kin: Kinematics, read: Collection[str]) -> Program:
-    """The setup program without the steps of the runtime, and without values that no program reads."""
-    tested = ranges(kin.parameters)
-    elsewhere = {let.name for window in windows(kin.mechanism) for let in (*window.limits, *window.ends)}
-    outputs = tuple(o for o in kin.setup.outputs if o.name in read)
-    wanted = {s for o in outputs for s in symbols_of(o.value)}
-    body: list[Statement] = []
-    for statement in reversed(kin.setup.body):
-        bound = set(binds(statement))
-        if statement.reason not in tested if isinstance(statement, Require) else bound & wanted - elsewhere:
-            wanted |= reads(statement)
-            body.append(statement)
-    return replace(kin.setup, body=tuple(reversed(body)), outputs=outputs)
-
-
-def _given(kin: Kinematics, program: Program, found: Collection[Window]) -> list[Parameter]:
-    """The parameters that the function reads."""
-    refusals = {window.refusal for window in found}
-    values = [o.value for o in program.outputs] + [e for window in found for f in window.fallback for e in f]
-    symbols = {s for value in values for s in symbols_of(value)}
-    symbols |= {s for window in found for s in symbols_of(window.turns)}
-    for statement in program.body:
-        if not (isinstance(statement, Require) and statement.reason in refusals):
-            symbols |= reads(statement)
-    names = {s.name for s in symbols}
-    return [p for p in kin.parameters if p.name in names]
 
 
 def _window(window: Window, read: Collection[str], values: dict[str, str]) -> list[str]:

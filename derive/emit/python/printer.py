@@ -8,10 +8,10 @@ from keyword import iskeyword
 
 import sympy as sp
 
+from derive.emit.conditions import sized
 from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, PRODUCT, ExpressionPrinter, is_never_negative
 from derive.ir.constants import (
     DEGREE,
-    LARGEST,
 )
 from derive.ir.primitives import (
     Atan2,
@@ -60,14 +60,6 @@ def words(lines: Iterable[str]) -> set[str]:
     return {
         word for line in lines for word in re.findall(r"[A-Za-z_]\w*", re.sub(r'"[^"]*"', "", line).partition("#")[0])
     }
-
-
-def _numbers_checked(node: sp.Basic) -> list[sp.Basic]:
-    """The values, if a condition asks only whether they are numbers of reasonable size; else none."""
-    parts = list(sp.ordered(node.args)) if isinstance(node, sp.And) else [node]
-    if not all(isinstance(p, sp.LessThan) and isinstance(p.lhs, sp.Abs) and p.rhs == LARGEST for p in parts):
-        return []
-    return [part.lhs.args[0] for part in parts]
 
 
 class ScalarPrinter(ExpressionPrinter):
@@ -158,7 +150,7 @@ class ArrayPrinter(ScalarPrinter):
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
         if isinstance(node, sp.Not):
             return f"opposite({self.print(node.args[0])})", ATOM
-        if checked := _numbers_checked(node):
+        if checked := sized([node], 1):
             return f"reasonable({', '.join(map(self.print, checked))})", ATOM
         if isinstance(node, Root) and is_never_negative(node.args[0]):
             return f"sqrt({self.print(node.args[0])})", ATOM

@@ -9,15 +9,17 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 from sympy.core.relational import Relational
 
+from derive.emit.conditions import parts_of, sized
 from derive.emit.python.calls import FOUND
 from derive.emit.python.layout import note_lines
 from derive.emit.python.printer import ScalarPrinter
-from derive.ir.constants import LARGEST
 from derive.ir.program import Iterate, Require, Status
 from derive.ir.reason import OtherTurn, Reason, Why
 from derive.report.reasons import Check, Reasons
 
 _SCALAR = ScalarPrinter()
+_MANY = 3
+"""So many values or more are tested for size by a call."""
 
 
 @dataclass(frozen=True)
@@ -124,31 +126,16 @@ class Limits:
 
 def _unless(conditions: Sequence[sp.Basic]) -> str:
     """The `if` in front of what is done where conditions do not all hold."""
-    sized = _sized(*conditions)
-    if sized:
-        return f"if not reasonable({', '.join(map(_SCALAR.print, sized))}):"
+    values = sized(conditions, _MANY)
+    if values:
+        return f"if not reasonable({', '.join(map(_SCALAR.print, values))}):"
     return f"if not ({conjunction(conditions)}):"
 
 
 def _notes(requires: Sequence[Require]) -> list[str]:
     """The subject of the conditions as a comment; none for inputs, where the name of the called function tells it."""
     note = requires[0].comment
-    return [] if _sized(requires[0].condition) else note_lines(note)
-
-
-def _sized(*conditions: sp.Basic) -> list[sp.Expr]:
-    """The values, if the conditions test that several values are numbers of reasonable size."""
-    parts = _parts(conditions)
-    sized = [
-        part.lhs.args[0]
-        for part in parts
-        if isinstance(part, sp.LessThan) and isinstance(part.lhs, sp.Abs) and part.rhs == LARGEST
-    ]
-    return sized if len(sized) == len(parts) > 2 else []
-
-
-def _parts(conditions: Iterable[sp.Basic]) -> list[sp.Basic]:
-    return [p for c in conditions for p in (sp.ordered(c.args) if isinstance(c, sp.And) else [c])]
+    return [] if sized([requires[0].condition], _MANY) else note_lines(note)
 
 
 def status_of(status: Status) -> str:
@@ -167,7 +154,7 @@ def explained(reasons: Reasons) -> Explained:
 
 def conjunction(conditions: Iterable[sp.Basic]) -> str:
     """Conditions that must all hold, as one."""
-    parts = _parts(conditions)
+    parts = parts_of(conditions)
     if len(parts) == 1:
         return _SCALAR.print(parts[0])
     return " and ".join(_SCALAR.print(p) if isinstance(p, Relational) else f"({_SCALAR.print(p)})" for p in parts)

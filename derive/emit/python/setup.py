@@ -1,13 +1,8 @@
-"""The setup program in Python: it computes the constants of a machine from its parameters.
-
-Two steps are the same for every machine, and stand in the runtime: the table of parameters tests the range of each
-parameter, and one call for each axis computes its range of motion.
-"""
+"""The setup program in Python: it computes the constants of a machine from its parameters."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
 
 import sympy as sp
 
@@ -18,20 +13,15 @@ from derive.emit.python.layout import assigned
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.emit.python.program import binding_lines
 from derive.emit.python.refusal import conjunction
+from derive.emit.setup import own_setup, parameters_read
 from derive.equations.windows import Window, windows
 from derive.ir.program import (
     Call,
     FindRoot,
     Iterate,
-    Program,
     Require,
-    Statement,
-    binds,
-    reads,
 )
-from derive.ir.symbols import symbols_of
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.parameters import ranges
 
 _PRINTER = ScalarPrinter()
 _TYPES = {Role.FLAG: "bool", Role.SIGN: "int"}
@@ -54,7 +44,7 @@ def attributes(kin: Kinematics) -> list[str]:
 def setup_body(kin: Kinematics, read: Collection[str]) -> list[str]:
     """The lines that raise errors for parameters that cannot be, then compute the constants that programs read."""
     by_refusal = {window.refusal: window for window in windows(kin.mechanism)}
-    program = _own(kin, read)
+    program = own_setup(kin, read)
     lines: list[str] = []
     for statement in program.body:
         if isinstance(statement, Iterate | Call | FindRoot):
@@ -70,34 +60,9 @@ def setup_body(kin: Kinematics, read: Collection[str]) -> list[str]:
             lines += binding_lines(statement, _PRINTER)
     ends = {o.name for window in by_refusal.values() for o in window.outputs}
     values = {f"self.{spelled(o.name)}": _PRINTER.print(o.value) for o in program.outputs if o.name not in ends}
-    return [*assigned(_given(kin, program, by_refusal.values())), *lines, *assigned(values)]
-
-
-def _own(kin: Kinematics, read: Collection[str]) -> Program:
-    """The setup program without the steps of the runtime, and without values that no program reads."""
-    tested = ranges(kin.parameters)
-    elsewhere = {let.name for window in windows(kin.mechanism) for let in (*window.limits, *window.ends)}
-    outputs = tuple(o for o in kin.setup.outputs if o.name in read)
-    wanted = {s for o in outputs for s in symbols_of(o.value)}
-    body: list[Statement] = []
-    for statement in reversed(kin.setup.body):
-        bound = set(binds(statement))
-        if statement.reason not in tested if isinstance(statement, Require) else bound & wanted - elsewhere:
-            wanted |= reads(statement)
-            body.append(statement)
-    return replace(kin.setup, body=tuple(reversed(body)), outputs=outputs)
-
-
-def _given(kin: Kinematics, program: Program, found: Collection[Window]) -> dict[str, str]:
-    """The parameters that the lines read under their own names: name → value."""
-    refusals = {window.refusal for window in found}
-    values = [o.value for o in program.outputs] + [e for window in found for f in window.fallback for e in f]
-    symbols = {s for value in values for s in symbols_of(value)}
-    for statement in program.body:
-        if not (isinstance(statement, Require) and statement.reason in refusals):
-            symbols |= reads(statement)
-    names, given = {s.name for s in symbols}, inputs(kin).names
-    return {spelled(p.name): _value(p, given[p.name]) for p in kin.parameters if p.name in names}
+    names = inputs(kin).names
+    given = {spelled(p.name): _value(p, names[p.name]) for p in parameters_read(kin, program, by_refusal.values())}
+    return [*assigned(given), *lines, *assigned(values)]
 
 
 def _value(parameter: Parameter, name: str) -> str:

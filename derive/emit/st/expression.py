@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import sympy as sp
 from sympy.core.relational import Relational
 
+from derive.emit.conditions import is_size_test
 from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter, is_never_negative
 from derive.ir.constants import (
     DEGREE,
@@ -38,13 +39,6 @@ def literal(value: float) -> str:
     digits = mantissa.rstrip("0").rstrip(".").rstrip("0")
     zeros = len(mantissa.split(".")[0]) - len(digits)
     return f"{digits}.0E{zeros}" if mantissa.endswith(".0") and zeros >= 6 and len(digits) == 1 else mantissa
-
-
-def is_size_test(condition: sp.Basic) -> bool:
-    """Whether a condition tests that an input is a number of reasonable size."""
-    if not isinstance(condition, sp.Le) or condition.rhs != LARGEST or not isinstance(condition.lhs, sp.Abs):
-        return False
-    return bool(condition.lhs.args[0].is_Symbol)
 
 
 def limits_of(expression: sp.Basic) -> tuple[sp.Expr, sp.Expr, sp.Expr] | None:

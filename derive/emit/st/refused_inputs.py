@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.emit.st.expression import StructuredText, is_size_test, literal
+from derive.emit.conditions import is_size_test
+from derive.emit.st.expression import StructuredText, literal
 from derive.emit.st.layout import WIDTH, assigned, conjunction, indented
 from derive.emit.st.program import Printed
 from derive.emit.st.refusal import Refusal
