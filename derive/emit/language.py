@@ -41,6 +41,12 @@ class Language(Protocol):
         """All files of the language, made of the parts of all mechanisms: path below its folder → text."""
 
 
+def short_name(mechanism: str) -> str:
+    """The name without its prefix, unless the rest is no identifier: `Kin_5Axes`."""
+    short = mechanism.removeprefix("Kin_").removeprefix("Softkin_")
+    return short if short.isidentifier() else mechanism
+
+
 def environment(language: str) -> Environment:
     """The templates of a language. An unknown name in a template is an error, never an empty text."""
     # Nothing is escaped: the output is source text, not a web page.

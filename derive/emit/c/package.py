@@ -27,7 +27,7 @@ from derive.emit.c.program import (
     taken,
 )
 from derive.emit.c.setup import constants_read, setup
-from derive.emit.language import GENERATED, Part, environment
+from derive.emit.language import GENERATED, Part, environment, short_name
 from derive.ir import cells, roots
 from derive.ir.constants import (
     EDGE,
@@ -112,8 +112,7 @@ def shared() -> Mapping[str, str]:
 
 def module_name(mechanism: str) -> str:
     """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`, as in the Python package."""
-    short = mechanism.removeprefix("Kin_").removeprefix("Softkin_")
-    module = (short if short.isidentifier() else mechanism).lower()
+    module = short_name(mechanism).lower()
     return f"{module}_machine" if module in _TAKEN else module
 
 

@@ -20,7 +20,7 @@ from derive.emit.javascript.printer import PRINTER, RUNTIME, list_of, spelled, t
 from derive.emit.javascript.program import function_lines, looked_for, read_by
 from derive.emit.javascript.refusal import Refusals
 from derive.emit.javascript.setup import setup_lines
-from derive.emit.language import GENERATED, Part, environment
+from derive.emit.language import GENERATED, Part, environment, short_name
 from derive.ir import cells, roots
 from derive.ir.constants import (
     EDGE,
@@ -92,8 +92,7 @@ def files(parts: Sequence[Part]) -> dict[str, str]:
 
 def module_name(mechanism: str) -> str:
     """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`, as in the Python package."""
-    short = mechanism.removeprefix("Kin_").removeprefix("Softkin_")
-    module = (short if short.isidentifier() else mechanism).lower()
+    module = short_name(mechanism).lower()
     return f"{module}_machine" if f"{module}.js" in _AROUND else module
 
 

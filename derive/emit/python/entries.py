@@ -8,6 +8,7 @@ from keyword import iskeyword
 
 from derive.description.mechanism import Mechanism, Parameter, Role
 from derive.emit.inputs import Inputs, Spelling, inputs_of, word_of
+from derive.emit.language import short_name
 from derive.ir.constants import LARGEST
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
@@ -43,13 +44,13 @@ _MODULES = frozenset("annotations catalogue core import_module orthonormalize".s
 
 def class_name(name: str, better: str | None) -> str:
     """`Kin_Scara4_ZCcoupled_Type1` → `Scara4ZCcoupledType1`; `Kin_Frame` → `FrameMachine`, for `Frame` is taken."""
-    found = better or "".join(word[:1].upper() + word[1:] for word in _short(name).split("_"))
+    found = better or "".join(word[:1].upper() + word[1:] for word in short_name(name).split("_"))
     return f"{found}Machine" if found in _CLASSES or iskeyword(found) else found
 
 
 def module_name(name: str) -> str:
     """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`; `Kin_Class` → `class_machine`, a word of Python."""
-    found = _short(name).lower()
+    found = short_name(name).lower()
     return f"{found}_machine" if found in _MODULES or iskeyword(found) else found
 
 
@@ -176,12 +177,6 @@ def literal(value: object) -> str:
     if isinstance(value, tuple):
         return f"({', '.join(map(literal, value))}{',' if len(value) == 1 else ''})"
     return repr(value)
-
-
-def _short(name: str) -> str:
-    """The name without its prefix, unless the rest is no identifier: `Kin_5Axes`."""
-    short = name.removeprefix("Kin_").removeprefix("Softkin_")
-    return short if short.isidentifier() else name
 
 
 def _call(constructor: str, *first: str, **values: object) -> str:
