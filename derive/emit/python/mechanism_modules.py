@@ -19,6 +19,7 @@ from derive.emit.python.methods import (
     limits,
     methods,
     projection,
+    rows_of_twist,
     shared,
 )
 from derive.emit.python.printer import ScalarPrinter, primitives_in
@@ -132,6 +133,7 @@ def _array_context(kin: Kinematics, arrays: Sequence[Method]) -> dict[str, Any]:
         "imports": in_order({array_programs} | named_in(lines, CALLED)),
         "types": in_order(named_in(lines, TYPES)),
         "values": values_of_a_row(kin),
+        "rows_of_twist": rows_of_twist(kin),
         "methods": [
             {"head": head, "summary": m.summary, "body": body} for m, (head, body) in zip(arrays, texts, strict=True)
         ],

@@ -116,16 +116,23 @@ def branch(kin: Kinematics) -> Method:
     return Method("branch", text, kin.branch, (*pose, *_choice(kin)), "Reals", _axes(kin).shape, is_explained=True)
 
 
+def rows_of_twist(kin: Kinematics) -> tuple[int, ...]:
+    """The rows of the twist that the Jacobian has; nothing where the Jacobian has a program of its own."""
+    if kin.twist is None or not set(kin.rows) <= set(TWIST_ROWS):
+        return ()
+    return tuple(map(TWIST_ROWS.index, kin.rows))
+
+
 def differential(kin: Kinematics) -> list[Method]:
-    """The margins, the Jacobian and, where that lacks rows that are not zero, all rows of the twist."""
+    """The margins, all rows of the twist where the Jacobian lacks rows that are not zero, and the Jacobian where its
+    rows are no rows of the twist.
+    """
     axes, margins = _axes(kin), tuple(m.name for m in kin.margins)
     text = "The margins, each zero at its singularity."
-    found = [
-        Method("singularity", text, kin.singularity, (axes,), "Reals", margins),
-        Method(
-            "jacobian", "The Jacobian by rows, per radian.", kin.jacobian, (axes,), "Matrix", _rows(kin, len(kin.rows))
-        ),
-    ]
+    found = [Method("singularity", text, kin.singularity, (axes,), "Reals", margins)]
+    if not rows_of_twist(kin):
+        text = "The Jacobian by rows, per radian."
+        found.append(Method("jacobian", text, kin.jacobian, (axes,), "Matrix", _rows(kin, len(kin.rows))))
     if kin.twist is not None:
         text = "The twist of the frame by rows, per radian."
         found.append(Method("twist", text, kin.twist, (axes,), "Matrix", _rows(kin, len(TWIST_ROWS))))

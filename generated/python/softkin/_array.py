@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, ClassVar, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,6 +79,8 @@ class Programs(ABC):
 
     VALUES: int
     """The values that the inverse computes of one row, inputs and results among them."""
+    JACOBIAN_ROWS: ClassVar[tuple[int, ...]]
+    """The rows of the twist that the Jacobian has, where it has no program of its own."""
 
     def __init__(self, constants: Any) -> None:
         """constants: those of the machine for which the programs compute."""
@@ -108,9 +110,10 @@ class Programs(ABC):
     def limits(self, axes: Reals) -> Codes:
         """The statuses of the test of all limits."""
 
-    @abstractmethod
     def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The Jacobian by rows, per radian."""
+        rows, status = self.twist(axes)
+        return tuple(rows[row] for row in self.JACOBIAN_ROWS), status
 
     @abstractmethod
     def singularity(self, axes: Reals) -> tuple[Reals, Codes]:

@@ -857,8 +857,10 @@ class Mechanism(Value, ABC):
     @abstractmethod
     def _singularity(self, axes: Reals) -> Reals | Status: ...
 
-    @abstractmethod
-    def _jacobian(self, axes: Reals) -> Matrix | Status: ...
+    def _jacobian(self, axes: Reals) -> Matrix | Status:
+        """The rows of the Jacobian: those of the twist, where a class has a program for all of these."""
+        rows = self._twist(axes)
+        return rows if isinstance(rows, Status) else tuple(rows[TWIST.index(row)] for row in self.JACOBIAN_ROWS)
 
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The six rows of the twist. Where the frame keeps its orientation: those of the Jacobian, and zeros."""

@@ -183,14 +183,6 @@ class CAxis(OrientationKinematics, TwistChoice):
             return Status.BAD_INPUT
         return ()
 
-    def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian by rows, per radian."""
-        (axis_c,) = axes
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_c <= 1e9):
-            return Status.BAD_INPUT
-        return ((1.0,),)
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         (axis_c,) = axes

@@ -241,15 +241,6 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         return ()
 
-    def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian by rows, per radian."""
-        axis_x, axis_y, axis_r = axes
-        k = self._constants
-        direction_r = k.direction_r
-        if not reasonable(axis_r, axis_x, axis_y):
-            return Status.BAD_INPUT
-        return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, direction_r))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_x, axis_y, axis_r = axes

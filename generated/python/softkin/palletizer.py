@@ -492,58 +492,6 @@ class Palletizer(OffsetKinematics, TwistChoice):
         cos_a3_from_a2 = cos(a2 - a3)
         return (margin_axis_a4_on_a1, cos_a3_from_a2)
 
-    def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_a3, axis_a4 = axes
-        k = self._constants
-        base_height, link_length_1, link_length_2 = k.base_height, k.link_length_1, k.link_length_2
-        offset_a1, offset_a2, offset_a3, shoulder_offset = k.offset_a1, k.offset_a2, k.offset_a3, k.shoulder_offset
-        wrist_offset_x, wrist_offset_z = k.wrist_offset_x, k.wrist_offset_z
-        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
-            return Status.BAD_INPUT
-        a1 = DEGREE * (axis_a1 - offset_a1)
-        sin_a1 = sin(a1)
-        y_at_a2 = shoulder_offset * sin_a1
-        a2 = DEGREE * (axis_a2 - offset_a2)
-        sin_a2 = sin(a2)
-        r23_at_a2 = sin_a1 * sin_a2
-        y_at_a2_a3 = y_at_a2 + link_length_1 * r23_at_a2
-        a3 = DEGREE * (axis_a3 - offset_a3)
-        cos_a3 = cos(a3)
-        r21_at_a3 = cos_a3 * sin_a1
-        y_at_a3 = y_at_a2_a3 + link_length_2 * r21_at_a3
-        y_at_a4 = y_at_a3 + wrist_offset_x * sin_a1
-        cos_a1 = cos(a1)
-        x_at_a2 = shoulder_offset * cos_a1
-        r13_at_a2 = cos_a1 * sin_a2
-        x_at_a2_a3 = x_at_a2 + link_length_1 * r13_at_a2
-        r11_at_a3 = cos_a1 * cos_a3
-        x_at_a3 = x_at_a2_a3 + link_length_2 * r11_at_a3
-        x_at_a4 = x_at_a3 + wrist_offset_x * cos_a1
-        x_at_a4_minus_x_at_a2_a3 = x_at_a4 - x_at_a2_a3
-        y_at_a4_minus_y_at_a2_a3 = y_at_a4 - y_at_a2_a3
-        cos_a2 = cos(a2)
-        z_at_a2_a3 = base_height + link_length_1 * cos_a2
-        sin_a3 = sin(a3)
-        z_at_a3 = z_at_a2_a3 - link_length_2 * sin_a3
-        z_at_a4 = wrist_offset_z + z_at_a3
-        z_at_a4_minus_z_at_a2_a3 = z_at_a4 - z_at_a2_a3
-        shared_sum = base_height + z_at_a4_minus_z_at_a2_a3 - z_at_a4
-        shared_sum_2 = z_at_a3 + z_at_a4_minus_z_at_a2_a3 - z_at_a4
-        return (
-            (-y_at_a4, -shared_sum * cos_a1, shared_sum_2 * cos_a1, 0.0),
-            (x_at_a4, -shared_sum * sin_a1, shared_sum_2 * sin_a1, 0.0),
-            (
-                0.0,
-                (x_at_a2 + x_at_a4_minus_x_at_a2_a3 - x_at_a4) * cos_a1
-                + (y_at_a2 + y_at_a4_minus_y_at_a2_a3 - y_at_a4) * sin_a1,
-                (x_at_a4 - x_at_a3 - x_at_a4_minus_x_at_a2_a3) * cos_a1
-                + (y_at_a4 - y_at_a3 - y_at_a4_minus_y_at_a2_a3) * sin_a1,
-                0.0,
-            ),
-            (1.0, 0.0, 0.0, 1.0),
-        )
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes

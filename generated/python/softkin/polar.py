@@ -244,23 +244,6 @@ class Polar(Mechanism):
         margin_free_c = 1.0 if length_free_c > 1e-11 else 0.0  # 0 where nothing determines the axis, else 1 or -1
         return (margin_free_c,)
 
-    def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian by rows, per radian."""
-        axis_c, axis_r = axes
-        k = self._constants
-        offset_c, offset_r = k.offset_c, k.offset_r
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9):
-            return Status.BAD_INPUT
-        r = axis_r - offset_r
-        # R where the machine has no pose
-        if not (r >= -1e-9 and r <= 1000000001.0):
-            return Status.IMPOSSIBLE
-        c = DEGREE * (axis_c - offset_c)
-        sin_c = sin(c)
-        cos_c = cos(c)
-        return ((-r * sin_c, cos_c), (r * cos_c, sin_c))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_c, axis_r = axes

@@ -255,22 +255,6 @@ class PolarZ(Mechanism):
         margin_free_c = 1.0 if length_free_c > 1e-11 else 0.0  # 0 where nothing determines the axis, else 1 or -1
         return (margin_free_c,)
 
-    def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian by rows, per radian."""
-        axis_c, axis_r, axis_z = axes
-        k = self._constants
-        offset_c, offset_r = k.offset_c, k.offset_r
-        if not reasonable(axis_c, axis_r, axis_z):
-            return Status.BAD_INPUT
-        r = axis_r - offset_r
-        # R where the machine has no pose
-        if not (r >= -1e-9 and r <= 1000000001.0):
-            return Status.IMPOSSIBLE
-        c = DEGREE * (axis_c - offset_c)
-        sin_c = sin(c)
-        cos_c = cos(c)
-        return ((-r * sin_c, cos_c, 0.0), (r * cos_c, sin_c, 0.0), (0.0, 0.0, 1.0))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_c, axis_r, axis_z = axes

@@ -467,46 +467,6 @@ class PosRRR(OffsetKinematics):
         margin_elbow = d4_by_effective_q3_2 * cos_q3 - a3_by_effective_q3_2 * sin_q3
         return (margin_point_on_axis_1, margin_elbow)
 
-    def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_a3 = axes
-        k = self._constants
-        a1, a2, a3, d1, d3, d4, offset_a1, offset_a2 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.offset_a1, k.offset_a2
-        offset_a3 = k.offset_a3
-        if not reasonable(axis_a1, axis_a2, axis_a3):
-            return Status.BAD_INPUT
-        q1 = DEGREE * (axis_a1 - offset_a1)
-        cos_q1 = cos(q1)
-        sin_q1 = sin(q1)
-        y_at_q2 = a1 * sin_q1
-        q2 = DEGREE * (axis_a2 - offset_a2)
-        sin_q2 = sin(q2)
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + a2 * r21_at_q2
-        q3 = DEGREE * (axis_a3 - offset_a3)
-        q2_plus_q3 = q2 + q3
-        sin_q23 = sin(q2_plus_q3)
-        r21_at_q23 = -sin_q1 * sin_q23
-        cos_q23 = cos(q2_plus_q3)
-        r22_at_q23 = -cos_q23 * sin_q1
-        y = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1 - d4 * r22_at_q23
-        x_at_q2 = a1 * cos_q1
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + a2 * r11_at_q2
-        r11_at_q23 = -cos_q1 * sin_q23
-        r12_at_q23 = -cos_q1 * cos_q23
-        x = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1 - d4 * r12_at_q23
-        cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2 * cos_q2
-        z = z_at_q3 + a3 * cos_q23 + d4 * sin_q23
-        z_minus_d1 = z - d1
-        z_minus_z_at_q3 = z - z_at_q3
-        return (
-            (-y, -z_minus_d1 * cos_q1, -z_minus_z_at_q3 * cos_q1),
-            (x, -z_minus_d1 * sin_q1, -z_minus_z_at_q3 * sin_q1),
-            (0.0, (x - x_at_q2) * cos_q1 + (y - y_at_q2) * sin_q1, (x - x_at_q3) * cos_q1 + (y - y_at_q3) * sin_q1),
-        )
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes

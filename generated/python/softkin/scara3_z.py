@@ -344,36 +344,6 @@ class Scara3Z(TwistChoice):
         sin_a2 = sin(a2)
         return (sin_a2,)
 
-    def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_a3, axis_z = axes
-        k = self._constants
-        arm_length_1, arm_length_2, arm_length_3 = k.arm_length_1, k.arm_length_2, k.arm_length_3
-        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
-        if not reasonable(axis_a1, axis_a2, axis_a3, axis_z):
-            return Status.BAD_INPUT
-        a1 = DEGREE * (axis_a1 - offset_a1)
-        sin_a1 = sin(a1)
-        cos_a1 = cos(a1)
-        a2 = DEGREE * (axis_a2 - offset_a2)
-        a1_plus_a2 = a1 + a2
-        a3 = DEGREE * (axis_a3 - offset_a3)
-        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
-        cos_a123 = cos(a1_plus_a2_plus_a3)
-        arm_length_3_times_cos_a123 = arm_length_3 * cos_a123
-        sin_a123 = sin(a1_plus_a2_plus_a3)
-        arm_length_3_times_sin_a123 = arm_length_3 * sin_a123
-        sin_a12 = sin(a1_plus_a2)
-        shared_sum = arm_length_3_times_sin_a123 + arm_length_2 * sin_a12
-        cos_a12 = cos(a1_plus_a2)
-        shared_sum_2 = arm_length_3_times_cos_a123 + arm_length_2 * cos_a12
-        return (
-            (-shared_sum - arm_length_1 * sin_a1, -shared_sum, -arm_length_3_times_sin_a123, 0.0),
-            (shared_sum_2 + arm_length_1 * cos_a1, shared_sum_2, arm_length_3_times_cos_a123, 0.0),
-            (0.0, 0.0, 0.0, 1.0),
-            (1.0, 1.0, 1.0, 0.0),
-        )
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_z = axes

@@ -354,36 +354,6 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         sin_a3 = sin(a3)
         return (sin_a3,)
 
-    def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_a3, axis_a4 = axes
-        k = self._constants
-        link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
-        offset_a2, offset_a3, offset_a4 = k.offset_a2, k.offset_a3, k.offset_a4
-        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
-            return Status.BAD_INPUT
-        a2 = DEGREE * (axis_a2 - offset_a2)
-        sin_a2 = sin(a2)
-        cos_a2 = cos(a2)
-        a3 = DEGREE * (axis_a3 - offset_a3)
-        a2_plus_a3 = a2 + a3
-        a4 = DEGREE * (axis_a4 - offset_a4)
-        a2_plus_a3_plus_a4 = a2_plus_a3 + a4
-        cos_a234 = cos(a2_plus_a3_plus_a4)
-        cos_a234_times_link_length_3 = link_length_3 * cos_a234
-        sin_a234 = sin(a2_plus_a3_plus_a4)
-        link_length_3_times_sin_a234 = link_length_3 * sin_a234
-        sin_a23 = sin(a2_plus_a3)
-        shared_sum = link_length_3_times_sin_a234 + link_length_2 * sin_a23
-        cos_a23 = cos(a2_plus_a3)
-        shared_sum_2 = cos_a234_times_link_length_3 + link_length_2 * cos_a23
-        return (
-            (0.0, -shared_sum - link_length_1 * sin_a2, -shared_sum, -link_length_3_times_sin_a234),
-            (0.0, shared_sum_2 + link_length_1 * cos_a2, shared_sum_2, cos_a234_times_link_length_3),
-            (1.0, 0.0, 0.0, 0.0),
-            (0.0, 1.0, 1.0, 1.0),
-        )
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes

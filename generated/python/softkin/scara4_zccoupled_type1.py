@@ -368,30 +368,6 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         sin_a2 = sin(a2)
         return (sin_a2,)
 
-    def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_a3, axis_a4 = axes
-        k = self._constants
-        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
-        quotient_in_z = k.quotient_in_z
-        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
-            return Status.BAD_INPUT
-        a1 = DEGREE * (axis_a1 - offset_a1)
-        sin_a1 = sin(a1)
-        cos_a1 = cos(a1)
-        a2 = DEGREE * (axis_a2 - offset_a2)
-        a1_plus_a2 = a1 + a2
-        cos_a12 = cos(a1_plus_a2)
-        cos_a12_times_link_length_2 = link_length_2 * cos_a12
-        sin_a12 = sin(a1_plus_a2)
-        link_length_2_times_sin_a12 = link_length_2 * sin_a12
-        return (
-            (-link_length_2_times_sin_a12 - link_length_1 * sin_a1, -link_length_2_times_sin_a12, 0.0, 0.0),
-            (cos_a12_times_link_length_2 + link_length_1 * cos_a1, cos_a12_times_link_length_2, 0.0, 0.0),
-            (0.0, 0.0, 1.0, -quotient_in_z),
-            (1.0, 1.0, 0.0, 1.0),
-        )
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes

@@ -454,44 +454,6 @@ class SCCC(OffsetKinematics, TwistChoice):
         sin_a2 = sin(a2)
         return (sin_a2,)
 
-    def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_a3 = axes
-        k = self._constants
-        coupling_12, coupling_12_plus_coupling_13_plus_one = k.coupling_12, k.coupling_12_plus_coupling_13_plus_one
-        coupling_13, coupling_23, coupling_23_plus_one = k.coupling_13, k.coupling_23, k.coupling_23_plus_one
-        link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
-        offset_a1, offset_a2, offset_a3, shared_sum = k.offset_a1, k.offset_a2, k.offset_a3, k.shared_sum
-        shared_sum_2, shared_sum_3 = k.shared_sum_2, k.shared_sum_3
-        if not reasonable(axis_a1, axis_a2, axis_a3):
-            return Status.BAD_INPUT
-        a1 = DEGREE * (axis_a1 - offset_a1)
-        sin_a1 = sin(a1)
-        motor_a2 = DEGREE * (axis_a2 - offset_a2)
-        a2 = motor_a2 + a1 * coupling_12
-        a1_plus_a2 = a1 + a2
-        sin_a12 = sin(a1_plus_a2)
-        motor_a3 = DEGREE * (axis_a3 - offset_a3)
-        a3 = motor_a3 + a1 * coupling_13 + coupling_23 * motor_a2
-        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
-        sin_a123 = sin(a1_plus_a2_plus_a3)
-        cos_a1 = cos(a1)
-        cos_a12 = cos(a1_plus_a2)
-        cos_a123 = cos(a1_plus_a2_plus_a3)
-        return (
-            (
-                -link_length_1 * sin_a1 - shared_sum * sin_a123 - shared_sum_2 * sin_a12,
-                -link_length_2 * sin_a12 - shared_sum_3 * sin_a123,
-                -link_length_3 * sin_a123,
-            ),
-            (
-                link_length_1 * cos_a1 + shared_sum_2 * cos_a12 + shared_sum * cos_a123,
-                link_length_2 * cos_a12 + shared_sum_3 * cos_a123,
-                link_length_3 * cos_a123,
-            ),
-            (coupling_12_plus_coupling_13_plus_one, coupling_23_plus_one, 1.0),
-        )
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes

@@ -304,23 +304,6 @@ class Wrist3(OrientationKinematics):
         sin_b = sin(b)
         return (sin_b,)
 
-    def _jacobian(self, axes: Reals) -> Matrix | Status:
-        """The Jacobian by rows, per radian."""
-        axis_a, axis_b, axis_c = axes
-        k = self._constants
-        offset_a, offset_b = k.offset_a, k.offset_b
-        if not reasonable(axis_a, axis_b, axis_c):
-            return Status.BAD_INPUT
-        a = DEGREE * (axis_a - offset_a)
-        sin_a = sin(a)
-        cos_a = cos(a)
-        b = DEGREE * (axis_b - offset_b)
-        sin_b = sin(b)
-        r13_at_b = -cos_a * sin_b
-        r23_at_b = -sin_a * sin_b
-        cos_b = cos(b)
-        return ((0.0, sin_a, r13_at_b), (0.0, -cos_a, r23_at_b), (1.0, 0.0, cos_b))
-
     def _twist(self, axes: Reals) -> Matrix | Status:
         """The twist of the frame by rows, per radian."""
         axis_a, axis_b, axis_c = axes

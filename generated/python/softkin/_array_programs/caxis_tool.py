@@ -31,6 +31,7 @@ class ArrayPrograms(OrientationPrograms):
 
     constants: Constants
     VALUES = 14
+    JACOBIAN_ROWS = (5,)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -83,14 +84,6 @@ class ArrayPrograms(OrientationPrograms):
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(axis_c), Status.BAD_INPUT)
         return (), status
-
-    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
-        """The Jacobian by rows, per radian."""
-        (axis_c,) = axes
-        status = passed(axes)
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_c), Status.BAD_INPUT)
-        return ((1.0,),), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the frame by rows, per radian."""

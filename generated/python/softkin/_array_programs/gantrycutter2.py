@@ -31,6 +31,7 @@ class ArrayPrograms(Programs):
 
     constants: Constants
     VALUES = 24
+    JACOBIAN_ROWS = (0, 1, 5)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -98,15 +99,6 @@ class ArrayPrograms(Programs):
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(axis_r, axis_x, axis_y), Status.BAD_INPUT)
         return (), status
-
-    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
-        """The Jacobian by rows, per radian."""
-        axis_x, axis_y, axis_r = axes
-        k = self.constants
-        status = passed(axes)
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_r, axis_x, axis_y), Status.BAD_INPUT)
-        return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, k.direction_r)), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the frame by rows, per radian."""

@@ -33,6 +33,7 @@ class ArrayPrograms(Programs):
 
     constants: Constants
     VALUES = 75
+    JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -216,56 +217,6 @@ class ArrayPrograms(Programs):
         )
         cos_a3_from_a2 = cos(a2 - a3)
         return (margin_axis_a4_on_a1, cos_a3_from_a2), status
-
-    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_a3, axis_a4 = axes
-        k = self.constants
-        status = passed(axes)
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4), Status.BAD_INPUT)
-        a1 = DEGREE * (axis_a1 - k.offset_a1)
-        sin_a1 = sin(a1)
-        y_at_a2 = k.shoulder_offset * sin_a1
-        a2 = DEGREE * (axis_a2 - k.offset_a2)
-        sin_a2 = sin(a2)
-        r23_at_a2 = sin_a1 * sin_a2
-        y_at_a2_a3 = y_at_a2 + k.link_length_1 * r23_at_a2
-        a3 = DEGREE * (axis_a3 - k.offset_a3)
-        cos_a3 = cos(a3)
-        r21_at_a3 = cos_a3 * sin_a1
-        y_at_a3 = y_at_a2_a3 + k.link_length_2 * r21_at_a3
-        y_at_a4 = y_at_a3 + k.wrist_offset_x * sin_a1
-        cos_a1 = cos(a1)
-        x_at_a2 = k.shoulder_offset * cos_a1
-        r13_at_a2 = cos_a1 * sin_a2
-        x_at_a2_a3 = x_at_a2 + k.link_length_1 * r13_at_a2
-        r11_at_a3 = cos_a1 * cos_a3
-        x_at_a3 = x_at_a2_a3 + k.link_length_2 * r11_at_a3
-        x_at_a4 = x_at_a3 + k.wrist_offset_x * cos_a1
-        x_at_a4_minus_x_at_a2_a3 = x_at_a4 - x_at_a2_a3
-        y_at_a4_minus_y_at_a2_a3 = y_at_a4 - y_at_a2_a3
-        cos_a2 = cos(a2)
-        z_at_a2_a3 = k.base_height + k.link_length_1 * cos_a2
-        sin_a3 = sin(a3)
-        z_at_a3 = z_at_a2_a3 - k.link_length_2 * sin_a3
-        z_at_a4 = k.wrist_offset_z + z_at_a3
-        z_at_a4_minus_z_at_a2_a3 = z_at_a4 - z_at_a2_a3
-        shared_sum = k.base_height + z_at_a4_minus_z_at_a2_a3 - z_at_a4
-        shared_sum_2 = z_at_a3 + z_at_a4_minus_z_at_a2_a3 - z_at_a4
-        return (
-            (-y_at_a4, -shared_sum * cos_a1, shared_sum_2 * cos_a1, 0.0),
-            (x_at_a4, -shared_sum * sin_a1, shared_sum_2 * sin_a1, 0.0),
-            (
-                0.0,
-                (x_at_a2 + x_at_a4_minus_x_at_a2_a3 - x_at_a4) * cos_a1
-                + (y_at_a2 + y_at_a4_minus_y_at_a2_a3 - y_at_a4) * sin_a1,
-                (x_at_a4 - x_at_a3 - x_at_a4_minus_x_at_a2_a3) * cos_a1
-                + (y_at_a4 - y_at_a3 - y_at_a4_minus_y_at_a2_a3) * sin_a1,
-                0.0,
-            ),
-            (1.0, 0.0, 0.0, 1.0),
-        ), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the frame by rows, per radian."""

@@ -36,6 +36,7 @@ class ArrayPrograms(StartedPrograms):
 
     constants: Constants
     VALUES = 223
+    JACOBIAN_ROWS = (0, 1, 5)
 
     def find_platform(self, given: Values, status: Codes) -> Values:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""
@@ -429,76 +430,6 @@ class ArrayPrograms(StartedPrograms):
         span_3_y = y + k.platform_3_y * cos_heading + k.platform_3_x * sin_heading - k.base_3_y
         margin_stretched_3 = k.one_by_rod_length_3 * (span_3_y * cos_a3 - span_3_x * sin_a3)
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, determinant), status
-
-    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_a3 = axes
-        k = self.constants
-        status = passed(axes)
-        # pose of the platform, by Newton's method from the home pose
-        found = self.find_platform(
-            (axis_a1, axis_a2, axis_a3, k.cos_home_heading_2, k.sin_home_heading_2, k.home_x, k.home_y), status
-        )
-        (
-            _,
-            _,
-            _,
-            _,
-            determinant,
-            along_1_x,
-            along_1_y,
-            moment_1_z,
-            along_2_x,
-            along_2_y,
-            moment_2_z,
-            along_3_x,
-            along_3_y,
-            moment_3_z,
-        ) = found
-        a1 = DEGREE * (axis_a1 - k.offset_a1)
-        sin_a1 = sin(a1)
-        a2 = DEGREE * (axis_a2 - k.offset_a2)
-        sin_a2 = sin(a2)
-        a3 = DEGREE * (axis_a3 - k.offset_a3)
-        sin_a3 = sin(a3)
-        cos_a1 = cos(a1)
-        cos_a2 = cos(a2)
-        cos_a3 = cos(a3)
-        # twist of the platform per velocity of each axis
-        (
-            _,
-            column_1_vx,
-            column_2_vx,
-            column_3_vx,
-            column_1_vy,
-            column_2_vy,
-            column_3_vy,
-            column_1_wz,
-            column_2_wz,
-            column_3_wz,
-        ) = solve(
-            (
-                (along_1_x, along_1_y, moment_1_z),
-                (along_2_x, along_2_y, moment_2_z),
-                (along_3_x, along_3_y, moment_3_z),
-            ),
-            (
-                ((along_1_y * cos_a1 - along_1_x * sin_a1) * k.arm_length_1, 0.0, 0.0),
-                (0.0, (along_2_y * cos_a2 - along_2_x * sin_a2) * k.arm_length_2, 0.0),
-                (0.0, 0.0, (along_3_y * cos_a3 - along_3_x * sin_a3) * k.arm_length_3),
-            ),
-        )
-        # nothing controls the plate
-        require(status, absolute(determinant) > 1e-11, Status.IMPOSSIBLE)
-        return (
-            (column_1_vx, column_2_vx, column_3_vx),
-            (column_1_vy, column_2_vy, column_3_vy),
-            (
-                column_1_wz * k.one_by_platform_radius,
-                column_2_wz * k.one_by_platform_radius,
-                column_3_wz * k.one_by_platform_radius,
-            ),
-        ), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the frame by rows, per radian."""

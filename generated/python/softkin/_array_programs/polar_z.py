@@ -31,6 +31,7 @@ class ArrayPrograms(Programs):
 
     constants: Constants
     VALUES = 20
+    JACOBIAN_ROWS = (0, 1, 2)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -112,21 +113,6 @@ class ArrayPrograms(Programs):
         # R where the machine has no pose
         require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
         return (margin_free_c,), status
-
-    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
-        """The Jacobian by rows, per radian."""
-        axis_c, axis_r, axis_z = axes
-        k = self.constants
-        status = passed(axes)
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_c, axis_r, axis_z), Status.BAD_INPUT)
-        r = axis_r - k.offset_r
-        c = DEGREE * (axis_c - k.offset_c)
-        sin_c = sin(c)
-        cos_c = cos(c)
-        # R where the machine has no pose
-        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
-        return ((-r * sin_c, cos_c, 0.0), (r * cos_c, sin_c, 0.0), (0.0, 0.0, 1.0)), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the frame by rows, per radian."""

@@ -33,6 +33,7 @@ class ArrayPrograms(Programs):
 
     constants: Constants
     VALUES = 89
+    JACOBIAN_ROWS = (0, 1, 2)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -311,45 +312,6 @@ class ArrayPrograms(Programs):
         cos_q3 = cos(q3)
         margin_elbow = k.d4_by_effective_q3_2 * cos_q3 - k.a3_by_effective_q3_2 * sin_q3
         return (margin_point_on_axis_1, margin_elbow), status
-
-    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_a3 = axes
-        k = self.constants
-        status = passed(axes)
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
-        q1 = DEGREE * (axis_a1 - k.offset_a1)
-        cos_q1 = cos(q1)
-        sin_q1 = sin(q1)
-        y_at_q2 = k.a1 * sin_q1
-        q2 = DEGREE * (axis_a2 - k.offset_a2)
-        sin_q2 = sin(q2)
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + k.a2 * r21_at_q2
-        q3 = DEGREE * (axis_a3 - k.offset_a3)
-        q2_plus_q3 = q2 + q3
-        sin_q23 = sin(q2_plus_q3)
-        r21_at_q23 = -sin_q1 * sin_q23
-        cos_q23 = cos(q2_plus_q3)
-        r22_at_q23 = -cos_q23 * sin_q1
-        y = y_at_q3 + k.a3 * r21_at_q23 - k.d3 * cos_q1 - k.d4 * r22_at_q23
-        x_at_q2 = k.a1 * cos_q1
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + k.a2 * r11_at_q2
-        r11_at_q23 = -cos_q1 * sin_q23
-        r12_at_q23 = -cos_q1 * cos_q23
-        x = x_at_q3 + k.a3 * r11_at_q23 + k.d3 * sin_q1 - k.d4 * r12_at_q23
-        cos_q2 = cos(q2)
-        z_at_q3 = k.d1 + k.a2 * cos_q2
-        z = z_at_q3 + k.a3 * cos_q23 + k.d4 * sin_q23
-        z_minus_d1 = z - k.d1
-        z_minus_z_at_q3 = z - z_at_q3
-        return (
-            (-y, -z_minus_d1 * cos_q1, -z_minus_z_at_q3 * cos_q1),
-            (x, -z_minus_d1 * sin_q1, -z_minus_z_at_q3 * sin_q1),
-            (0.0, (x - x_at_q2) * cos_q1 + (y - y_at_q2) * sin_q1, (x - x_at_q3) * cos_q1 + (y - y_at_q3) * sin_q1),
-        ), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the frame by rows, per radian."""

@@ -33,6 +33,7 @@ class ArrayPrograms(Programs):
 
     constants: Constants
     VALUES = 41
+    JACOBIAN_ROWS = (0, 1, 2)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -132,28 +133,6 @@ class ArrayPrograms(Programs):
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         sin_a2 = sin(a2)
         return (sin_a2,), status
-
-    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_z = axes
-        k = self.constants
-        status = passed(axes)
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_a1, axis_a2, axis_z), Status.BAD_INPUT)
-        a1 = DEGREE * (axis_a1 - k.offset_a1)
-        sin_a1 = sin(a1)
-        cos_a1 = cos(a1)
-        a2 = DEGREE * (axis_a2 - k.offset_a2)
-        a1_plus_a2 = a1 + a2
-        cos_a12 = cos(a1_plus_a2)
-        arm_length_2_times_cos_a12 = k.arm_length_2 * cos_a12
-        sin_a12 = sin(a1_plus_a2)
-        arm_length_2_times_sin_a12 = k.arm_length_2 * sin_a12
-        return (
-            (-arm_length_2_times_sin_a12 - k.arm_length_1 * sin_a1, -arm_length_2_times_sin_a12, 0.0),
-            (arm_length_2_times_cos_a12 + k.arm_length_1 * cos_a1, arm_length_2_times_cos_a12, 0.0),
-            (0.0, 0.0, 1.0),
-        ), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the frame by rows, per radian."""

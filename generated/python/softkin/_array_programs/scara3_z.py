@@ -33,6 +33,7 @@ class ArrayPrograms(Programs):
 
     constants: Constants
     VALUES = 65
+    JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -158,35 +159,6 @@ class ArrayPrograms(Programs):
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         sin_a2 = sin(a2)
         return (sin_a2,), status
-
-    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_a3, axis_z = axes
-        k = self.constants
-        status = passed(axes)
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_z), Status.BAD_INPUT)
-        a1 = DEGREE * (axis_a1 - k.offset_a1)
-        sin_a1 = sin(a1)
-        cos_a1 = cos(a1)
-        a2 = DEGREE * (axis_a2 - k.offset_a2)
-        a1_plus_a2 = a1 + a2
-        a3 = DEGREE * (axis_a3 - k.offset_a3)
-        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
-        cos_a123 = cos(a1_plus_a2_plus_a3)
-        arm_length_3_times_cos_a123 = k.arm_length_3 * cos_a123
-        sin_a123 = sin(a1_plus_a2_plus_a3)
-        arm_length_3_times_sin_a123 = k.arm_length_3 * sin_a123
-        sin_a12 = sin(a1_plus_a2)
-        shared_sum = arm_length_3_times_sin_a123 + k.arm_length_2 * sin_a12
-        cos_a12 = cos(a1_plus_a2)
-        shared_sum_2 = arm_length_3_times_cos_a123 + k.arm_length_2 * cos_a12
-        return (
-            (-shared_sum - k.arm_length_1 * sin_a1, -shared_sum, -arm_length_3_times_sin_a123, 0.0),
-            (shared_sum_2 + k.arm_length_1 * cos_a1, shared_sum_2, arm_length_3_times_cos_a123, 0.0),
-            (0.0, 0.0, 0.0, 1.0),
-            (1.0, 1.0, 1.0, 0.0),
-        ), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the frame by rows, per radian."""

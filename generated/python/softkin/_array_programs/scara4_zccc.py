@@ -33,6 +33,7 @@ class ArrayPrograms(Programs):
 
     constants: Constants
     VALUES = 65
+    JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -154,35 +155,6 @@ class ArrayPrograms(Programs):
         a3 = DEGREE * (axis_a3 - k.offset_a3)
         sin_a3 = sin(a3)
         return (sin_a3,), status
-
-    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_a3, axis_a4 = axes
-        k = self.constants
-        status = passed(axes)
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4), Status.BAD_INPUT)
-        a2 = DEGREE * (axis_a2 - k.offset_a2)
-        sin_a2 = sin(a2)
-        cos_a2 = cos(a2)
-        a3 = DEGREE * (axis_a3 - k.offset_a3)
-        a2_plus_a3 = a2 + a3
-        a4 = DEGREE * (axis_a4 - k.offset_a4)
-        a2_plus_a3_plus_a4 = a2_plus_a3 + a4
-        cos_a234 = cos(a2_plus_a3_plus_a4)
-        cos_a234_times_link_length_3 = k.link_length_3 * cos_a234
-        sin_a234 = sin(a2_plus_a3_plus_a4)
-        link_length_3_times_sin_a234 = k.link_length_3 * sin_a234
-        sin_a23 = sin(a2_plus_a3)
-        shared_sum = link_length_3_times_sin_a234 + k.link_length_2 * sin_a23
-        cos_a23 = cos(a2_plus_a3)
-        shared_sum_2 = cos_a234_times_link_length_3 + k.link_length_2 * cos_a23
-        return (
-            (0.0, -shared_sum - k.link_length_1 * sin_a2, -shared_sum, -link_length_3_times_sin_a234),
-            (0.0, shared_sum_2 + k.link_length_1 * cos_a2, shared_sum_2, cos_a234_times_link_length_3),
-            (1.0, 0.0, 0.0, 0.0),
-            (0.0, 1.0, 1.0, 1.0),
-        ), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the frame by rows, per radian."""

@@ -33,6 +33,7 @@ class ArrayPrograms(Programs):
 
     constants: Constants
     VALUES = 76
+    JACOBIAN_ROWS = (0, 1, 5)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -197,40 +198,6 @@ class ArrayPrograms(Programs):
         a2 = motor_a2 + a1 * k.coupling_12
         sin_a2 = sin(a2)
         return (sin_a2,), status
-
-    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
-        """The Jacobian by rows, per radian."""
-        axis_a1, axis_a2, axis_a3 = axes
-        k = self.constants
-        status = passed(axes)
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
-        a1 = DEGREE * (axis_a1 - k.offset_a1)
-        sin_a1 = sin(a1)
-        motor_a2 = DEGREE * (axis_a2 - k.offset_a2)
-        a2 = motor_a2 + a1 * k.coupling_12
-        a1_plus_a2 = a1 + a2
-        sin_a12 = sin(a1_plus_a2)
-        motor_a3 = DEGREE * (axis_a3 - k.offset_a3)
-        a3 = motor_a3 + a1 * k.coupling_13 + k.coupling_23 * motor_a2
-        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
-        sin_a123 = sin(a1_plus_a2_plus_a3)
-        cos_a1 = cos(a1)
-        cos_a12 = cos(a1_plus_a2)
-        cos_a123 = cos(a1_plus_a2_plus_a3)
-        return (
-            (
-                -k.link_length_1 * sin_a1 - k.shared_sum * sin_a123 - k.shared_sum_2 * sin_a12,
-                -k.link_length_2 * sin_a12 - k.shared_sum_3 * sin_a123,
-                -k.link_length_3 * sin_a123,
-            ),
-            (
-                k.link_length_1 * cos_a1 + k.shared_sum_2 * cos_a12 + k.shared_sum * cos_a123,
-                k.link_length_2 * cos_a12 + k.shared_sum_3 * cos_a123,
-                k.link_length_3 * cos_a123,
-            ),
-            (k.coupling_12_plus_coupling_13_plus_one, k.coupling_23_plus_one, 1.0),
-        ), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the frame by rows, per radian."""

@@ -31,6 +31,7 @@ class ArrayPrograms(OrientationPrograms):
 
     constants: Constants
     VALUES = 40
+    JACOBIAN_ROWS = (3, 4, 5)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -132,23 +133,6 @@ class ArrayPrograms(OrientationPrograms):
         b = DEGREE * (axis_b - k.offset_b)
         sin_b = sin(b)
         return (sin_b,), status
-
-    def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
-        """The Jacobian by rows, per radian."""
-        axis_a, axis_b, axis_c = axes
-        k = self.constants
-        status = passed(axes)
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_a, axis_b, axis_c), Status.BAD_INPUT)
-        a = DEGREE * (axis_a - k.offset_a)
-        sin_a = sin(a)
-        cos_a = cos(a)
-        b = DEGREE * (axis_b - k.offset_b)
-        sin_b = sin(b)
-        r13_at_b = -cos_a * sin_b
-        r23_at_b = -sin_a * sin_b
-        cos_b = cos(b)
-        return ((0.0, sin_a, r13_at_b), (0.0, -cos_a, r23_at_b), (1.0, 0.0, cos_b)), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the frame by rows, per radian."""
