@@ -61,6 +61,14 @@ def bound_in(items: Iterable[Item]) -> tuple[sp.Symbol, ...]:
     return tuple(dict.fromkeys(bindings_in(items)))
 
 
+def bound_behind(item: Item) -> set[sp.Symbol]:
+    """What is bound behind a statement; behind a choice, what both sides bind."""
+    if not isinstance(item, If):
+        return set(binds(item))
+    holds, fails = ({name for inner in side for name in bound_behind(inner)} for side in (item.holds, item.fails))
+    return holds & fails
+
+
 def read_in(items: Iterable[Item]) -> set[sp.Symbol]:
     """The names that a tree reads, whoever binds them."""
     found = set[sp.Symbol]()
@@ -83,6 +91,15 @@ def given_to(items: Iterable[Item]) -> set[sp.Symbol]:
             found |= reads(item) - bound
             bound |= set(binds(item))
     return found
+
+
+def follows(other: sp.Basic, condition: sp.Basic, truth: sp.Basic) -> bool:
+    """Whether another condition has the same truth: what is above a number is above smaller ones, and so on."""
+    if not (isinstance(other, sp.StrictGreaterThan) and isinstance(condition, sp.StrictGreaterThan)):
+        return False
+    if other.lhs != condition.lhs or not (other.rhs.is_number and condition.rhs.is_number):
+        return False
+    return bool(other.rhs <= condition.rhs if truth == sp.true else other.rhs >= condition.rhs)
 
 
 def grouped(body: Sequence[Item]) -> Iterator[tuple[Item, tuple[Require, ...]]]:

@@ -32,10 +32,10 @@ from derive.ir.program import (
 from derive.ir.symbols import (
     names_in,
 )
-from derive.ir.tree import If, Item, read_in
+from derive.ir.tree import If, Item, bound_behind, read_in
 from derive.kept import kept_by_identity
 from derive.lowering.decided import decided
-from derive.lowering.stretches import follows, gathered
+from derive.lowering.stretches import gathered
 
 
 @kept_by_identity(400)
@@ -93,40 +93,8 @@ def told_on_sides(items: Sequence[Item], program: Program) -> tuple[Item, ...]:
     found: list[Item] = []
     for item in items:
         found.append(item if isinstance(item, If) else told_in(item, bound, values))
-        bound |= _bound_behind(item)
+        bound |= bound_behind(item)
     return tuple(found)
-
-
-def _bound_behind(item: Item) -> set[sp.Symbol]:
-    """What is bound behind a statement; behind a choice, what both sides bind."""
-    if not isinstance(item, If):
-        return set(binds(item))
-    holds, fails = ({name for inner in side for name in _bound_behind(inner)} for side in (item.holds, item.fails))
-    return holds & fails
-
-
-def without_unused(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
-    """Without what is bound on a first side for the second sides of later choices that the same condition decides.
-
-    It serves a language that runs one side alone: a choice then binds its names on the other side only.
-    """
-    later = {s for value in wanted for s in names_in(value)}
-    found: list[Item] = []
-    for place, item in enumerate(items):
-        if isinstance(item, If):
-            needed = later.union(*(_reads_where(other, item.condition) for other in items[place + 1 :]))
-            read = needed.union(read_in(item.holds))
-            kept = tuple(i for i in item.holds if not isinstance(i, Let) or i.name in read)
-            item = replace(item, holds=kept or item.holds)  # a side has a statement
-        found.append(item)
-    return tuple(found)
-
-
-def _reads_where(item: Item, condition: sp.Basic) -> set[sp.Symbol]:
-    """What a statement reads where a condition holds."""
-    if isinstance(item, If) and (item.condition == condition or follows(item.condition, condition, sp.true)):
-        return _reads_always(item)
-    return read_in((item,))
 
 
 def _sunk(items: Sequence[Item], later: set[sp.Symbol]) -> tuple[Item, ...]:

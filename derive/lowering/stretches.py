@@ -13,7 +13,7 @@ from sympy.logic.boolalg import Boolean
 from derive.ir.primitives import Select
 from derive.ir.program import Let
 from derive.ir.symbols import is_condition, names_in, replaced
-from derive.ir.tree import If, Item
+from derive.ir.tree import If, Item, follows
 
 _BOTH = (sp.true, sp.false)
 
@@ -185,15 +185,6 @@ class _Choice:
             if place in self.members or self.inside.get(place) == side
         ]
         return tuple(gathered(_simplified(lets, set(results)), frozenset(results)))
-
-
-def follows(other: sp.Basic, condition: sp.Basic, truth: sp.Basic) -> bool:
-    """Whether another condition has the same truth: what is above a number is above smaller ones, and so on."""
-    if not (isinstance(other, sp.StrictGreaterThan) and isinstance(condition, sp.StrictGreaterThan)):
-        return False
-    if other.lhs != condition.lhs or not (other.rhs.is_number and condition.rhs.is_number):
-        return False
-    return bool(other.rhs <= condition.rhs if truth == sp.true else other.rhs >= condition.rhs)
 
 
 def _simplified(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:

@@ -22,7 +22,7 @@ from derive.ir.symbols import (
     real,
 )
 from derive.ir.tree import If, Item
-from derive.lowering.scheduling import scheduled, structured, without_unused
+from derive.lowering.scheduling import scheduled, structured
 from derive.report.cost import cost_of
 
 A, B, C, D, E, F, R, X, Y = (real(n) for n in "abcdefrxy")
@@ -129,13 +129,6 @@ def test_what_only_second_sides_read_is_bound_on_each_of_them() -> None:
         Let(E, Select(NEAR, Y + 1, D + B)),
     ]
     assert shape(scheduled(body, [A, B, C, E])) == [(REGULAR, [A, B], [D, A, B]), (NEAR, [C, E], [D, C, E])]
-
-
-def test_a_side_keeps_a_statement() -> None:
-    """Nothing reads A where the condition holds: the side is bound all the same, because a side cannot be empty."""
-    choice = If(REGULAR, (Let(A, X),), (Let(A, Y),), (A,))
-    later = If(REGULAR, (Let(B, X),), (Let(B, A + 1),), (B,))
-    assert without_unused([choice, later], [B]) == (choice, later)
 
 
 def test_a_single_choice_stays_an_expression() -> None:

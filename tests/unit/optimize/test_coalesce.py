@@ -7,7 +7,6 @@ import sympy as sp
 from derive.ir.passes import normalise
 from derive.ir.primitives import (
     Root,
-    Select,
 )
 from derive.ir.program import (
     Let,
@@ -20,8 +19,7 @@ from derive.ir.symbols import (
     real,
     without_words,
 )
-from derive.ir.tree import If
-from derive.lowering.scheduling import scheduled, without_unused
+from derive.lowering.scheduling import scheduled
 from derive.lowering.unrolling import unroll
 from derive.optimize.coalesce import coalesced
 from tests.unit.answers import values
@@ -72,19 +70,3 @@ def test_words_behind_a_name() -> None:
     assert without_words("axis_a1_front_up", SIGNS) == ("axis_a1", ("front", "up"))
     assert without_words("cos_q1_back", SIGNS) == ("cos_q1", ("back",))
     assert without_words("up", SIGNS) == ("up", ())
-
-
-def test_what_only_later_second_sides_read_is_not_bound_on_the_first() -> None:
-    """A value that only second sides read is not computed on a first side."""
-    regular = sp.Gt(R, 1)
-    body = [
-        Let(P, Select(regular, X, sp.sin(Y))),
-        Let(Q, Select(regular, -X, sp.cos(Y))),
-        Let(A, Root(P)),
-        Let(B, Select(regular, A + 1, Root(Q))),
-        Let(C, Select(regular, A + 2, Root(Q) + Q)),
-    ]
-    first, _, second = without_unused(scheduled(body, [A, B, C]), [A, B, C])
-    assert isinstance(first, If) and isinstance(second, If)
-    assert [let.name for let in first.holds if isinstance(let, Let)] == [P]
-    assert {let.name for let in first.fails if isinstance(let, Let)} == {P, Q}

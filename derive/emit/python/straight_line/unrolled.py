@@ -46,10 +46,11 @@ from derive.ir.symbols import (
 )
 from derive.ir.tree import Item
 from derive.kinematics.kinematics import Kinematics
-from derive.lowering.scheduling import scheduled, without_unused
+from derive.lowering.scheduling import scheduled
 from derive.optimize.coalesce import coalesced
 from derive.optimize.guards import guarded
 from derive.optimize.inline import inlined, squares_where_read
+from derive.optimize.joining import joined
 from derive.optimize.without_periods import without_chosen_turns
 
 NO_OFFSETS = "no_offsets"
@@ -202,7 +203,7 @@ class _Written:
         """known: what the constants are that it reads."""
         method = replace(method, program=without_conversions(method.program))
         wanted = [o.value for o in method.program.outputs]
-        items = without_unused(scheduled(guarded(method.program.body, known), wanted), wanted)
+        items = joined(scheduled(guarded(method.program.body, known), wanted), wanted)
         items, values = inlined(items, wanted)
         return cls(method, items, {o.name: replaced(o.value, values) for o in method.program.outputs})
 

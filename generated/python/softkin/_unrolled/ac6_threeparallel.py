@@ -93,10 +93,13 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_down = sin_of_reference_a6
             cos_q6_before_q6_of_q3_up = cos_of_reference_a6
             sin_q6_before_q6_of_q3_up = sin_of_reference_a6
+        r21_from_q1_before_q6_before_q6_of_q3_down = (
+            r31 * cos_q6_before_q6_of_q3_down - r32 * sin_q6_before_q6_of_q3_down
+        )
         radius_q6_left_times_r33 = r33 * radius_q6
         r21_from_q1_before_q56_before_q6_of_q3_down = (
-            r31 * cos_q6_before_q6_of_q3_down - r32 * sin_q6_before_q6_of_q3_down
-        ) * cos_q5 - radius_q6_left_times_r33
+            r21_from_q1_before_q6_before_q6_of_q3_down * cos_q5 - radius_q6_left_times_r33
+        )
         wrist_x_from_q1_before_q6_of_q3 = -ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = (
             r32 * cos_q6_before_q6_of_q3_down + r31 * sin_q6_before_q6_of_q3_down
@@ -225,12 +228,13 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a5_left_down = offset_a5 + quotient_in_axis_a5
         axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         if radius_q6 > 1e-11:
+            r21_from_q1_before_q6_before_q6_of_q3_up = -r21_from_q1_before_q6_before_q6_of_q3_down
             r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
             r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
         else:
-            r21_from_q1_before_q6_before_q6_of_q3 = r31 * cos_q6_before_q6_of_q3_up - r32 * sin_q6_before_q6_of_q3_up
+            r21_from_q1_before_q6_before_q6_of_q3_up = r31 * cos_q6_before_q6_of_q3_up - r32 * sin_q6_before_q6_of_q3_up
             r21_from_q1_before_q56_before_q6_of_q3_up = (
-                radius_q6_left_times_r33 + r21_from_q1_before_q6_before_q6_of_q3 * cos_q5
+                radius_q6_left_times_r33 + r21_from_q1_before_q6_before_q6_of_q3_up * cos_q5
             )
             r22_from_q1_before_q6_before_q6_of_q3_up = r32 * cos_q6_before_q6_of_q3_up + r31 * sin_q6_before_q6_of_q3_up
         wrist_x_from_q1_before_q6_of_q3 = -ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3_up
@@ -377,10 +381,13 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_down = sin_of_reference_a6
             cos_q6_before_q6_of_q3_up = cos_of_reference_a6
             sin_q6_before_q6_of_q3_up = sin_of_reference_a6
+        r21_from_q1_before_q6_before_q6_of_q3_down = (
+            r31 * cos_q6_before_q6_of_q3_down - r32 * sin_q6_before_q6_of_q3_down
+        )
         radius_q6_right_times_r33 = r33 * radius_q6
         r21_from_q1_before_q56_before_q6_of_q3_down = (
-            r31 * cos_q6_before_q6_of_q3_down - r32 * sin_q6_before_q6_of_q3_down
-        ) * cos_q5 - radius_q6_right_times_r33
+            r21_from_q1_before_q6_before_q6_of_q3_down * cos_q5 - radius_q6_right_times_r33
+        )
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = (
             r32 * cos_q6_before_q6_of_q3_down + r31 * sin_q6_before_q6_of_q3_down
@@ -508,12 +515,13 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a5_right_down = offset_a5 + quotient_in_axis_a5
         axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         if radius_q6 > 1e-11:
+            r21_from_q1_before_q6_before_q6_of_q3_up = -r21_from_q1_before_q6_before_q6_of_q3_down
             r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
             r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
         else:
-            r21_from_q1_before_q6_before_q6_of_q3 = r31 * cos_q6_before_q6_of_q3_up - r32 * sin_q6_before_q6_of_q3_up
+            r21_from_q1_before_q6_before_q6_of_q3_up = r31 * cos_q6_before_q6_of_q3_up - r32 * sin_q6_before_q6_of_q3_up
             r21_from_q1_before_q56_before_q6_of_q3_up = (
-                radius_q6_right_times_r33 + r21_from_q1_before_q6_before_q6_of_q3 * cos_q5
+                radius_q6_right_times_r33 + r21_from_q1_before_q6_before_q6_of_q3_up * cos_q5
             )
             r22_from_q1_before_q6_before_q6_of_q3_up = r32 * cos_q6_before_q6_of_q3_up + r31 * sin_q6_before_q6_of_q3_up
         wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3_up

@@ -40,35 +40,44 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
         axis_a3 = offset_a3 + wrist_z
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
-        # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
-        # reference
         if radius_a4 > 1e-11:
+            # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+            # reference
             direction_x_a4_upright = r33
             direction_y_a4_upright = r13
             if radius_a4 > 0.1:
-                scaled_r11_from_a4_upright = r22
-                direction_y_a6_upright = r21
+                scaled_r11_from_a4 = r22
+                direction_y_a6 = r21
             else:
-                scaled_r11_from_a4_upright = direction_x_a4_upright * r11 - direction_y_a4_upright * r31
-                direction_y_a6_upright = direction_y_a4_upright * r32 - direction_x_a4_upright * r12
-        else:
-            reference_a4 = (ref_a4 - offset_a4) * DEGREE
-            direction_x_a4_upright = cos(reference_a4)
-            direction_y_a4_upright = sin(reference_a4)
-            scaled_r11_from_a4_upright = direction_x_a4_upright * r11 - direction_y_a4_upright * r31
-            direction_y_a6_upright = direction_y_a4_upright * r32 - direction_x_a4_upright * r12
-            direction_x_a4_flipped = direction_x_a4_upright
-            direction_y_a4_flipped = direction_y_a4_upright
-            scaled_r11_from_a4_flipped = direction_x_a4_flipped * r11 - direction_y_a4_flipped * r31
-            direction_y_a6_flipped = direction_y_a4_flipped * r32 - direction_x_a4_flipped * r12
-        axis_a4_upright = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright) * RADIAN
-        axis_a6_upright = offset_a6 + arctan2(direction_y_a6_upright, scaled_r11_from_a4_upright) * RADIAN
-        if radius_a4 > 1e-11:
+                scaled_r11_from_a4 = direction_x_a4_upright * r11 - direction_y_a4_upright * r31
+                direction_y_a6 = direction_y_a4_upright * r32 - direction_x_a4_upright * r12
+            axis_a4_upright = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright) * RADIAN
+            axis_a6_upright = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4) * RADIAN
             axis_a4_flipped = 180.0 + axis_a4_upright
             axis_a6_flipped = 180.0 + axis_a6_upright
         else:
+            reference_a4 = (ref_a4 - offset_a4) * DEGREE
+            # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+            # reference
+            direction_x_a4_upright = cos(reference_a4)
+            direction_y_a4_upright = sin(reference_a4)
+            scaled_r11_from_a4 = direction_x_a4_upright * r11 - direction_y_a4_upright * r31
+            direction_y_a6 = direction_y_a4_upright * r32 - direction_x_a4_upright * r12
+            # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+            # reference
+            direction_x_a4_flipped = direction_x_a4_upright
+            direction_y_a4_flipped = direction_y_a4_upright
+            axis_a4_upright = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright) * RADIAN
+            axis_a6_upright = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4) * RADIAN
             axis_a4_flipped = offset_a4 + arctan2(direction_y_a4_flipped, direction_x_a4_flipped) * RADIAN
-            axis_a6_flipped = offset_a6 + arctan2(direction_y_a6_flipped, scaled_r11_from_a4_flipped) * RADIAN
+            axis_a6_flipped = (
+                offset_a6
+                + arctan2(
+                    direction_y_a4_flipped * r32 - direction_x_a4_flipped * r12,
+                    direction_x_a4_flipped * r11 - direction_y_a4_flipped * r31,
+                )
+                * RADIAN
+            )
         return (
             (axis_a1, axis_a2, axis_a3, axis_a4_upright, offset_a5 - arctan2(r23, radius_a4) * RADIAN, axis_a6_upright),
             (

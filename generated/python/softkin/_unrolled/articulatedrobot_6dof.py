@@ -112,13 +112,21 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
         r11_from_q1 = r11 * cos_q1_before_q1_for_q3_front + r21 * sin_q1_before_q1_for_q3_front
         r12_from_q1 = r12 * cos_q1_before_q1_for_q3_front + r22 * sin_q1_before_q1_for_q3_front
-        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
-        # reference
+        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
+        quotient_in_axis_a5_front_down_down = arctan2(radius_q4, cos_q5) * RADIAN
         if radius_q4 > 0.1:
+            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # reference
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
             scaled_r21_from_q1234_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
             scaled_r22_from_q1234_down = r11_from_q1 * cos_q23 + r31 * sin_q23
+            axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
+            axis_a6_front_down_down = (
+                offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
+            )
+            axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
+            axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
             cos_of_reference_a4 = cos(reference_a4)
@@ -147,16 +155,16 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 scaled_r21_from_q1234_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r11_from_q123
                 scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
-        axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
-        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        quotient_in_axis_a5_front_down_down = arctan2(radius_q4, cos_q5) * RADIAN
-        axis_a6_front_down_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
-        if radius_q4 > 1e-11:
-            axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
-            axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
-        else:
-            axis_a4_front_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-            axis_a6_front_down_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
+            axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
+            axis_a6_front_down_down = (
+                offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
+            )
+            if radius_q4 > 1e-11:
+                axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
+                axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
+            else:
+                axis_a4_front_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
+                axis_a6_front_down_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
         axis_a2_front_up = offset_a2 + angle_q2_up * RADIAN
         angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3 * RADIAN
@@ -166,13 +174,19 @@ def unrolled(k: Constants) -> Unrolled:
         r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
-        # reference
+        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
+        quotient_in_axis_a5_front_up_down = arctan2(radius_q4, cos_q5) * RADIAN
         if radius_q4 > 0.1:
+            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # reference
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
             scaled_r21_from_q1234_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
             scaled_r22_from_q1234_down = r11_from_q1 * cos_q23 + r31 * sin_q23
+            axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
+            axis_a6_front_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
+            axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
+            axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
             cos_of_reference_a4 = cos(reference_a4)
@@ -201,16 +215,14 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 scaled_r21_from_q1234_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r11_from_q123
                 scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
-        axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
-        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        quotient_in_axis_a5_front_up_down = arctan2(radius_q4, cos_q5) * RADIAN
-        axis_a6_front_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
-        if radius_q4 > 1e-11:
-            axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
-            axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
-        else:
-            axis_a4_front_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-            axis_a6_front_up_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
+            axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
+            axis_a6_front_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
+            if radius_q4 > 1e-11:
+                axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
+                axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
+            else:
+                axis_a4_front_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
+                axis_a6_front_up_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
         # distance that the remaining links must span
@@ -250,13 +262,21 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
         r11_from_q1 = r11 * cos_q1_before_q1_for_q3_back + r21 * sin_q1_before_q1_for_q3_back
         r12_from_q1 = r12 * cos_q1_before_q1_for_q3_back + r22 * sin_q1_before_q1_for_q3_back
-        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
-        # reference
+        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
+        quotient_in_axis_a5_back_down_down = arctan2(radius_q4, cos_q5) * RADIAN
         if radius_q4 > 0.1:
+            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # reference
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
             scaled_r21_from_q1234_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
             scaled_r22_from_q1234_down = r11_from_q1 * cos_q23 + r31 * sin_q23
+            axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
+            axis_a6_back_down_down = (
+                offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
+            )
+            axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
+            axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
             cos_of_reference_a4 = cos(reference_a4)
@@ -285,16 +305,16 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 scaled_r21_from_q1234_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r11_from_q123
                 scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
-        axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
-        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        quotient_in_axis_a5_back_down_down = arctan2(radius_q4, cos_q5) * RADIAN
-        axis_a6_back_down_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
-        if radius_q4 > 1e-11:
-            axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
-            axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
-        else:
-            axis_a4_back_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-            axis_a6_back_down_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
+            axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
+            axis_a6_back_down_down = (
+                offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
+            )
+            if radius_q4 > 1e-11:
+                axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
+                axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
+            else:
+                axis_a4_back_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
+                axis_a6_back_down_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
         axis_a2_back_up = offset_a2 + angle_q2_up * RADIAN
         angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3 * RADIAN
@@ -304,13 +324,19 @@ def unrolled(k: Constants) -> Unrolled:
         r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
-        # reference
+        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
+        quotient_in_axis_a5_back_up_down = arctan2(radius_q4, cos_q5) * RADIAN
         if radius_q4 > 0.1:
+            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # reference
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
             scaled_r21_from_q1234_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
             scaled_r22_from_q1234_down = r11_from_q1 * cos_q23 + r31 * sin_q23
+            axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
+            axis_a6_back_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
+            axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
+            axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
             cos_of_reference_a4 = cos(reference_a4)
@@ -339,16 +365,14 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 scaled_r21_from_q1234_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r11_from_q123
                 scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
-        axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
-        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        quotient_in_axis_a5_back_up_down = arctan2(radius_q4, cos_q5) * RADIAN
-        axis_a6_back_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
-        if radius_q4 > 1e-11:
-            axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
-            axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
-        else:
-            axis_a4_back_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-            axis_a6_back_up_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
+            axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
+            axis_a6_back_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
+            if radius_q4 > 1e-11:
+                axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
+                axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
+            else:
+                axis_a4_back_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
+                axis_a6_back_up_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
         return (
             (
                 axis_a1_front,

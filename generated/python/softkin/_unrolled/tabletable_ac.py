@@ -31,49 +31,54 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         _, _, _, _, ref_c = 5 * (0.0,) if reference is None else reference
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
-        # where it is singular: the angle of the reference
-        if radius_c > 1e-11:
-            cos_c_positive = r23 / radius_c
-            sin_c_positive = r13 / radius_c
-        else:
-            reference_c = (ref_c - offset_c) * DEGREE
-            cos_c_positive = cos(reference_c)
-            sin_c_positive = sin(reference_c)
-            cos_c_negative = cos_c_positive
-            sin_c_negative = sin_c_positive
-        x_from_c_positive = x * cos_c_positive - y * sin_c_positive
         pivot_z_plus_z = pivot_z + z
         radius_c_times_pivot_z_plus_z = pivot_z_plus_z * radius_c
-        y_from_c_positive = y * cos_c_positive + x * sin_c_positive
-        pivot_y_plus_y_from_c_positive = pivot_y + y_from_c_positive
         r33_times_pivot_z_plus_z = pivot_z_plus_z * r33
-        # joint_z from the z_from_c_a equation, which is linear in it
-        joint_z_positive = tool_length + (r33_times_pivot_z_plus_z + pivot_y_plus_y_from_c_positive * radius_c)
         quotient_in_axis_a = arctan2(radius_c, r33) * RADIAN
-        axis_c_positive = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
         if radius_c > 1e-11:
+            cos_c_positive = r23 / radius_c  # where it is singular: the angle of the reference
+            sin_c_positive = r13 / radius_c
+            x_from_c_positive = x * cos_c_positive - y * sin_c_positive
+            axis_x = offset_x + x_from_c_positive
+            y_from_c_positive = y * cos_c_positive + x * sin_c_positive
+            pivot_y_plus_y_from_c = pivot_y + y_from_c_positive
+            y_from_c_a = pivot_y_plus_y_from_c * r33 - radius_c_times_pivot_z_plus_z
+            axis_y = offset_y + y_from_c_a
+            z_from_c_a = r33_times_pivot_z_plus_z + pivot_y_plus_y_from_c * radius_c
+            joint_z = tool_length + z_from_c_a  # joint_z from the z_from_c_a equation, which is linear in it
+            axis_z = joint_z + offset_z
+            axis_c_positive = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
             x_from_c_negative = -x_from_c_positive
             y_from_c_negative = -y_from_c_positive
             axis_c_negative = 180.0 + axis_c_positive
         else:
+            reference_c = (ref_c - offset_c) * DEGREE
+            cos_c_positive = cos(reference_c)  # where it is singular: the angle of the reference
+            sin_c_positive = sin(reference_c)
+            cos_c_negative = cos_c_positive  # where it is singular: the angle of the reference
+            sin_c_negative = sin_c_positive
+            x_from_c_positive = x * cos_c_positive - y * sin_c_positive
+            axis_x = offset_x + x_from_c_positive
+            y_from_c_positive = y * cos_c_positive + x * sin_c_positive
+            pivot_y_plus_y_from_c = pivot_y + y_from_c_positive
+            y_from_c_a = pivot_y_plus_y_from_c * r33 - radius_c_times_pivot_z_plus_z
+            axis_y = offset_y + y_from_c_a
+            z_from_c_a = r33_times_pivot_z_plus_z + pivot_y_plus_y_from_c * radius_c
+            joint_z = tool_length + z_from_c_a  # joint_z from the z_from_c_a equation, which is linear in it
+            axis_z = joint_z + offset_z
+            axis_c_positive = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
             x_from_c_negative = x * cos_c_negative - y * sin_c_negative
             y_from_c_negative = y * cos_c_negative + x * sin_c_negative
             axis_c_negative = offset_c + arctan2(sin_c_negative, cos_c_negative) * RADIAN
-        pivot_y_plus_y_from_c_negative = pivot_y + y_from_c_negative
+        pivot_y_plus_y_from_c = pivot_y + y_from_c_negative
         # joint_z from the z_from_c_a equation, which is linear in it
-        joint_z_negative = tool_length + (r33_times_pivot_z_plus_z - pivot_y_plus_y_from_c_negative * radius_c)
+        joint_z = tool_length + (r33_times_pivot_z_plus_z - pivot_y_plus_y_from_c * radius_c)
         return (
-            (
-                offset_x + x_from_c_positive,
-                offset_y + (pivot_y_plus_y_from_c_positive * r33 - radius_c_times_pivot_z_plus_z),
-                joint_z_positive + offset_z,
-                offset_a + quotient_in_axis_a,
-                axis_c_positive,
-            ),
+            (axis_x, axis_y, axis_z, offset_a + quotient_in_axis_a, axis_c_positive),
             (
                 offset_x + x_from_c_negative,
-                offset_y + (radius_c_times_pivot_z_plus_z + pivot_y_plus_y_from_c_negative * r33),
-                joint_z_negative + offset_z,
+                offset_y + (radius_c_times_pivot_z_plus_z + pivot_y_plus_y_from_c * r33),
+                joint_z + offset_z,
                 offset_a - quotient_in_axis_a,
                 axis_c_negative,
             ),

@@ -30,31 +30,32 @@ def unrolled(k: Constants) -> Unrolled:
         _, ((r11, r12, _), (r21, r22, _), (r31, r32, r33)) = frame
         _, _, ref_c = 3 * (0.0,) if reference is None else reference
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
-        # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
-        # reference
+        quotient_in_axis_b = arctan2(radius_c, r33) * RADIAN
         if radius_c > 1e-11:
+            # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+            # reference
             direction_x_c_down = r31
             direction_y_c_down = -r32
-        else:
-            reference_c = (ref_c - offset_c) * DEGREE
-            direction_x_c_down = cos(reference_c)
-            direction_y_c_down = sin(reference_c)
-            direction_x_c_up = direction_x_c_down
-            direction_y_c_up = direction_y_c_down
-        axis_a_down = (
-            offset_a
-            + arctan2(
-                -direction_x_c_down * r12 - direction_y_c_down * r11,
-                direction_x_c_down * r22 + direction_y_c_down * r21,
-            )
-            * RADIAN
-        )
-        quotient_in_axis_b = arctan2(radius_c, r33) * RADIAN
-        axis_c_down = offset_c + arctan2(direction_y_c_down, direction_x_c_down) * RADIAN
-        if radius_c > 1e-11:
+            scaled_r22_before_c = direction_x_c_down * r22 + direction_y_c_down * r21
+            direction_y_a = -direction_x_c_down * r12 - direction_y_c_down * r11
+            axis_a_down = offset_a + arctan2(direction_y_a, scaled_r22_before_c) * RADIAN
+            axis_c_down = offset_c + arctan2(direction_y_c_down, direction_x_c_down) * RADIAN
             axis_a_up = 180.0 + axis_a_down
             axis_c_up = 180.0 + axis_c_down
         else:
+            reference_c = (ref_c - offset_c) * DEGREE
+            # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+            # reference
+            direction_x_c_down = cos(reference_c)
+            direction_y_c_down = sin(reference_c)
+            # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+            # reference
+            direction_x_c_up = direction_x_c_down
+            direction_y_c_up = direction_y_c_down
+            scaled_r22_before_c = direction_x_c_down * r22 + direction_y_c_down * r21
+            direction_y_a = -direction_x_c_down * r12 - direction_y_c_down * r11
+            axis_a_down = offset_a + arctan2(direction_y_a, scaled_r22_before_c) * RADIAN
+            axis_c_down = offset_c + arctan2(direction_y_c_down, direction_x_c_down) * RADIAN
             axis_a_up = (
                 offset_a
                 + arctan2(
