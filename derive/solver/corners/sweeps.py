@@ -127,8 +127,8 @@ def swept(
     target = f"{sweep.angle.name}_{word}"
     moved, mirrored = real(f"moved_{target}"), real(f"mirrored_{target}")
     return (
-        _follows(sweep, names, rates, word),
         *nearest_on_arc(target, real(f"value_{word}"), (1 - INSIDE) * real(f"size_{word}"), derivatives, before),
+        _follows(sweep, names, rates, word),
         *_followed(sweep, moved, (names[cosine(first)], names[sine(first)]), WAYS[0], word),
         Let(mirrored, 2 * real(f"centre_{target}") - moved, "mirror image on the other arc"),
         *_followed(sweep, mirrored, (names[cosine(first)], names[sine(first)]), WAYS[1], word),
@@ -136,10 +136,13 @@ def swept(
 
 
 def _follows(sweep: Sweep, names: Mapping[sp.Symbol, sp.Expr], rates: Mapping[sp.Symbol, sp.Expr], word: str) -> Let:
-    """Whether v, or u with it, turns so far that the second order is more than rounding."""
-    square = real(f"turn_{word}") ** 2
+    """Whether v turns so far, or u with it, that the second order in the value of the later step is more than rounding:
+    half of the amplitude of its harmonic in u, times the square of the turn of u.
+    """
+    square, swing, size = real(f"turn_{word}") ** 2, real(f"swing_{sweep.angle.name}_{word}"), real(f"size_{word}")
     dx, dy = (rates[part].xreplace(dict(names)) for part in sweep.parts)
-    is_far = sp.Gt(square, BOUNDARY) | sp.Gt(square * (dx**2 + dy**2), BOUNDARY * names[sweep.length] ** 2)
+    bound = BOUNDARY / 2 * size * names[sweep.length] ** 2
+    is_far = sp.Gt(square, BOUNDARY) | sp.Gt(swing * square * (dx**2 + dy**2), bound)
     return Let(
         flag(f"follows_{word}"),
         is_far,

@@ -347,22 +347,21 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         turn_q1_for_q3 = 1.0; /* turn of q1 to first order */
       }
       const double turn_q1_for_q3_squared = turn_q1_for_q3*turn_q1_for_q3;
+      const double sum_in_across_q6_q1_for_q3 = k->d1_times_d5_times_2 - k->twice_d5*wrist_z;
+      const double product_in_across_q6_q1_for_q3 = ahead_q1_before_q1_for_q3*k->twice_d5
+          *cos_q5_before_q1_for_q3;
+      const double along_q6_q1_for_q3 = -product_in_across_q6_q1_for_q3*r31 - r32*sum_in_across_q6_q1_for_q3;
+      const double across_q6_q1_for_q3 = product_in_across_q6_q1_for_q3*r32 - r31*sum_in_across_q6_q1_for_q3;
+      const double swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3
+          + along_q6_q1_for_q3*along_q6_q1_for_q3);
       /* whether the first order is not enough: then q6 is chosen first */
       const bool follows_q1_for_q3 = (turn_q1_for_q3_squared > 1e-12)
           || ((across_q6_rate_q1_for_q3*across_q6_rate_q1_for_q3
-          + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3)*turn_q1_for_q3_squared > 1e-12
-          *radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3);
+          + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3)*swing_q6_q1_for_q3
+          *turn_q1_for_q3_squared > k->product_in_follows_q1_for_q3*radius_q6_before_q1_for_q3
+          *radius_q6_before_q1_for_q3);
       double best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3;
       if (follows_q1_for_q3) {
-        const double sum_in_across_q6_q1_for_q3 = k->d1_times_d5_times_2 - k->twice_d5*wrist_z;
-        const double product_in_across_q6_q1_for_q3 = ahead_q1_before_q1_for_q3*k->twice_d5
-            *cos_q5_before_q1_for_q3;
-        const double along_q6_q1_for_q3 = -product_in_across_q6_q1_for_q3*r31
-            - r32*sum_in_across_q6_q1_for_q3;
-        const double across_q6_q1_for_q3 = product_in_across_q6_q1_for_q3*r32
-            - r31*sum_in_across_q6_q1_for_q3;
-        const double swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3
-            + along_q6_q1_for_q3*along_q6_q1_for_q3);
         double highest_q6_q1_for_q3, lowest_q6_q1_for_q3;
         if (swing_q6_q1_for_q3 > k->product_in_divisor_q6_q1_for_q3) {
           const double level_q6_q1_for_q3 = value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3
@@ -1832,6 +1831,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double a2_squared_plus_a3_squared = p->a2*p->a2 + p->a3*p->a3;
   const double twice_d5 = 2.0*p->d5;
   const double d1_times_d5_times_2 = 2.0*p->d1*p->d5;
+  const double product_in_follows_q1_for_q3 = 5e-13*size_q1_for_q3;
   const double a2_plus_a3 = p->a2 + p->a3;
   const double a2_minus_a3 = p->a2 - p->a3;
   const double quotient_in_cos_q3 = 0.25/(p->a2*p->a3);
@@ -1885,6 +1885,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.a2_squared_plus_a3_squared = a2_squared_plus_a3_squared;
   made.twice_d5 = twice_d5;
   made.d1_times_d5_times_2 = d1_times_d5_times_2;
+  made.product_in_follows_q1_for_q3 = product_in_follows_q1_for_q3;
   made.a2_plus_a3 = a2_plus_a3;
   made.a2_minus_a3 = a2_minus_a3;
   made.quotient_in_cos_q3 = quotient_in_cos_q3;

@@ -105,7 +105,8 @@ typedef struct {
       size_q1_for_q3, machine_scale_times_free_angle, size_q1_for_q3_times_rounding,
       product_in_divisor_q6_q1_for_q3, product_in_highest_q6_q1_for_q3, machine_scale_squared_times_plane,
       machine_scale_times_rounding, product_in_cos_q6, one_by_machine_scale, a2_squared_plus_a3_squared,
-      twice_d5, d1_times_d5_times_2, a2_plus_a3, a2_minus_a3, quotient_in_cos_q3, quotient_in_sin_q3;
+      twice_d5, d1_times_d5_times_2, product_in_follows_q1_for_q3, a2_plus_a3, a2_minus_a3,
+      quotient_in_cos_q3, quotient_in_sin_q3;
   bool single_a1, single_a2, single_a3, single_a4, single_a5, single_a6;
 } ac6_threeparallel_machine;
 

@@ -135,7 +135,7 @@ softkin_regular_all wrist3_regular_all;
 
 const softkin_native softkin_machines[] = {
     {"ac6_rzryryrxryrz_j6offset e5957ecfb02b3e68", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
-    {"ac6_threeparallel 73793f590a9a44ce", &ac6_threeparallel_mechanism,
+    {"ac6_threeparallel a6756aae3a62ac8e", &ac6_threeparallel_mechanism,
         {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
     {"ac6_txtytzryrxrz e801c4ab943b5c77", &ac6_txtytzryrxrz_mechanism,
         {ac6_txtytzryrxrz_regular, ac6_txtytzryrxrz_regular_all}},

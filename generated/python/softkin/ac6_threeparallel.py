@@ -32,7 +32,7 @@ Operations of one call at most (a subtraction is an addition; sines, cosines and
     inverse: 80 additions, 79 multiplications, 10 divisions, 5 square roots, 6 sines
     inverse, all 8 branches open: 503 additions, 380 multiplications, 44 divisions, 19 square roots, 32 sines
     repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 101 additions, 153 multiplications, 17 divisions, 10 square roots, 22
+    a branch at a singular pose, more: 101 additions, 154 multiplications, 17 divisions, 10 square roots, 22
     sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
@@ -86,6 +86,7 @@ class Constants:
         a2_squared_plus_a3_squared = a2 * a2 + a3 * a3
         twice_d5 = 2.0 * d5
         d1_times_d5_times_2 = 2.0 * d1 * d5
+        product_in_follows_q1_for_q3 = 5e-13 * size_q1_for_q3
         a2_plus_a3 = a2 + a3
         a2_minus_a3 = a2 - a3
         quotient_in_cos_q3 = 0.25 / (a2 * a3)
@@ -100,7 +101,8 @@ class Constants:
         self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
         self.machine_scale_times_rounding, self.product_in_cos_q6 = machine_scale_times_rounding, product_in_cos_q6
         self.one_by_machine_scale, self.a2_squared_plus_a3_squared = one_by_machine_scale, a2_squared_plus_a3_squared
-        self.twice_d5, self.d1_times_d5_times_2, self.a2_plus_a3 = twice_d5, d1_times_d5_times_2, a2_plus_a3
+        self.twice_d5, self.d1_times_d5_times_2 = twice_d5, d1_times_d5_times_2
+        self.product_in_follows_q1_for_q3, self.a2_plus_a3 = product_in_follows_q1_for_q3, a2_plus_a3
         self.a2_minus_a3, self.quotient_in_cos_q3 = a2_minus_a3, quotient_in_cos_q3
         self.quotient_in_sin_q3 = quotient_in_sin_q3
 
@@ -114,7 +116,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 73793f590a9a44ce"
+    KEY = "ac6_threeparallel a6756aae3a62ac8e"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -407,6 +409,7 @@ class Ac6ThreeParallel(Mechanism):
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
         offset_a6, product_in_cos_q6 = k.offset_a6, k.product_in_cos_q6
         product_in_divisor_q6_q1_for_q3 = k.product_in_divisor_q6_q1_for_q3
+        product_in_follows_q1_for_q3 = k.product_in_follows_q1_for_q3
         product_in_highest_q6_q1_for_q3, quotient_in_cos_q3 = k.product_in_highest_q6_q1_for_q3, k.quotient_in_cos_q3
         quotient_in_sin_q3, rounding_q1, single_a1 = k.quotient_in_sin_q3, k.rounding_q1, k.single_a1
         single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
@@ -530,23 +533,24 @@ class Ac6ThreeParallel(Mechanism):
                 else:
                     turn_q1_for_q3 = 1.0
                 turn_q1_for_q3_squared = turn_q1_for_q3 * turn_q1_for_q3
+                sum_in_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5 * wrist_z
+                product_in_across_q6_q1_for_q3 = ahead_q1_before_q1_for_q3 * twice_d5 * cos_q5_before_q1_for_q3
+                along_q6_q1_for_q3 = -product_in_across_q6_q1_for_q3 * r31 - r32 * sum_in_across_q6_q1_for_q3
+                across_q6_q1_for_q3 = product_in_across_q6_q1_for_q3 * r32 - r31 * sum_in_across_q6_q1_for_q3
+                swing_q6_q1_for_q3 = sqrt(
+                    across_q6_q1_for_q3 * across_q6_q1_for_q3 + along_q6_q1_for_q3 * along_q6_q1_for_q3
+                )
                 # whether the first order is not enough: then q6 is chosen first
                 follows_q1_for_q3 = (turn_q1_for_q3_squared > 1e-12) or (
                     (
                         across_q6_rate_q1_for_q3 * across_q6_rate_q1_for_q3
                         + along_q6_rate_q1_for_q3 * along_q6_rate_q1_for_q3
                     )
+                    * swing_q6_q1_for_q3
                     * turn_q1_for_q3_squared
-                    > 1e-12 * radius_q6_before_q1_for_q3 * radius_q6_before_q1_for_q3
+                    > product_in_follows_q1_for_q3 * radius_q6_before_q1_for_q3 * radius_q6_before_q1_for_q3
                 )
                 if follows_q1_for_q3:
-                    sum_in_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5 * wrist_z
-                    product_in_across_q6_q1_for_q3 = ahead_q1_before_q1_for_q3 * twice_d5 * cos_q5_before_q1_for_q3
-                    along_q6_q1_for_q3 = -product_in_across_q6_q1_for_q3 * r31 - r32 * sum_in_across_q6_q1_for_q3
-                    across_q6_q1_for_q3 = product_in_across_q6_q1_for_q3 * r32 - r31 * sum_in_across_q6_q1_for_q3
-                    swing_q6_q1_for_q3 = sqrt(
-                        across_q6_q1_for_q3 * across_q6_q1_for_q3 + along_q6_q1_for_q3 * along_q6_q1_for_q3
-                    )
                     # feasible arc: cosines of its ends
                     if swing_q6_q1_for_q3 > product_in_divisor_q6_q1_for_q3:
                         level_q6_q1_for_q3 = (

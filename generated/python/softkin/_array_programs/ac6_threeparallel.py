@@ -34,7 +34,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 269
+    VALUES = 270
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -320,14 +320,22 @@ class ArrayPrograms(Programs):
                     absolute(rate_q1_for_q3) > k.size_q1_for_q3_times_rounding, -excess_q1_for_q3 / rate_q1_for_q3, 1.0
                 )
                 turn_q1_for_q3_squared = turn_q1_for_q3 * turn_q1_for_q3
+                sum_in_across_q6_q1_for_q3 = k.d1_times_d5_times_2 - k.twice_d5 * wrist_z
+                product_in_across_q6_q1_for_q3 = ahead_q1_before_q1_for_q3 * k.twice_d5 * cos_q5_before_q1_for_q3
+                along_q6_q1_for_q3 = -product_in_across_q6_q1_for_q3 * r31 - r32 * sum_in_across_q6_q1_for_q3
+                across_q6_q1_for_q3 = product_in_across_q6_q1_for_q3 * r32 - r31 * sum_in_across_q6_q1_for_q3
+                swing_q6_q1_for_q3 = sqrt(
+                    across_q6_q1_for_q3 * across_q6_q1_for_q3 + along_q6_q1_for_q3 * along_q6_q1_for_q3
+                )
                 # whether the first order is not enough: then q6 is chosen first
                 follows_q1_for_q3 = (turn_q1_for_q3_squared > 1e-12) | (
                     (
                         across_q6_rate_q1_for_q3 * across_q6_rate_q1_for_q3
                         + along_q6_rate_q1_for_q3 * along_q6_rate_q1_for_q3
                     )
+                    * swing_q6_q1_for_q3
                     * turn_q1_for_q3_squared
-                    > 1e-12 * radius_q6_before_q1_for_q3 * radius_q6_before_q1_for_q3
+                    > k.product_in_follows_q1_for_q3 * radius_q6_before_q1_for_q3 * radius_q6_before_q1_for_q3
                 )
 
                 def elsewhere_best_cost_q1_for_q3(
@@ -353,13 +361,6 @@ class ArrayPrograms(Programs):
                     ) * one_by_turned_length_q1_for_q3
                     return (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
 
-                sum_in_across_q6_q1_for_q3 = k.d1_times_d5_times_2 - k.twice_d5 * wrist_z
-                product_in_across_q6_q1_for_q3 = ahead_q1_before_q1_for_q3 * k.twice_d5 * cos_q5_before_q1_for_q3
-                along_q6_q1_for_q3 = -product_in_across_q6_q1_for_q3 * r31 - r32 * sum_in_across_q6_q1_for_q3
-                across_q6_q1_for_q3 = product_in_across_q6_q1_for_q3 * r32 - r31 * sum_in_across_q6_q1_for_q3
-                swing_q6_q1_for_q3 = sqrt(
-                    across_q6_q1_for_q3 * across_q6_q1_for_q3 + along_q6_q1_for_q3 * along_q6_q1_for_q3
-                )
                 level_q6_q1_for_q3 = (
                     value_q1_for_q3
                     - across_q6_q1_for_q3 * sin_q6_before_q1_for_q3
