@@ -26,12 +26,21 @@ _NUMBER = 1e-9
 class Column:
     """One column of a known rotation: the squares of its entries add up to one."""
 
-    entry: sp.Symbol
-    """One of them."""
+    entry: sp.Expr
+    """One of them; or a polar radius, of one of them and another value."""
     others: sp.Expr
-    """The sum of the squares of the other two."""
+    """The sum of the squares of the other two, of a polar radius less that of the other value."""
     lets: tuple[Let, ...]
     """The statements that bind all three."""
+    size: sp.Expr = sp.Integer(1)
+    """The largest value of the entry: a length of the machine where it is multiplied by one."""
+    beside: sp.Expr = sp.Integer(0)
+    """The other value of a polar radius."""
+
+    @property
+    def terms(self) -> sp.Expr:
+        """The sum of the sizes of what `others` is made of, over the square of the largest value."""
+        return (self.others + 2 * self.beside**2) / self.size**2
 
 
 @dataclass(frozen=True)
@@ -47,6 +56,8 @@ class Equation:
     """Whether its terms are lengths; those of a rotation have no unit."""
     column: Column | None = None
     """The column of the entry of a rotation that it holds."""
+    is_radius: bool = False
+    """Whether it tells a polar radius: near its largest value it has lost the digits of the angle, as entries have."""
     apart: tuple[sp.Expr, ...] = ()
     """The two equations without the length that was eliminated between them: they hold where both its coefficients
     vanish, and this equation says nothing."""
@@ -85,13 +96,16 @@ class Swing:
     along: sp.Expr
     across: sp.Expr
     is_coarse: bool = False
-    """Whether e is an entry of a rotation, whose other entries do not replace it near one: the root may round to zero
-    where they are not zero."""
+    """Whether e is a polar radius, or an entry of a rotation, whose other entries do not replace it near one: the root
+    may round to zero where they are not zero."""
+    terms: sp.Expr | None = None
+    """Where they do: the sum of the sizes of what the squared sine is made of, whose digits the root has."""
 
     def renamed(self, names: Mapping[sp.Symbol, sp.Expr]) -> Swing:
         """The same with other names."""
         cos_s, sin_s, along, across = (v.xreplace(names) for v in (self.cos, self.sin, self.along, self.across))
-        return replace(self, cos=cos_s, sin=sin_s, along=along, across=across)
+        terms = None if self.terms is None else self.terms.xreplace(names)
+        return replace(self, cos=cos_s, sin=sin_s, along=along, across=across, terms=terms)
 
 
 @dataclass(frozen=True)
@@ -186,6 +200,8 @@ class Binding:
     conditions: tuple[sp.Expr, ...] = ()
     """Values of parameters that must not vanish: a machine where one does is refused when it is set up."""
     cosine_alone: bool = False
+    uncounted: int = 0
+    """Operations that keep digits, and are no reason to take another step."""
     yields_to_a_sum: bool = False
     """Whether a sum of angles may be the better unknown."""
 
@@ -193,7 +209,8 @@ class Binding:
     def rank(self) -> tuple[bool, bool, bool, int]:
         """Smaller is better: cosine and sine known, an angle that is always determined, one root, few operations."""
         size = sum(int(sp.count_ops(s.value)) for s in self.statements if isinstance(s, Let))
-        return (self.cosine_alone, self.conditioning is not None, self.determinant is not None, size)
+        counted = size - self.uncounted
+        return (self.cosine_alone, self.conditioning is not None, self.determinant is not None, counted)
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from tests.machines.angle_machines import MEANT
 from tests.machines.carried import CARRIED
 from tests.machines.collection import MACHINES
 from tests.machines.free_machines import FREED
+from tests.machines.parallel_machines import PARALLEL
 from tests.machines.subset_machines import SUBSETS
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled_text
@@ -70,7 +71,7 @@ class Made:
 @cache
 def made(name: str) -> Made:
     """Derive and load a machine; its offsets are not zero."""
-    mechanism = validate({**MACHINES, **CARRIED, **SUBSETS, **FREED}[name])
+    mechanism = validate({**MACHINES, **CARRIED, **SUBSETS, **FREED, **PARALLEL}[name])
     built = built_of(mechanism)
     robot_class = imported_class(mechanism, built)
     offsets = {j.offset.name: 7.0 * k - 20.0 for k, j in enumerate(mechanism.joints)}

@@ -48,7 +48,7 @@ def with_arms_long_enough(
             a, b, e = later.arm
             word = f"{step.step.name}_for_{later.step.name}"
             turning = Later(later.step, word, step.step, legs, Root(a**2 + b**2), e, chain, scale)
-            found = in_order(with_motion(found, turning, _motion(turning, later.arm, later.factors, step.sigma)))
+            found = in_order(with_motion(found, turning, _motion(turning, later.arm, later.factors, step)))
     return tuple(found)
 
 
@@ -100,7 +100,7 @@ def _with_legs(
     return found, Legs(ahead, square, beside, scale, along, across)
 
 
-def _motion(later: Later, arm: Row, factors: tuple[sp.Expr, sp.Expr], sigma: sp.Symbol) -> tuple[Let, ...]:
+def _motion(later: Later, arm: Row, factors: tuple[sp.Expr, sp.Expr], step: StepDeterminant) -> tuple[Let, ...]:
     """The angle behind the turn, computed from where it was."""
     lets, names, rates = rates_of(later)
     words = ("arm_x", "arm_y", "end", "arm_x_rate", "arm_y_rate", "end_rate", "less", "more")
@@ -109,7 +109,7 @@ def _motion(later: Later, arm: Row, factors: tuple[sp.Expr, sp.Expr], sigma: sp.
         later.name(word) for word in ("arm", "value", "size", "missing", "linear", "square", "way", "divisor", "turn")
     )
     is_gone = sp.Gt(more + less, 4 * length)  # the later step divides by one where its arm has vanished
-    keeps = sp.Ge(sigma * later.legs.beside, 0)  # an arm that has vanished: the turn to the side of its branch
+    keeps = sp.Ge(step.sigma * later.legs.beside, 0)  # an arm that has vanished: the turn to the side of its branch
     return (
         *lets,
         *(Let(n, v.xreplace(names)) for n, v in zip((x, y, end, less, more), (*arm, *factors), strict=True)),
@@ -127,6 +127,19 @@ def _motion(later: Later, arm: Row, factors: tuple[sp.Expr, sp.Expr], sigma: sp.
             Select(sp.Gt(sp.Abs(divisor), 0), missing / Select(sp.Gt(sp.Abs(divisor), 0), divisor, 1), 0),
             f"turn of {later.angle.name} that makes the arm of {later.step.name} long enough",
         ),
-        *turned(later, turn),
+        *_within_digits(later, turned(later, turn), step.swing),
         *taken(later, is_swept=False),
+    )
+
+
+def _within_digits(later: Later, lets: tuple[Let, ...], swing: Swing | None) -> tuple[Let, ...]:
+    """The turn; its cost counts the change of the squared sine, too, as a share of its terms, where they are known."""
+    if swing is None or swing.terms is None:
+        return lets
+    terms, cost = later.name("terms"), later.name("turned_cost")
+    ahead, before = later.name("turned_ahead"), later.before(later.legs.root)
+    share = sp.Abs((ahead - before) * (ahead + before)) / (later.scale * Select(sp.Gt(terms, 0), terms, sp.Integer(1)))
+    return (
+        Let(terms, swing.terms),
+        *(replace(let, value=let.value + share) if let.name == cost else let for let in lets),
     )

@@ -15,7 +15,7 @@ from itertools import permutations
 import sympy as sp
 
 from derive.algebra.normal_form import cancelled, linear_coefficients
-from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
+from derive.equations.problem import Binding, Column, Conditioning, Equation, Problem, StepDeterminant
 from derive.ir.program import (
     Let,
 )
@@ -130,7 +130,14 @@ def _solve(
     if radius in problem.lengths:
         statements = (*naming.lets, Let(radius, sigma * distance), *known)
         return Binding("polar", (radius, angle), statements, determinant, conditioning)
-    product = Equation(f"{angle.name} radius", radius - sigma * distance, is_length=along[0].is_length)
+    column = _column((along, a), (across, b), sigma * distance)
+    product = Equation(
+        f"{angle.name} radius",
+        radius - sigma * distance,
+        is_length=along[0].is_length,
+        column=column,
+        is_radius=column is None,
+    )
     return Binding("polar", (angle,), (*naming.lets, *known), determinant, conditioning, (product,))
 
 
@@ -144,3 +151,25 @@ def _conditioning(
     if len(functions) == 0 or len(functions) == len(sp.Mul.make_args(radius)):
         return Conditioning(angle, distance, scale)
     return Conditioning(angle, sp.Mul(*functions), sp.Integer(1))
+
+
+_Side = tuple[tuple[Equation, sp.Expr], sp.Expr]
+"""An equation, the value that it gives for one side of the radius, and the name of this value."""
+
+
+def _column(along: _Side, across: _Side, radius: sp.Expr) -> Column | None:
+    """How much smaller than its largest the square of the radius is, by values as small as the angle that it tells:
+    where a side is an entry of a rotation, the other entries of its column less the other side. None where neither is,
+    or both are, in two columns.
+    """
+    for ((equation, side), _), ((other, _), beside) in ((along, across), (across, along)):
+        column = equation.column
+        size = sp.Integer(0) if column is None else sp.Abs(sp.cancel(side / column.entry))
+        if column is None or not size.is_positive or column.entry in size.free_symbols:
+            continue
+        if other.column is None:
+            return Column(radius, size**2 * column.others - beside**2, column.lets, size, beside)
+        others = sp.expand(size**2 * column.others - beside**2)
+        if not others.free_symbols & beside.free_symbols:
+            return Column(radius, others, column.lets, size)
+    return None

@@ -43,6 +43,8 @@ class Amplitude:
     """Whether h is long enough to determine the angle, where joints can make it vanish; else None."""
     left: sp.Expr = sp.Integer(0)
     """e where h is too short to be divided by: then it has to vanish."""
+    square: sp.Expr | None = None
+    """The square of h, where it has no unit; else None."""
 
 
 def amplitude_of(problem: Problem, equation: Equation, angle: sp.Symbol, row: Row) -> Amplitude:
@@ -78,7 +80,18 @@ def amplitude_of(problem: Problem, equation: Equation, angle: sp.Symbol, row: Ro
     units = (along / divisor, across / divisor)
     size, left = common * divisor, right.xreplace({divisor: effective})
     return Amplitude(
-        naming, size, guard, *units, right, determinant, scale, factors, told=told, aimable=aimable, left=left
+        naming,
+        size,
+        guard,
+        *units,
+        right,
+        determinant,
+        scale,
+        factors,
+        told=told,
+        aimable=aimable,
+        left=left,
+        square=common**2 * square if _has_no_unit(problem, common**2 * written_out) else None,
     )
 
 

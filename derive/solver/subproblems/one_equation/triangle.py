@@ -49,7 +49,7 @@ def triangle_of(problem: Problem, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr
         return None
     sense, distance, side = sp.sign(share), ratio * effective, sp.sqrt(abs(share)) * arm
     third = reduce_units(ratio**2 * square + side**2 - sense * whole, problem.units, problem.signs)
-    square_of_third = _factored(_with_units(problem, third))
+    square_of_third = _factored(with_units(problem, third))
     if not (square_of_third.is_Mul or square_of_third.is_Pow) and len(sp.Add.make_args(third)) >= len(
         sp.Add.make_args(whole)
     ):
@@ -57,7 +57,7 @@ def triangle_of(problem: Problem, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr
     return Triangle(distance, side, square_of_third, sense)
 
 
-def _with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
+def with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
     """A normal form with cos^2 + sin^2 of known angles written for one, so that squares can be recognised.
 
     The normal form of p^2 + q^2 - (p cos u + q sin u)^2 has 1 - cos^2 u for sin^2 u. With p^2 (cos^2 u + sin^2 u) for

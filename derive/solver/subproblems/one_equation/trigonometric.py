@@ -95,13 +95,16 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
     length, right = amplitude.length, amplitude.right
     size = sp.Abs if amplitude.is_signed else sp.Add
     less, more = amplitude.factors or (in_lengths(length - right), in_lengths(length + right))
-    (less, more), column = with_small_entries(problem, equation, (less, more))
+    told = (less, more)
+    (less, more), column, terms = with_small_entries(problem, equation, (less, more), amplitude.square)
     is_fine = sp.Mul(less, more).has(Select)
-    told, larger, leg = (less, more), tuple[Let, ...](), None
+    larger, leg = tuple[Let, ...](), None
     if amplitude.aimable is not None:  # joints change the arm, which may be stretched along the coordinate
         leg = other_leg(problem, equation, angle, amplitude.determinant, amplitude.naming.lets)
     if leg is not None:
         (less, more), larger, column = with_leg(angle, (length, right), leg)
+        terms = None
+    uncounted = 0 if terms is None else int(sp.count_ops([less, more]) - sp.count_ops(list(told)))
     scale: tuple[Let, ...] = (
         Let(twice, less_cos + plus_cos, "twice the scale, as the sum of both: then cosine and sine agree"),
         Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
@@ -130,10 +133,23 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
         beside=None if leg is None else leg[:2],
         factors=(less_cos, plus_cos),
         swing=Swing(
-            cos_name, sin_name, amplitude.cos_unit, amplitude.sin_unit, equation.column is not None and not is_fine
+            cos_name,
+            sin_name,
+            amplitude.cos_unit,
+            amplitude.sin_unit,
+            is_coarse=equation.is_radius or (equation.column is not None and not is_fine),
+            terms=terms,
         ),
     )
-    return Binding("trigonometric", (angle,), tuple(statements), determinant, cosine_alone=True, yields_to_a_sum=True)
+    return Binding(
+        "trigonometric",
+        (angle,),
+        tuple(statements),
+        determinant,
+        cosine_alone=True,
+        uncounted=uncounted,
+        yields_to_a_sum=True,
+    )
 
 
 def _cosine(
