@@ -3,16 +3,16 @@
 ARCHITECTURE.md has a row for each folder. The modules beside these folders:
 
 __main__: `python -m derive`, the same as the command `softkin`
-cache: what earlier runs derived, kept by the content of everything that it depends on
-faults: whose fault it is that a machine is not derived: its description's, or the compiler's
-frames: turns and shifts, of which a chain is made, for mechanism files to import
+cache: results of earlier runs, kept by the content of everything on which they depend
+faults: the cause of a failed derivation: the description, or the compiler
+frames: the turns and shifts that make a chain, for mechanism files to import
 kept: results that are kept by the identity of what they were computed from
-live: a description as a class of `softkin`, at once
+live: a class of `softkin`, made from a description in the running program
 mechanism: the vocabulary of a description, for mechanism files to import
-output: the output folder, compared with what it should hold, or replaced as a whole
+output: the output folder, compared with its expected content, or replaced as a whole
 pipeline: mechanisms through the folders: derived, measured, drawn, written
 program: one degree in radians, and a choice, for mechanism files to import
-progress: what a run says while it works
+progress: the lines and the bar of a run while it works
 reach: conditions that arms can reach a common point, for mechanism files to import
 vectors: vectors for closures that are not a chain, for mechanism files to import
 """
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from derive.description.mechanism import Mechanism
 
-# SymPy remembers what it computed, as a rule the last thousand results: a derivation asks again for more than that.
+# SymPy caches its last thousand results unless told otherwise; a derivation needs more of them again.
 os.environ.setdefault("SYMPY_CACHE_SIZE", "None")
 
 __all__ = ["compile_mechanism"]
@@ -36,8 +36,8 @@ __all__ = ["compile_mechanism"]
 def compile_mechanism(description: Mechanism | str | Path) -> type[Any]:
     """A class of `softkin` for a description, or for the path of the file that holds one.
 
-    The class has all that the generated ones have: it is made of the same text, and was measured by the same witness.
-    Two compilations give two classes, whatever their names; `softkin.catalogue()` holds neither. Raises
+    The class has all that the generated ones have: it is made from the same text, and measured by the same witness. Two
+    compilations give two classes, whatever their names; `softkin.catalogue()` holds neither. Raises
     `DescriptionError`, `Unsolved` or `Disagreement` with what is wrong and what to do, where the machine cannot be
     derived, and `GenerationError` where an installed `softkin` was written by another version of the compiler.
     """

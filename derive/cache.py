@@ -1,9 +1,9 @@
-"""What earlier runs derived, kept by the content of everything that it depends on.
+"""The results of earlier runs, kept by the content of everything on which they depend.
 
 A key is a hash of the compiler's sources and templates, of the interpreter, the platform and every library with its
-version, of the profile, and of a description: its text, and the mechanism that the text evaluates to, whatever it
-imports. An entry is believed only if its own hash is right, which covers its key and all of its bytes; any other is
-derived anew.
+version, of the profile, and of a description: its text, and the mechanism to which the text evaluates, whatever it
+imports. An entry is used only if its own hash is right, which covers its key and all of its bytes; otherwise the
+mechanism is derived anew.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from derive.emit.language import TEMPLATES
 
 ROOT = MECHANISMS.parents[1]
 _KEPT = 400
-"""Entries that stay: those last used."""
+"""The number of entries that are kept: those used last."""
 _FORMAT = "softkin cache 1"
 
 
@@ -40,13 +40,13 @@ class Cache:
     """A folder of entries: plain data (what JSON holds) by key."""
 
     def __init__(self, folder: Path) -> None:
-        """The folder is made when something is kept."""
+        """The folder is created with the first entry."""
         self.folder = folder
         self.damaged: list[Path] = []
-        """Entries that were met and not believed."""
+        """Entries that were found but had a wrong hash."""
 
     def read(self, key: str) -> Any | None:
-        """What is kept under a key; None where there is nothing, or nothing that can be believed."""
+        """The entry under a key; None where there is none, or only a damaged one."""
         path = self._path(key)
         try:
             head, _, content = path.read_bytes().partition(b"\n")
@@ -60,7 +60,7 @@ class Cache:
         return json.loads(content)
 
     def write(self, key: str, data: object) -> None:
-        """Keep plain data under a key: an entry is there whole, or not at all."""
+        """Write plain data under a key; an entry is never half-written."""
         content = json.dumps(data).encode()
         self.folder.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=self.folder)
@@ -84,7 +84,7 @@ def key_of(*parts: str) -> str:
 
 
 def entry_key(foundation: str, entry: Entry) -> str | None:
-    """The key of one mechanism; None where its description holds what has no text."""
+    """The key of one mechanism; None where its description holds an object that has no text."""
     path, mechanism = entry
     try:
         return key_of("mechanism", foundation, path.read_text(encoding="utf-8"), canonical(mechanism))
@@ -103,8 +103,8 @@ def foundation(profile: str | None, root: Path = ROOT) -> str:
 
 
 def canonical(value: object) -> str:
-    """A text that two values have in common only if they are equal in every part. Raises
-    `TypeError` for what has none.
+    """A text that is the same for two values only if they are equal in every part. Raises `TypeError` for an object
+    without such a text.
     """
     if isinstance(value, sp.Basic | sp.MatrixBase):
         return str(sp.srepr(value))
@@ -121,13 +121,13 @@ def canonical(value: object) -> str:
 
 
 def _sources(root: Path) -> Iterator[Path]:
-    """The compiler without its catalogue: descriptions count one by one."""
+    """The files of the compiler without its catalogue: each description has its own key."""
     for path in (root / "derive").rglob("*.py"):
         if path.parent != root / "derive" / "mechanisms" or path.name.startswith("_"):
             yield path
     templates = root / TEMPLATES.relative_to(ROOT)
     kept = (path for path in templates.rglob("*") if path.is_file() and path.suffix != ".pyc")
-    yield from (path for path in kept if templates / "view" not in path.parents)  # the viewer reads what is generated
+    yield from (path for path in kept if templates / "view" not in path.parents)  # the viewer reads generated files
     yield from root.glob("pyproject.toml")
 
 
@@ -149,7 +149,7 @@ def _libraries() -> tuple[str, ...]:
 
 
 def _own_requirements() -> Iterable[str]:
-    """What the compiler is built on: of a source tree its project file says so, of a wheel its metadata."""
+    """The requirements of the compiler: from the project file of a source tree, or from the metadata of a wheel."""
     project = ROOT / "pyproject.toml"
     if project.is_file():
         return list(tomllib.loads(project.read_text(encoding="utf-8"))["project"]["dependencies"])
@@ -157,7 +157,7 @@ def _own_requirements() -> Iterable[str]:
 
 
 def _required(requirements: Iterable[str]) -> Iterator[str]:
-    """The names of requirements, without those that only an extra has."""
+    """The names of requirements, without those of extras."""
     for text in requirements:
         if not re.search(r";.*\bextra\b", text):
             yield re.split(r"[^A-Za-z0-9._-]", text, maxsplit=1)[0].lower()

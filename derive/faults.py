@@ -1,5 +1,5 @@
-"""Why a machine is not derived, told by whose fault it is: of its description, with what to do, or of the compiler,
-with what to report.
+"""The cause why a machine is not derived: its description, with advice on what to do, or the compiler, with advice on
+what to report.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from derive.solver.solve import Unsolved
 from derive.witness.disagreement import Disagreement
 
 UNFIT = (DescriptionError, Unsolved, Disagreement)
-"""What a wrong description leads to: the message says enough."""
+"""The errors of a wrong description: the message says enough."""
 _OF_THE_SYSTEM = (OSError, MemoryError)
-"""What neither a description nor the compiler can help: the message says enough, and there is nothing to report."""
+"""The errors of the system: the message says enough, and there is nothing to report."""
 
 
 class GenerationError(Exception):
@@ -45,12 +45,12 @@ class Failure:
 
     @property
     def error(self) -> GenerationError:
-        """The same to be raised."""
+        """The failure as an error that can be raised."""
         return CompilerError(self.message, self.trace) if self.trace else GenerationError(self.message)
 
 
 def failure(path: Path | None, problem: Exception) -> Failure:
-    """What a problem comes to that was met while the machine of a file was derived, or without a file."""
+    """The failure for a problem that occurred while the machine of a file was derived, or without a file."""
     if isinstance(problem, CompilerError):
         return Failure(str(problem), problem.trace)
     if isinstance(problem, UNFIT):
@@ -62,7 +62,7 @@ def failure(path: Path | None, problem: Exception) -> Failure:
 
 
 def error(path: Path | None, problem: Exception) -> GenerationError:
-    """The same to be raised."""
+    """The failure as an error that can be raised."""
     return failure(path, problem).error
 
 
@@ -92,7 +92,7 @@ def _with_its_kind(problem: Exception) -> str:
 
 
 def _versions() -> str:
-    """The compiler and what it runs on."""
+    """The versions of the compiler, the interpreter and the platform."""
     try:
         own = metadata.version("softkin-compiler")
     except metadata.PackageNotFoundError:

@@ -1,4 +1,4 @@
-"""The turns and shifts that a chain is made of: what a mechanism file imports."""
+"""The turns and shifts that make a chain, for mechanism files to import."""
 
 from derive.geometry.frames import (
     Chain,

@@ -1,6 +1,6 @@
 """Results that are kept by the identity of what they were computed from.
 
-Programs and mechanisms never change, and to compare two of them takes about as long as what is asked of them.
+Programs and mechanisms never change, and to compare two of them takes about as long as to compute the results.
 """
 
 from __future__ import annotations

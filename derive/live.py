@@ -1,4 +1,5 @@
-"""A description becomes a class of `softkin` at once, in a notebook for instance: derived, measured, and imported."""
+"""A class of `softkin` from a description in the running program, for instance in a notebook: derived, measured, and
+imported."""
 
 from __future__ import annotations
 
@@ -58,13 +59,13 @@ def compiled(description: Mechanism | str | Path) -> type[Any]:
 
 
 def _renamed(text: str, own: str, unique: str) -> str:
-    """The text of a module whose modules are called otherwise: two machines of one name do not meet."""
+    """The text of a module with unique module names in it, so that two machines may have the same name."""
     return re.sub(rf"\b({package.PACKAGE}(?:\._array_programs|\._unrolled)?)\.{own}\b", rf"\1.{unique}", text)
 
 
 @cache
 def _folder() -> Path:
-    """Where the modules stand while the program runs."""
+    """The folder of the modules while the program runs."""
     folder = Path(tempfile.mkdtemp(prefix="softkin-"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
@@ -72,7 +73,7 @@ def _folder() -> Path:
 
 @cache
 def _runtime() -> ModuleType:
-    """The package `softkin`: the installed one, or where there is none, that of this compiler; it finds live modules.
+    """The package `softkin`, which then finds live modules: the installed one, or else that of this compiler.
 
     Raises `GenerationError` where the installed one is not of this compiler.
     """
@@ -103,7 +104,7 @@ def _refuse_another_runtime(found: ModuleType, files: Mapping[str, str]) -> None
     folder = Path(str(found.__file__)).parents[1]
     for name, text in files.items():
         path = folder / name
-        if not name.endswith(".py") or name == f"{package.PACKAGE}/__init__.py":  # which lists the mechanisms
+        if not name.endswith(".py") or name == f"{package.PACKAGE}/__init__.py":  # that file lists the mechanisms
             continue
         if not path.is_file() or path.read_text(encoding="utf-8") != text:
             raise GenerationError(

@@ -1,4 +1,4 @@
-"""The vocabulary of a description: joints, parameters, closure, task, branches. What a mechanism file imports."""
+"""The vocabulary of a description: joints, parameters, closure, task, branches; for mechanism files to import."""
 
 from derive.description.mechanism import (
     ROTATION,

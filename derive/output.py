@@ -1,4 +1,4 @@
-"""The output folder: compared with what should be in it, or replaced by it as a whole."""
+"""The output folder: compared with its expected content, or replaced as a whole."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ _BESIDE = ("report", "javascript", "c", "linuxcnc", "view")
 
 
 class ForeignFolder(Exception):
-    """A folder that holds something else than generated files is never replaced."""
+    """The error for a folder with other than generated files, which is never replaced."""
 
 
 def differences(folder: Path, files: Mapping[str, bytes]) -> Iterator[str]:
-    """What is missing, differs or does not belong in the folder, in the order of the paths."""
+    """The files that are missing, differ or do not belong in the folder, in the order of the paths."""
     present = set(_files(folder))
     for name in sorted(present | set(files)):
         if name not in present:
@@ -69,7 +69,7 @@ def replace_folder(folder: Path, files: Mapping[str, bytes]) -> None:
 
 
 def replace_parts(folder: Path, files: Mapping[str, bytes]) -> None:
-    """Put the files in the place of the folders inside a folder that they are in; whatever else is there stays."""
+    """Replace those folders inside a folder that contain the files; everything else stays."""
     for part in dict.fromkeys(Path(name).parts[0] for name in files):
         own = {str(Path(name).relative_to(part)): data for name, data in files.items() if Path(name).parts[0] == part}
         if any(differences(folder / part, own)):
@@ -77,7 +77,7 @@ def replace_parts(folder: Path, files: Mapping[str, bytes]) -> None:
 
 
 def write_file(path: Path, data: bytes) -> None:
-    """Write one file, whole or not at all."""
+    """Write one file so that it is never half-written."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f"{path.name}.", dir=path.parent) as workshop:
         new = Path(workshop) / path.name

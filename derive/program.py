@@ -1,4 +1,4 @@
-"""What a mechanism file needs of programs: one degree in radians, and a choice."""
+"""One degree in radians, and a choice, for mechanism files to import."""
 
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Select

@@ -1,4 +1,4 @@
-"""What a run says while it works: a line for every mechanism, and on a terminal a bar with the time left below them."""
+"""The output of a run while it works: a line for every mechanism, and on a terminal a bar with the remaining time."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Progress:
         self._show()
 
     def step(self, line: str, took_time: bool) -> None:
-        """A piece is done: its line, and the bar anew."""
+        """Note that a piece of work is done: print its line, and the bar again."""
         self._done += took_time
         self._stream.write(f"{self._cleared()}{line}\n")
         self._show()
@@ -31,7 +31,7 @@ class Progress:
         self._stream.flush()
 
     def bar(self) -> str:
-        """How much is done, and how long the rest takes at this pace."""
+        """The share that is done, and the remaining time at this pace."""
         full = round(_WIDTH * self._done / self._total) if self._total else _WIDTH
         text = f"[{'#' * full}{'.' * (_WIDTH - full)}] {self._done} of {self._total}"
         if self._done:
@@ -45,5 +45,5 @@ class Progress:
         self._stream.flush()
 
     def _cleared(self) -> str:
-        """What brings a terminal back to the begin of an empty line."""
+        """The characters that bring a terminal back to the begin of an empty line."""
         return "\r\033[K" if self._is_terminal else ""

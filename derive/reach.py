@@ -1,4 +1,4 @@
-"""What can reach, for constraints on the dimensions: what a mechanism file imports."""
+"""Conditions that arms can reach a common point, for mechanism files to import."""
 
 from derive.description.reach import (
     discs_meet,

@@ -1,4 +1,4 @@
-"""Vectors for closures that are not a chain: what a mechanism file imports."""
+"""Vectors for closures that are not a chain, for mechanism files to import."""
 
 from derive.geometry.vectors import (
     Vector,

@@ -19,7 +19,7 @@ Terms = tuple[tuple[sp.Symbol, int], ...]
 
 
 def name_of(terms: Terms) -> str:
-    """a1 + a2 is "a12", theta + phi is "theta_phi", a2 - a1 is "a2_from_a1"."""
+    """The name of a sum: "a12" for a1 + a2, "theta_phi" for theta + phi, "a2_from_a1" for a2 - a1."""
     plus = [a.name for a, sign in terms if sign > 0]
     minus = [a.name for a, sign in terms if sign < 0]
     return "_from_".join(_joined(names) for names in (plus, minus) if names)
@@ -39,7 +39,7 @@ def symbol_of_sum(terms: Terms) -> sp.Symbol:
 
 
 def positive_first(terms: Terms) -> Terms:
-    """The terms of the negative sum where all of them are subtracted: a sum of this form has a name."""
+    """The terms, with all signs changed where every term is subtracted: only then does the sum have a name."""
     return terms if any(sign > 0 for _, sign in terms) else tuple((a, -sign) for a, sign in terms)
 
 

@@ -34,14 +34,14 @@ def _polynomial(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple
     plain = _in_symbols(expression, angles, signs)
     if is_rational(plain):
         return reduce_units(plain, angles, signs)
-    terms = sp.expand_trig(sp.expand(expression))  # first: a sign leaves an argument only where nothing is added
+    terms = sp.expand_trig(sp.expand(expression))  # a sign leaves an argument only where that is no sum
     expanded = _without_signs(terms, signs)
     expanded = expanded.subs(sp.pi, 180 * DEGREE) if expanded.has(sp.pi) else expanded
     return reduce_units(expanded.xreplace(_functions(angles)), angles, signs)
 
 
 def _in_symbols(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> sp.Expr:
-    """The expression with the symbols of sines and cosines, those of sums too where no sign stands in them."""
+    """The expression with symbols for its sines and cosines, also for those of sums that contain no sign."""
     plain = expression.xreplace(_functions(angles))
     left = plain.atoms(sp.sin, sp.cos)
     if not left or any(node.free_symbols & {*signs} for node in left):
@@ -52,7 +52,7 @@ def _in_symbols(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple
 
 @cache
 def _functions(angles: tuple[sp.Symbol, ...]) -> dict[sp.Expr, sp.Expr]:
-    """The symbols of sines and cosines; an angle of the machine is given in degrees."""
+    """Sines and cosines with the symbol of each; a fixed angle of the machine is in degrees."""
     written = ((angle, angle * unit) for angle in angles for unit in (1, DEGREE))
     return {of(w): name(a) for a, w in written for of, name in ((sp.sin, sine), (sp.cos, cosine))}
 
@@ -83,9 +83,7 @@ def _reduction(angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> d
 
 
 def reduce_units(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence[sp.Symbol] = ()) -> sp.Expr:
-    """The normal form: squares of sines become 1 - cos^2, squares of signs 1, of flags the flag;
-    everything expanded.
-    """
+    """The expanded normal form: the square of a sine becomes 1 - cos^2, of a sign 1, of a flag the flag."""
     return _reduced(sp.sympify(expression), tuple(angles), tuple(signs))
 
 
@@ -138,7 +136,7 @@ def linear_coefficients(expression: sp.Expr, atoms: Sequence[sp.Symbol]) -> tupl
 
 @cache
 def _linear(expression: sp.Expr, atoms: tuple[sp.Symbol, ...]) -> tuple[sp.Expr, ...] | None:
-    """The coefficients, then the rest. Cached: every rule asks for the same equations."""
+    """The coefficients, then the rest. Cached: every rule examines the same equations."""
     if _is_expanded(expression):
         return _collected(expression, atoms)
     try:
@@ -151,7 +149,7 @@ def _linear(expression: sp.Expr, atoms: tuple[sp.Symbol, ...]) -> tuple[sp.Expr,
 
 
 def _collected(expression: sp.Expr, atoms: tuple[sp.Symbol, ...]) -> tuple[sp.Expr, ...] | None:
-    """The same of an expanded polynomial: its terms, by the atom that each of them has."""
+    """The coefficients and the rest of an expanded polynomial: its terms, sorted by the atom that each contains."""
     places = {atom: place for place, atom in enumerate(atoms)}
     parts: list[list[sp.Expr]] = [[] for _ in (*atoms, 1)]
     for term in sp.Add.make_args(expression):
@@ -187,7 +185,7 @@ def cancelled(value: sp.Expr) -> sp.Expr:
 
 @cache
 def factored(value: sp.Expr) -> sp.Expr:
-    """A value in factors; cached likewise."""
+    """A value in factored form. Cached, as `cancelled` is."""
     return sp.factor(value)
 
 

@@ -20,7 +20,7 @@ def is_rational(expression: sp.Expr) -> bool:
 
 
 def reduced_in_ring(expression: sp.Expr, squares: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-    """The expanded expression with the squares of some symbols written as what they are, until none is left."""
+    """The expanded expression with the squares of some symbols replaced by their values, until no square is left."""
     present = expression.free_symbols
     used = {s: v for s, v in squares.items() if s in present}
     names = present.union(*(v.free_symbols for v in used.values()))
@@ -37,7 +37,7 @@ def _ring(symbols: tuple[sp.Symbol, ...]) -> PolyRing:
 
 
 def _lowered(ring: PolyRing, value: PolyElement, place: int, square: PolyElement) -> PolyElement:
-    """The polynomial with the square of one symbol replaced; the square may be the symbol itself, of a flag."""
+    """The polynomial with the square of one symbol replaced; the square of a flag is the flag itself."""
     while any(monomial[place] > 1 for monomial in value):
         parts: dict[int, PolyElement] = {}
         for monomial, number in value.terms():

@@ -1,7 +1,7 @@
 """`generate` and `check` without a file: the catalogue as a whole, and its output folder.
 
-`generate` keeps what it derived beside the output folder, and derives again only what depends on something that
-changed; `--fresh` neither reads nor writes that cache, and `check` never does.
+`generate` keeps its results in a cache beside the output folder, and derives a mechanism again only where something
+changed on which it depends; `--fresh` neither reads nor writes that cache, and `check` never does.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ OUTPUT = _ROOT / "generated" if (_ROOT / "pyproject.toml").is_file() else Path("
 
 
 def generate(options: argparse.Namespace) -> int:
-    """Write the output folder; 1 where a mechanism could not be derived, 3 by a mistake of the compiler."""
+    """Write the output folder; returns 1 where a mechanism could not be derived, 3 for a mistake of the compiler."""
     if options.output == OUTPUT and (options.only or options.language):
         what = "--only" if options.only else "--language"
         raise GenerationError(f"{what} needs --output: the output folder of the project holds every mechanism")
@@ -46,7 +46,7 @@ def generate(options: argparse.Namespace) -> int:
 
 
 def compare(options: argparse.Namespace) -> int:
-    """Compare the output folder; raises `GenerationError` where it is not what the descriptions give."""
+    """Compare the output folder; raises `GenerationError` where it differs from a fresh generation."""
     files = machine_files(options)
     found = list(differences(options.output, files))
     if found:
@@ -65,7 +65,7 @@ def machine_files(options: argparse.Namespace) -> dict[str, bytes]:
 
 
 def _files(options: argparse.Namespace, entries: tuple[Entry, ...]) -> tuple[dict[str, bytes], list[Failure]]:
-    """All files of a run, from the cache what it has, and what could not be derived."""
+    """All files of a run, from the cache where it has them, and the mechanisms that could not be derived."""
     outputs = languages(options.profile, wanted=options.language or WRITTEN)
     cache = None if options.fresh else Cache(Path(f"{OUTPUT if options.language else options.output}.cache"))
     before = foundation(options.profile) if cache else ""
@@ -84,7 +84,7 @@ def _files(options: argparse.Namespace, entries: tuple[Entry, ...]) -> tuple[dic
 def _derived(
     work: Work, profile: str | None, wanted: Sequence[str], cache: Cache | None, before: str
 ) -> tuple[list[Built], list[str | None], list[Failure]]:
-    """What was derived, with its keys, and the faults; what is new is kept."""
+    """The results with their keys, and the failures; new results are put in the cache."""
     built: list[Built] = []
     keys: list[str | None] = []
     faults: list[Failure] = []

@@ -1,5 +1,5 @@
-"""`explain`: the derivation of a machine, step by step, in plain text, or as a page; where nobody named a branch, how
-to name it.
+"""`explain`: the derivation of a machine, step by step, in plain text or as a page; for unnamed branches it shows how
+to name them.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ def _step(mechanism: Mechanism, number: int, step: Step, assignments: Sequence[A
 
 
 def _branches(mechanism: Mechanism) -> Iterator[str]:
-    """How the branches are named, or can be."""
+    """The lines on the branches: their names, or how to name them."""
     if not mechanism.branches:
         yield "Branches: none, every pose has one solution"
         return
@@ -154,7 +154,7 @@ def _branches(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _forward(mechanism: Mechanism) -> Iterator[str]:
-    """The steps of the forward kinematics of a closed loop; of a chain there is nothing to solve."""
+    """The steps of the forward kinematics of a closed loop; a chain has none."""
     yield "Forward kinematics"
     if mechanism.chain is not None:
         yield "  the product of the chain"

@@ -31,7 +31,7 @@ _STALE, _INTERRUPTED = 1, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; 0 where it succeeded, else one message a fault on stderr, and 1, 2 or 3."""
+    """Run a command. Returns 0 where it succeeded, else 1, 2 or 3, with one message for each fault on stderr."""
     options = _options(arguments)
     is_catalogue = options.run in (catalogue.generate, catalogue.compare, report.report)
     try:

@@ -16,12 +16,12 @@ from derive.controller.run import LOOPBACK, live, source_of, who
 from derive.controller.settings import Security, settings_of
 
 BUILT = Path("build")
-"""Where the viewer is built: of the catalogue, and of machines of a user's own."""
+"""The folder of the viewer's pages, for the catalogue and for machines of a user's own."""
 _WRONG = 2
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """What may be asked of `live`."""
+    """The options of `live`."""
     parser.add_argument(
         "--machine", type=Path, required=True, metavar="FILE", help="the machine, as JSON: docs/LIVE.md"
     )
@@ -61,7 +61,7 @@ def _trust(parser: argparse._ArgumentGroup) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Serve until it is interrupted; 2, with one sentence, where that cannot be."""
+    """Serve until interrupted; returns 2, after a message of one sentence, where that is impossible."""
     gc.enable()  # this serves for days
     try:
         asyncio.run(_live(options))
@@ -103,5 +103,5 @@ def _is_loopback(address: str) -> bool:
 
 
 def _say(text: str) -> None:
-    """On standard output at once: another program may wait for the address."""
+    """Print at once, because another program may wait for the address."""
     print(text, file=sys.stdout, flush=True)

@@ -1,4 +1,4 @@
-"""`derive` and `check` with files: machines of the user's own, each by itself, none stopped by a fault of another."""
+"""`derive` and `check` with files: machines of the user's own, each by itself: a fault of one stops no other."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ _TAKEN = ("softkin", "derive", "numpy", "scipy", "sympy", "casadi", "matplotlib"
 
 
 def complain(message: str) -> None:
-    """Say what is wrong, with paths as the user would type them."""
+    """Print a message, with paths as the user would type them."""
     print(f"error: {message.replace(f'{Path.cwd()}/', '')}", file=sys.stderr, flush=True)
 
 
 def refused(problem: Exception, with_trace: bool, status: int = WRONG) -> int:
-    """Say what was refused, and answer the status: of a mistake of the compiler its own, else the one given.
+    """Print the problem, and return the status: `MISTAKEN` for a mistake of the compiler, else the given one.
 
     with_trace: whether the traceback of such a mistake is printed.
     """
@@ -43,7 +43,7 @@ def refused(problem: Exception, with_trace: bool, status: int = WRONG) -> int:
 
 
 def derive(options: argparse.Namespace) -> int:
-    """Derive machines and write them; 2 where one of them cannot be derived, 3 by a mistake of the compiler."""
+    """Derive machines and write them; returns 2 where one cannot be derived, 3 for a mistake of the compiler."""
     files = described(options.files)
     if options.package and len(files) > 1:
         raise GenerationError("--package names the package of one machine: derive one file at a time")
@@ -69,7 +69,7 @@ def derive(options: argparse.Namespace) -> int:
 
 
 def check(options: argparse.Namespace) -> int:
-    """Derive and measure machines, and write nothing; status as of `derive`."""
+    """Derive and measure machines, and write nothing; the status is that of `derive`."""
     files = described(options.files)
     return each(
         files,
@@ -102,7 +102,7 @@ def package_of(path: Path, wanted: str | None) -> str:
 
 
 def refuse_another(folder: Path, package: str) -> None:
-    """Refuse to replace what was derived of another machine."""
+    """Refuse to replace the files of another machine."""
     for other in sorted((folder / "python").glob("*/_core.py")):
         if other.parent.name != package:
             raise ForeignFolder(
@@ -113,7 +113,7 @@ def refuse_another(folder: Path, package: str) -> None:
 def each(
     files: Sequence[Path], work: Callable[[Path, Stages], None], keep_going: bool, with_trace: bool = False
 ) -> int:
-    """Do the work for every file, and say what each of them came to; the status is that of the worst."""
+    """Do the work for every file, and print the result of each; returns the worst status."""
     statuses: list[int] = []
     for path in files:
         stages = Stages(sys.stdout)

@@ -1,7 +1,7 @@
 """The process of a command.
 
-What a command loads and derives lives as long as its process, so that Python looks for garbage in vain: while it loads,
-while it derives, and at the end.
+The objects that a command loads and derives live as long as its process, so that garbage collection finds nothing: not
+while it loads, not while it derives, and not at the end.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import gc
 def run() -> int:
     """Run the command that was typed, and return its status."""
     gc.disable()
-    from derive.command.line import main  # loaded here, when nothing looks for garbage any more
+    from derive.command.line import main  # loaded here, after garbage collection is off
 
     status = main()
     gc.freeze()

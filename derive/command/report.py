@@ -33,7 +33,9 @@ _DESKTOPS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
 def report(options: argparse.Namespace) -> int:
-    """Write the pages and their index; 1 where a mechanism could not be derived, 3 by a mistake of the compiler."""
+    """Write the pages and their index; returns 1 where a mechanism could not be derived, 3 for a mistake of the
+    compiler.
+    """
     from derive.emit.page.page import index_of
 
     entries = chosen(catalogue(options.mechanisms), options.only)
@@ -65,7 +67,7 @@ def written(path: Path, mechanism: Mechanism, folder: Path, stages: Stages) -> P
 
 
 def opened(target: Path) -> None:
-    """Show a page in the browser of who sits at this terminal; in a script, or without a desktop, nothing happens."""
+    """Show a page in the browser, if a user sits at this terminal; do nothing in a script, or without a desktop."""
     has_desktop = sys.platform in ("darwin", "win32") or any(os.environ.get(name) for name in _DESKTOPS)
     if sys.stdout.isatty() and has_desktop:
         webbrowser.open(target.resolve().as_uri())
@@ -90,7 +92,7 @@ def _page(mechanism: Mechanism, told: Told, viewer: str) -> Page:
     kinematics = derive_and_measure(mechanism, told)
     told("page", "")
     page = page_of(mechanism, kinematics, viewer=viewer)
-    ElementTree.fromstring(page.text)  # what is not well-formed, some readers show in part
+    ElementTree.fromstring(page.text)  # some readers show a page that is not well-formed only in part
     told("page", f"{len(page.text.encode()) // 1000} kB")
     return page
 

@@ -1,4 +1,4 @@
-"""What a run says about one machine: a line for every stage; on a terminal also the stage that is under way."""
+"""The lines of a run about one machine: one for every stage; on a terminal also the stage that is under way."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Stages:
         self._is_terminal = stream.isatty()
 
     def told(self, stage: str, found: str) -> None:
-        """A stage has begun (nothing is found yet), or has ended."""
+        """Note that a stage has begun (`found` is then empty), or has ended."""
         if not found:
             self._start = self._clock()
             self._write(f"  {stage:8} …" if self._is_terminal else "")
@@ -25,7 +25,7 @@ class Stages:
         self._write(f"{self._cleared()}  {stage:8} {seconds:5.1f} s   {found}\n")
 
     def line(self, text: str) -> None:
-        """A line of its own; it takes the place of the stage that is under way."""
+        """Print a separate line, in place of the stage that is under way."""
         self._write(f"{self._cleared()}{text}\n")
 
     def _write(self, text: str) -> None:

@@ -24,11 +24,11 @@ from derive.view.page import BrokenPage, Content, Model, page
 _LANGUAGE = "javascript"
 _ROOT = MECHANISMS.parents[1]
 PACKAGES = _ROOT / ".view" if (_ROOT / "pyproject.toml").is_file() else Path.home() / ".cache" / "softkin" / "view"
-"""Where npm puts what the page is made of, once."""
+"""The folder into which npm installs the packages of the page, once."""
 
 
 def view(options: argparse.Namespace) -> int:
-    """Write a page: of the whole catalogue without a file, else one for each machine; 2 where one cannot be made."""
+    """Write a page for the whole catalogue, or one for each given machine; returns 2 where one cannot be made."""
     if not options.files:
         if options.model:
             raise GenerationError("--model names a body of one machine: give its file")
@@ -48,7 +48,7 @@ def view(options: argparse.Namespace) -> int:
 
 
 def content_of(entries: Sequence[Entry], modules: Mapping[str, bytes]) -> Content:
-    """What stands in the page of a catalogue."""
+    """The content of the page of a catalogue."""
     classes = {mechanism.name: _class(mechanism) for _, mechanism in entries}
     reports = {mechanism.name: _report(mechanism) for _, mechanism in entries}
     return Content("Softkin", modules, "softkin", classes, reports=reports)
@@ -82,7 +82,7 @@ def _write(path: Path, content: Content) -> None:
 
 
 def _keywords(built: Built) -> dict[str, str]:
-    """What Python calls the parameters that it cannot call as JavaScript does."""
+    """The names in Python of parameters that have another name in JavaScript."""
     here, there = (built.parts[language]["inputs"] for language in (_LANGUAGE, "python"))
     return {here[name]: there[name] for name in here if here[name] != there[name]}
 

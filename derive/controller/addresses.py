@@ -1,4 +1,4 @@
-"""Where axis values come from: the address, what kind of source it is, and that no credentials stand in it."""
+"""The address of a source of axis values: its kind, and the refusal of credentials in it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _REMEDY = f"set {USER} and {PASSWORD}, or leave them out and be asked"
 _SECRETS = frozenset(
     "apikey auth credential credentials login pass passphrase passwd password pwd secret token user username".split()
 )
-"""What entries with credentials are called, in small letters and without `_` and `-`."""
+"""The names of entries with credentials, in small letters and without `_` and `-`."""
 
 
 class Kind(Enum):
@@ -39,15 +39,15 @@ class Address:
 
     @property
     def is_named(self) -> bool:
-        """Whether nodes are columns, which are called as their axes unless another name is given."""
+        """Whether nodes are columns, which have the names of their axes unless other names are given."""
         return self.kind in (Kind.TABLE, Kind.LINES)
 
 
 def address_of(text: str, folder: Path) -> Address:
     """The source that a text names: `opc.tcp://…`, `https://…`, a CSV file, or `-`.
 
-    folder: where a relative path starts. Raises `Refused`; what is wrong with a URL is said without repeating it, for
-    a password may stand in it.
+    folder: where a relative path starts. Raises `Refused`; the message does not repeat a wrong URL, because a password
+    may stand in it.
     """
     if text == "-":
         return Address(Kind.LINES, text)

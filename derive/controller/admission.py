@@ -1,5 +1,5 @@
-"""Who may connect: the page that this server has served, with the token of this run. Any web page can open a WebSocket
-to this computer; what it cannot do is name another origin than its own, or know the token.
+"""Only the page that this server has served may connect, with the token of this run. Any web page can open a WebSocket
+to this computer, but it cannot name another origin than its own, and does not know the token.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ def new_token() -> str:
 
 
 def refusal_of_host(host: str | None, local: str) -> str | None:
-    """Why a request is refused by the host that it names; None where it is not.
+    """The reason why a request is refused because of the host that it names; None where it is accepted.
 
-    local: the address of this computer at which the request came in. A name that somebody else may bend to this
-    address (DNS rebinding) is refused: only the address itself, `localhost`, and the name of this computer are taken.
+    local: the address of this computer at which the request came in. A name that an attacker may point to this address
+    (DNS rebinding) is refused: only the address itself, `localhost`, and the name of this computer are accepted.
     """
     name = _name(f"//{host}") if host else None
     address = _address(local)
@@ -37,7 +37,7 @@ def refusal_of_host(host: str | None, local: str) -> str | None:
 
 
 def refusal(host: str | None, origin: str | None, protocols: str | None, local: str, token: str) -> str | None:
-    """Why a WebSocket is refused, from three headers of its handshake; None where it is not."""
+    """The reason why a WebSocket is refused, from three headers of its handshake; None where it is accepted."""
     wrong_host = refusal_of_host(host, local)
     if wrong_host:
         return wrong_host
@@ -51,7 +51,7 @@ def refusal(host: str | None, origin: str | None, protocols: str | None, local: 
 
 
 def own_names() -> frozenset[str]:
-    """The names by which this computer calls itself, in small letters; the name of the network may be left out."""
+    """The names of this computer, in small letters, with and without the name of the network."""
     name = socket.gethostname().lower()
     return frozenset({"localhost", name, name.partition(".")[0]})
 
@@ -65,7 +65,7 @@ def _name(text: str) -> str | None:
 
 
 def _address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:
-    """The address that a text is; one of IPv4 inside IPv6 is that of IPv4. None for a name."""
+    """The address in a text; IPv4 mapped into IPv6 gives the IPv4 address. None for a name."""
     try:
         found = ipaddress.ip_address(text.partition("%")[0])
     except ValueError:

@@ -1,4 +1,4 @@
-"""Which node of the controller is which axis, and its scale."""
+"""The node of the controller for each axis, and its scale."""
 
 from __future__ import annotations
 
@@ -58,8 +58,8 @@ def checked_scale(scale: object, where: str) -> float:
 def in_order(given: Iterable[Channel], axes: tuple[str, ...], *, named: bool) -> tuple[Channel, ...]:
     """The channels in the order of the machine's axes; later ones replace earlier ones.
 
-    named: a node that is not given is called as its axis (a column of a table). Raises `Refused` for an axis that the
-    machine does not have, or one without a node.
+    named: a node that is not given has the name of its axis (a column of a table). Raises `Refused` for an axis that
+    the machine does not have, or one without a node.
     """
     found = {axis: Channel(axis, axis) for axis in axes} if named else {}
     for channel in given:

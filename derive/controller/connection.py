@@ -1,4 +1,4 @@
-"""A source that is asked again and again: lost connections are told, and tried again after longer and longer waits."""
+"""A source whose lost connections are reported, and tried again after longer and longer waits."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from derive.controller.feed import Feed, Status
 from derive.controller.refusal import Lost, Refused
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 15.0
-"""Seconds before the first try after a loss, and the most; each wait is twice the one before."""
+"""The first and the longest wait after a loss, in seconds; each wait is twice the one before."""
 
 
 class Source(Protocol):

@@ -1,4 +1,4 @@
-"""The user name and the password: from the environment, or asked at a terminal; never from a file, never shown."""
+"""The user name and the password: read from the environment or at a terminal; never from a file, and never shown."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def are_given() -> bool:
 
 
 def credentials(place: str) -> Credentials:
-    """Those of the environment; what is missing is asked. Raises `Refused` where there is no terminal to ask at."""
+    """The credentials of the environment; missing ones are asked for. Raises `Refused` where there is no terminal."""
     user, password = os.environ.get(USER), os.environ.get(PASSWORD)
     if (not user or password is None) and not sys.stdin.isatty():
         raise Refused(f"{place} wants a user and a password: set {USER} and {PASSWORD}, or run it at a terminal")

@@ -1,4 +1,4 @@
-"""The newest reading of each axis, and how the connection is: what sources write, and messages are made of."""
+"""The newest reading of each axis, and the state of the connection: sources write them, and messages hold them."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ from derive.controller.reading import Reading, judged
 
 
 class Status(Enum):
-    """How the connection to the source is."""
+    """The state of the connection to the source."""
 
     CONNECTING = "connecting"
     LIVE = "live"
     LOST = "lost"
-    """No answer; it is tried again."""
+    """No answer; the connection is tried again."""
     ENDED = "ended"
     """The table or the input is over."""
     REFUSED = "refused"
-    """It cannot be, and is not tried again: a wrong password, a certificate that nobody vouches for."""
+    """The connection is impossible and not tried again: a wrong password, a certificate that is not trusted."""
 
 
 @dataclass(frozen=True)
 class Condition:
-    """The status, and what a person is told about it."""
+    """The status, and a message about it for a person."""
 
     status: Status
     message: str = ""
     retry_at: float | None = None
-    """When it is tried again, in seconds of the clock of the feed."""
+    """The time of the next try, in seconds of the clock of the feed."""
 
 
 class Feed:
-    """What is known about the machine now. The one object that changes while values come in."""
+    """The present state of the machine: the one object that changes while values come in."""
 
     def __init__(
         self,
@@ -48,7 +48,7 @@ class Feed:
         self.channels = channels
         self.clock = clock
         self.readings: dict[str, Reading] = {}
-        """By axis; an axis without an answer is missing."""
+        """The readings by axis; an axis without an answer is missing."""
         self.recorded: float | None = None
         """The time that the source itself gives, in seconds: that of a table."""
         self.condition = Condition(Status.CONNECTING)
@@ -66,7 +66,7 @@ class Feed:
         self._changed.set()
 
     def tell(self, status: Status, message: str = "", retry_in: float | None = None) -> None:
-        """Note how the connection is."""
+        """Note the state of the connection."""
         self.condition = Condition(status, message, None if retry_in is None else self.clock() + retry_in)
         self._hear(self.condition)
         self._changed.set()

@@ -15,7 +15,7 @@ from derive.description.mechanism import DescriptionError, Mechanism
 from derive.kinematics.parameters import machine_parameters
 
 COUPLED, MOUNTED, LIMITS, RADIANS = "Coupled", "Mounted", "limits", "in_radians"
-"""The names by which `to_json` calls what is more than one mechanism, and two of its entries."""
+"""The names in `to_json` of machines made of more than one mechanism, and of two entries."""
 _KIND = "mechanism"
 
 
@@ -115,7 +115,7 @@ def _of_description(path: Path, name: object) -> Mechanism:
 
 
 def _check_parameters(mechanism: Mechanism, given: Mapping[str, Any]) -> None:
-    """Refuse what the class of the mechanism refuses by name; it tests the values itself."""
+    """Refuse parameters by name, as the class of the mechanism does, which tests the values itself."""
     limits = {f"{word}_{joint.name.lower()}" for joint in mechanism.joints for word in ("lower", "upper")}
     parameters = machine_parameters(mechanism)
     known = {p.name for p in parameters} | limits | {_KIND, LIMITS, RADIANS}
@@ -131,7 +131,7 @@ def _check_parameters(mechanism: Mechanism, given: Mapping[str, Any]) -> None:
 
 
 def _of_package(given: dict[str, Any], path: Path) -> Machine:
-    """The machine of a package that `softkin derive` wrote: its class tests names and values."""
+    """The machine of a package that `softkin derive` wrote; the package's class tests names and values."""
     if not (path / "__init__.py").is_file():
         raise Refused(f"{path}: there is no package; `softkin derive my_machine.py --out build` writes one into build")
     sys.path.insert(0, str(path.resolve().parent))

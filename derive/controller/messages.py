@@ -9,8 +9,8 @@
      "axes": [12.5, null], "quality": ["good", "bad"], "reasons": ["", "not finite: nan"], "ages": [0.003, 0.003]}
 
 A bad or a missing value is null, and `complete` is then false: the page moves its machine only where `complete` is
-true, so that no picture mixes a new value with an old one. A stale value is the last one that was good. docs/LIVE.md
-is the description for who writes a page.
+true, so that no picture mixes a new value with an old one. A stale value is the last good one. docs/LIVE.md describes
+the messages for authors of pages.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def about_the_machine(settings: Settings) -> str:
 
 
 def about_the_axes(feed: Feed, machine: str, stale_after: float, number: int, now: float) -> str:
-    """What is known now: number: that of the message; now: seconds since 1970."""
+    """The message about the present state. number: that of the message; now: seconds since 1970."""
     at = feed.clock()
     readings = [feed.readings.get(channel.axis) for channel in feed.channels]
     qualities = [quality_of(reading, at, stale_after) for reading in readings]
@@ -69,7 +69,7 @@ def about_the_axes(feed: Feed, machine: str, stale_after: float, number: int, no
 
 
 def quality_of(reading: Reading | None, at: float, stale_after: float) -> Quality:
-    """How much a reading may be trusted at a time."""
+    """The quality of a reading at a time."""
     if reading is None:
         return Quality.MISSING
     if reading.value is None:
@@ -78,5 +78,5 @@ def quality_of(reading: Reading | None, at: float, stale_after: float) -> Qualit
 
 
 def _written(message: dict[str, object]) -> str:
-    """As JSON, in which there is no NaN."""
+    """A message as JSON, which has no NaN."""
     return json.dumps(message, allow_nan=False, separators=(",", ":"))

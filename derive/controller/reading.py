@@ -1,4 +1,4 @@
-"""What a source says about one axis: a finite number, or the reason why it is none."""
+"""The answer of a source about one axis: a finite number, or the reason why there is none."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ class Quality(Enum):
     STALE = "stale"
     """A number, which no answer has confirmed for a while."""
     BAD = "bad"
-    """No number, or one that the controller itself does not call good."""
+    """No number, or a number that the controller itself does not mark as good."""
     MISSING = "missing"
     """No answer yet."""
 
 
 @dataclass(frozen=True)
 class Unusable:
-    """What a source gives in place of a number."""
+    """The answer of a source that is no number."""
 
     reason: str
 
@@ -33,13 +33,15 @@ class Reading:
     value: float | None
     """In degrees or units of length of the machine; None where the answer is unusable."""
     reason: str
-    """Why it is unusable; empty where it is not."""
+    """The reason why the answer is unusable; empty where it is usable."""
     at: float
-    """When the answer came, in seconds of the clock of the feed."""
+    """The time of the answer, in seconds of the clock of the feed."""
 
 
 def judged(raw: object, scale: float, at: float) -> Reading:
-    """The reading of an answer, which is any object: a finite number times a scale, or the reason why it is none."""
+    """The reading of an answer, which may be any object: a finite number times a scale, or the reason why there is
+    none.
+    """
     if isinstance(raw, Unusable):
         return Reading(None, raw.reason, at)
     if isinstance(raw, bool) or not isinstance(raw, int | float):

@@ -1,10 +1,10 @@
-"""What ends a live connection: for good, or until it is tried again."""
+"""The errors that end a live connection: for good, or until it is tried again."""
 
 from __future__ import annotations
 
 
 class Refused(Exception):
-    """What is asked for cannot be right, or is not allowed: it is said in one sentence, and not tried again."""
+    """A request that cannot be right, or is not allowed; one sentence says why, and it is not tried again."""
 
 
 class Lost(Exception):

@@ -25,7 +25,7 @@ LOOPBACK = "127.0.0.1"
 
 
 def who(settings: Settings) -> Credentials | None:
-    """The credentials that the source wants: always those of a ctrlX, of OPC UA where they are given or asked for."""
+    """The credentials for the source: a ctrlX always needs them, OPC UA where they are given or asked for."""
     kind, security = settings.address.kind, settings.security
     wanted = kind is Kind.DATA_LAYER or (kind is Kind.OPC_UA and (security.logs_in or are_given()))
     if wanted and security.is_unencrypted:
@@ -88,14 +88,14 @@ async def live(
 
 
 def _named(host: str) -> str:
-    """The host in an address to open: of all addresses of this computer, its name."""
+    """The host in the address to open; the name of this computer where the server listens at all addresses."""
     if ipaddress.ip_address(host).is_unspecified:
         return socket.gethostname().lower()
     return f"[{host}]" if ":" in host else host
 
 
 def _teller(say: Callable[[str], None]) -> Callable[[Condition], None]:
-    """Says each new condition once: a loss that goes on is not said at every try."""
+    """A function that reports each new condition once, so that a lasting loss is not reported at every try."""
     said: list[str] = []
 
     def hear(condition: Condition) -> None:

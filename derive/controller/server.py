@@ -1,4 +1,4 @@
-"""The server of the page and its WebSocket: it sends, and what a page says to it is not read.
+"""The server of the page and its WebSocket: it only sends, and does not read messages of a page.
 
 `aiohttp` (Apache-2.0) serves both, and asks the ctrlX data layer; it is part of the extra `live`.
 """
@@ -19,7 +19,7 @@ from derive.controller.stream import Stream
 
 SOCKET = "/live"
 MOST_PAGES = 16
-"""Pages that may be open at the same time."""
+"""The largest number of pages that may be open at the same time."""
 _HEADERS = {
     "Cache-Control": "no-store",
     "Referrer-Policy": "no-referrer",
@@ -27,7 +27,7 @@ _HEADERS = {
     "X-Frame-Options": "DENY",
 }
 _ALIVE = 10.0
-"""Seconds between questions whether a page is still there."""
+"""Seconds between checks whether a page is still there."""
 _LONGEST_MESSAGE = 1024
 
 
@@ -65,7 +65,7 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
 def _page(path: Path) -> Handler:
-    """The page, as the file is when it is asked for."""
+    """The handler of the page, which reads the file at every request."""
 
     async def answer(request: web.Request) -> web.StreamResponse:
         wrong = refusal_of_host(request.headers.get("Host"), _local(request))
@@ -81,7 +81,7 @@ def _page(path: Path) -> Handler:
 
 
 def _socket(stream: Stream, greeting: str, token: str, pages: set[web.WebSocketResponse]) -> Handler:
-    """The WebSocket: a greeting, then every newest message of the stream; pages: those that are open."""
+    """The handler of the WebSocket: it sends a greeting, then every newest message. pages: the open ones."""
 
     async def answer(request: web.Request) -> web.StreamResponse:
         headers = request.headers

@@ -1,4 +1,4 @@
-"""All that a live connection is told: the machine, its nodes, the source; from JSON and from the command line.
+"""The settings of a live connection: the machine, its nodes, the source; from JSON and from the command line.
 
 The format of the JSON is that of docs/LIVE.md.
 """
@@ -18,7 +18,7 @@ from derive.controller.machine import Machine, machine_of
 from derive.controller.refusal import Refused
 
 RATE, STALE_AFTER, SPEED = 50.0, 1.0, 1.0
-"""Updates a second; seconds after which a value is stale; how much faster than recorded a table is replayed."""
+"""Updates a second; seconds after which a value is stale; the speed of a replayed table relative to its recording."""
 _ENTRIES = frozenset({"machine", "description", "package", "axes", "source"})
 _NUMBERS = {"rate": (RATE, 1000.0), "stale_after": (STALE_AFTER, 3600.0), "speed": (SPEED, 1000.0)}
 """The numbers of a source: default and upper end; all are more than 0."""
@@ -27,12 +27,12 @@ _OF_SOURCE = frozenset({"address", "loop", "time", "ca", *_NUMBERS})
 
 @dataclass(frozen=True)
 class Security:
-    """How the controller is trusted, and how it is told who asks."""
+    """How the identity of the controller is checked, and how this client identifies itself."""
 
     ca: Path | None = None
     """The certificate of the authority, or of the controller itself; None for those that the system trusts."""
     is_unchecked: bool = False
-    """Whether any certificate is taken, whoever shows it."""
+    """Whether any certificate is accepted."""
     is_unencrypted: bool = False
     """Whether OPC UA is read without encryption, and without a password."""
     logs_in: bool = False
@@ -42,7 +42,7 @@ class Security:
 
 @dataclass(frozen=True)
 class Settings:
-    """What is shown, and where it comes from."""
+    """The machine that is shown, and the source of its values."""
 
     machine: Machine
     channels: tuple[Channel, ...]
@@ -59,7 +59,7 @@ class Settings:
 def settings_of(
     path: Path, nodes: Sequence[str] = (), source: Mapping[str, Any] | None = None, security: Security | None = None
 ) -> Settings:
-    """The settings of a JSON file, with what the command line says instead.
+    """The settings of a JSON file, with those that the command line replaces.
 
     nodes: each as `A1=node*scale`; source: its address, and its other entries by their names in the JSON. Raises
     `Refused` with what is wrong.

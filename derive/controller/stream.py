@@ -1,4 +1,4 @@
-"""One message for all pages, at most so many times a second; who is slow misses messages, and delays nobody."""
+"""One message for all pages, at a limited rate; a slow page misses messages, and delays no other page."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from derive.controller.messages import about_the_axes
 from derive.controller.settings import Settings
 
 STILL_THERE = 0.25
-"""Seconds after which a message is sent although nothing has changed: ages grow."""
+"""Seconds after which a message is sent although nothing has changed, because the ages of values grow."""
 
 
 class Stream:
-    """The newest message, and who waits for the next."""
+    """The newest message, and the pages that wait for the next one."""
 
     def __init__(self, settings: Settings, feed: Feed) -> None:
         self._settings = settings
@@ -36,7 +36,7 @@ class Stream:
             due = max(due, self._feed.clock() - interval) + interval
 
     async def finish(self) -> None:
-        """Send a last message to everyone; then all of them are at the end."""
+        """Send a last message to every page, and end."""
         self._is_over = True
         await self._tell()
 

@@ -4,18 +4,18 @@ It may import `ir`, `algebra` and `geometry`. Mechanism files import it as `deri
 
 branches: branches and assembly modes: two solutions that the sign of an indicator tells apart
 catalogue: the mechanism files of a folder, loaded and checked
-chains/: what may stand in a chain, and numbers and gears that do
+chains/: the amounts of turns and shifts in a chain, and its numbers and gears
 dimensions: the parameters of a machine by their roles, and conditions between them
 errors: the error of a description that cannot be right
 fields: the kinds of values that the fields of a mechanism hold
 inner_names: the names that the inputs of a machine have inside a derivation
 joints: how joints move, what their values mean, and their ranges
-kinds: the message where a part of a description is of another kind than it must be
-loops: what is stated of a closed loop: rods, planes that guide points, bounds and limits of quantities
+kinds: the message where a part of a description has the wrong kind
+loops: the parts of a closed loop: rods, planes that guide points, bounds and limits of quantities
 mechanism: the mechanism with its task, and all names that a description uses
-places: where in its file a description is wrong
+places: the line of a description that is wrong
 quantity: joints and parameters as symbols in equations
 reach: conditions that arms can reach a common point
 remedies: what to do about a refusal whose own sentence does not say it
-validate: a description that cannot be right, refused before anything is derived
+validate: checks that refuse a wrong description before anything is derived
 """

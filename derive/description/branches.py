@@ -25,11 +25,11 @@ class Branch:
     margin: str
     """The name of the singularity at which its two solutions meet."""
     meanings: tuple[str, str] = ("", "")
-    """What both names mean, of a branch that no description names."""
+    """The meanings of both names, where the branch was named by the derivation and not by a description."""
 
     @property
     def is_crossing(self) -> bool:
-        """Whether it tells the roots of a scan apart: its indicator is the slope of the residual at the root."""
+        """Whether it is a branch that tells the roots of a scan apart: its indicator is the slope of the residual."""
         return bool(self.indicator is sp.nan)
 
 
@@ -49,7 +49,7 @@ class Assembly:
     """An expression of parameters. Where it is negative (legs numbered the other way round) the indicator changes its
     sign."""
     meanings: tuple[str, str] = ("", "")
-    """What both names mean, of an assembly choice that no description names."""
+    """The meanings of both names, where the mode was named by the derivation and not by a description."""
 
     @property
     def parameter(self) -> str:

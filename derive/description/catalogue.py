@@ -58,7 +58,7 @@ def load(path: Path) -> Mechanism:
         return validate(mechanism)
     except DescriptionError as problem:
         raise DescriptionError(in_place(path, str(problem))) from None
-    except Exception as problem:  # what no check foresees is still about this file
+    except Exception as problem:  # an error that no check foresees also belongs to this file
         if _is_of_the_compiler(problem):
             raise
         raise DescriptionError(in_place(path, f"{type(problem).__name__}: {_text(problem)}")) from None
@@ -109,7 +109,7 @@ def _with_aliases(mechanism: Mechanism) -> tuple[Mechanism, ...]:
 
 
 def _refuse_taken(path: Path, mechanisms: tuple[Mechanism, ...], entries: Sequence[Entry]) -> None:
-    """Files and classes of two machines must not have one name: the second would replace the first."""
+    """Refuse a mechanism whose file or class has a name in use: it would replace the other one."""
     owners = {key: (owner, mechanism.name) for owner, mechanism in entries for key in _in_files(mechanism)}
     for mechanism in mechanisms:
         for owner, other in (owners[key] for key in sorted(_in_files(mechanism)) if key in owners):
@@ -120,8 +120,8 @@ def _refuse_taken(path: Path, mechanisms: tuple[Mechanism, ...], entries: Sequen
 
 
 def _in_files(mechanism: Mechanism) -> set[str]:
-    """The name of a mechanism, and what languages make of it and of that of its class, but for `_`, capitals, and the
-    word that they add to a name which is taken.
+    """The names of a mechanism and its class as languages write them, compared without `_`, without case, and without
+    the word that a language adds to a name in use.
     """
     names = (mechanism.name, mechanism.class_name or mechanism.name)
     short = (name.removeprefix("Kin_").removeprefix("Softkin_") for name in names)

@@ -23,7 +23,7 @@ _OF_EQUATIONS = {
     *(f"{word}_{k}" for word in ("power", "weight", "reach", "reach_x", "reach_y") for k in (1, 2, 3)),
     *(r.name for r in ROTATION_ENTRIES),
 }
-"""What equations, and conditions on reaches, call other values."""
+"""Names that equations, and conditions on reaches, give to other values."""
 
 
 class Role(Enum):
@@ -61,13 +61,13 @@ class Parameter(Quantity):
     nominal: float
     """A value for drawings and tests."""
     fixed: sp.Expr | None = None
-    """The value of a number that stands in a chain: it has a name, and no user gives it."""
+    """The value of a number that stands in a chain. It has a name, but is no input of the machine."""
     given: str = ""
-    """What the description calls it, where it is derived under another name."""
+    """Its name in the description, where the derivation uses another name."""
 
     @property
     def given_name(self) -> str:
-        """What the description calls it."""
+        """Its name in the description."""
         return self.given or self.name
 
     @property
@@ -82,18 +82,18 @@ def _value_of(name: str) -> sp.Symbol:
 
 
 def _symbol_name(name: str) -> str:
-    """A parameter that is called like a coordinate of the pose is not that coordinate."""
+    """The name of the symbol: it differs from the coordinates of the pose, even where the parameter's name does not."""
     return f"given {name}" if name in _OF_EQUATIONS else name
 
 
 def length(name: str, meaning: str, *, nominal: float, high: float = 1e9, default: float | None = None) -> Parameter:
-    """A length that is more than zero, and must be given where the description, which is of one machine, gives none."""
+    """A length greater than zero. It must be given, unless the description is of one machine and states a default."""
     symbol = sp.Symbol(_symbol_name(name), positive=True)
     return Parameter(symbol, name, Role.LENGTH, meaning, "u", 0.0, high, True, default, nominal)
 
 
 def optional_length(name: str, meaning: str, *, nominal: float, high: float = 1e9) -> Parameter:
-    """A length that may be zero, and is when not given."""
+    """A length that may be zero, and is zero when not given."""
     symbol = sp.Symbol(_symbol_name(name), nonnegative=True)
     return Parameter(symbol, name, Role.DISTANCE, meaning, "u", 0.0, high, False, 0.0, nominal)
 
@@ -138,7 +138,7 @@ def coordinate(name: str, meaning: str, *, nominal: float) -> Parameter:
 
 
 def distance(name: str, meaning: str, *, nominal: float, low: float = -1e9, default: float = 0.0) -> Parameter:
-    """A length with a sign; when not given it is zero, or what the description of one machine gives."""
+    """A length with a sign; when not given it is zero, or the default that the description of one machine states."""
     return Parameter(_value_of(name), name, Role.DISTANCE, meaning, "u", low, 1e9, False, default, nominal)
 
 

@@ -1,4 +1,4 @@
-"""The kinds of values that the fields of a mechanism hold: a forgotten comma is told as one."""
+"""The kinds of values that the fields of a mechanism hold; a forgotten comma gets a message of its own."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _MANY: Mapping[str, tuple[str, str]] = {
     "positive": ("", "(R,)"),
     "home": ("", "(0, 0, 0)"),
 }
-"""Fields that hold several values: the class of each (none: an expression), and an example."""
+"""Fields that hold several values: the class of a value (none: an expression), and an example."""
 _ONE: Mapping[str, tuple[tuple[str, ...], str]] = {
     "name": (("str",), '"MyMachine"'),
     "task": (("Task",), 'Task("xyz")'),
@@ -71,7 +71,7 @@ def is_field(name: str) -> bool:
 
 
 def _is(value: object, kinds: tuple[str, ...]) -> bool:
-    """Whether a value is of one of the classes, by their names: the classes are made of these fields."""
+    """Whether a value has one of the classes, compared by name: their modules import this one."""
     return any(base.__name__ in kinds for base in type(value).__mro__)
 
 

@@ -1,7 +1,7 @@
-"""The names that the inputs of a machine have inside a derivation, where they cannot meet a name that is derived.
+"""The names that the inputs of a machine have inside a derivation, so that none equals a derived name.
 
-A derivation names its values by what they are: `cos_a2`, `reach`, `tool_x`. A parameter or joint that a description
-calls so is derived under another name, as `given_reach`, and keeps its own wherever it is seen.
+A derivation names its values by their meaning: `cos_a2`, `reach`, `tool_x`. A parameter or joint of a description with
+such a name gets another one inside the derivation, here `given_reach`. Users see its own name everywhere.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _OF_AXES = (
     *("lowest", "highest", "mid", "single", "open", "near", "turns", "sense", "turned"),
     *("effective_lower", "effective_upper", "tolerance", "ref_motor", "drive_limited", "drive_lower", "drive_upper"),
 )
-"""What programs call values of an axis: `offset_a1`."""
+"""The beginnings of names for values of an axis: `offset_a1`."""
 _OF_BRANCHES = ("sigma", "branch", "sign", "margin")
 _SHARED = frozenset(
     symbol.name
@@ -50,7 +50,7 @@ _SHARED = frozenset(
         *(*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS, *PLACE),
     )
 ) | {"check_limits", "warning_distance", "tie", "searched", "found", MIN_TYPE2_MARGIN, REFUSAL}
-"""What programs of every mechanism read and answer."""
+"""Inputs and outputs of the programs of every mechanism."""
 _WORDS = frozenset(
     """
     across along angle area assembly axis before between centre centres corner cos determinant direction divisor error
@@ -60,15 +60,15 @@ _WORDS = frozenset(
     wrist x y z
     """.split()
 )
-"""Words of which derived names are made; what else they hold are names of joints, and numbers."""
+"""Words of which derived names are made; their other words are names of joints, and numbers."""
 _PORTABLE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _GIVEN = "given"
 
 
 def with_inner_names(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> Mechanism:
-    """The mechanism as it is derived: parameters and joints whose names meet a derived one have another inside.
+    """The mechanism as it is derived: a parameter or joint whose name equals a derived name gets an inner name.
 
-    further: the symbols of parameters and joints whose names met one in a derivation, and how often.
+    further: the symbols of parameters and joints whose names equalled a derived one in earlier attempts, and how often.
     """
     symbols = _inner_symbols(mechanism, further or {})
     if not symbols:
@@ -80,14 +80,14 @@ def with_inner_names(mechanism: Mechanism, further: Mapping[str, int] | None = N
 
 
 def inputs_named(mechanism: Mechanism, inner: Mechanism, names: Sequence[str]) -> frozenset[str]:
-    """The symbols in a description of those of its inputs that have one of these names inside."""
+    """The symbols, in the description, of the inputs that have one of these names inside the derivation."""
     wanted = {joined(name) for name in names}
     pairs = zip(_inputs(mechanism), _inputs(inner), strict=False)
     return frozenset(own.symbol.name for own, same in pairs if joined(same.symbol.name) in wanted)
 
 
 def suspects(mechanism: Mechanism) -> frozenset[str]:
-    """The symbols of inputs that a derivation may have taken for values of its own: all their words are its words."""
+    """The symbols of inputs whose names are made of words for derived names alone: a derivation may use them, too."""
     keys = {j.symbol.name for j in mechanism.joints}
     plain = (i.symbol.name for i in _inputs(mechanism) if i.symbol == real(i.symbol.name))
     return frozenset(
@@ -106,7 +106,7 @@ def in_given_names(text: str, mechanism: Mechanism) -> str:
 
 
 def _reworded(text: str, names: Mapping[str, str]) -> str:
-    """A text with other names."""
+    """A text in which names are replaced."""
     return re.sub(r"[A-Za-z_]\w*", lambda found: names.get(found.group(), found.group()), text)
 
 
@@ -139,7 +139,7 @@ def _inner_symbols(mechanism: Mechanism, further: Mapping[str, int]) -> dict[sp.
 
 
 def _free(symbol: sp.Symbol, name: str, number: int, taken: set[str]) -> sp.Symbol:
-    """A symbol like another with a name, or with that name and a number, that nothing has; it is taken from then on."""
+    """A copy of a symbol with a name that is not in use: the given one, with a number if needed. It is then in use."""
     proposal = name if number == 1 else f"{name}_{number}"
     while joined(proposal) in taken:
         number += 1
@@ -149,7 +149,7 @@ def _free(symbol: sp.Symbol, name: str, number: int, taken: set[str]) -> sp.Symb
 
 
 def _taken(mechanism: Mechanism) -> Iterator[str]:
-    """The names that programs of this mechanism have for values of their own."""
+    """The names that the programs of this mechanism give to derived values."""
     yield from _SHARED
     axes = [*(j.key for j in mechanism.joints), *(q.name for q in mechanism.limited)]
     yield from (f"{word}_{key}" for word in _OF_AXES for key in axes)
@@ -164,7 +164,7 @@ def _of_joints(mechanism: Mechanism, inner: Mapping[sp.Symbol, sp.Symbol]) -> It
 
 
 def _taken_joints(mechanism: Mechanism) -> set[str]:
-    """The names of joint values that a derivation has for others: the commanded pose, sums of joints."""
+    """The names of joint values that a derivation uses for other values: the commanded pose, sums of joints."""
     turning = [j.symbol for j in mechanism.joints if j.is_angle]
     sums = {
         name_of(tuple((s, 1) for s in some)) for n in range(2, len(turning) + 1) for some in combinations(turning, n)
@@ -173,7 +173,7 @@ def _taken_joints(mechanism: Mechanism) -> set[str]:
 
 
 def with_symbols(value: Any, symbols: Mapping[sp.Symbol, sp.Symbol]) -> Any:
-    """The same data, however deep, with other symbols."""
+    """A copy of nested data in which symbols are replaced."""
     if isinstance(value, sp.Basic | sp.MatrixBase):
         return value.xreplace(symbols)
     if isinstance(value, tuple):

@@ -29,7 +29,7 @@ class Kind(Enum):
     HELICAL = "helical"
     """Turns, and moves another axis along by its pitch: it is declared Linear, with values in degrees."""
     GEARED = "geared"
-    """A turn of its motor is no whole turn of the joints that it moves: declared Linear, with values in degrees."""
+    """A whole turn of its motor is not a whole turn of its joints: declared Linear, with values in degrees."""
     DRIVING = "driving"
     """A turning motor that moves lengths alone, through a belt or a screw: declared Linear, with values in degrees."""
 
@@ -42,7 +42,7 @@ class Joint(Quantity):
     kind: Kind
     meaning: str
     multi_turn: bool = False
-    """Has a period byte in the configuration."""
+    """Whether the joint has a period byte in the configuration."""
     offset_range: Interval | None = None
     limit_range: Interval | None = None
     """The vendor's ranges, where the vendor gives them."""
@@ -55,7 +55,7 @@ class Joint(Quantity):
     pitch: sp.Expr = sp.Integer(0)
     """Where this is not zero, the joint is always limited (to `limit_range` where no limit is given)."""
     domain: Interval | None = None
-    """The range that the closure allows (degrees or length), reported as the range of the axis; None: any value."""
+    """The range that the closure allows (degrees or length), which is documented for the axis; None: any value."""
     nominal: float = 0.0
 
     def __post_init__(self) -> None:
@@ -67,7 +67,7 @@ class Joint(Quantity):
 
     @property
     def key(self) -> str:
-        """The neutral lower-case name: the end of `offset_a1`, `lower_a1`."""
+        """The lower-case name, with which `offset_a1` and `lower_a1` end."""
         return self.name.lower()
 
     @property
@@ -87,7 +87,7 @@ class Joint(Quantity):
 
     @property
     def is_geared(self) -> bool:
-        """Whether a unit of the motor is not one of the joint."""
+        """Whether one unit of the motor moves the joint by more or less than one unit."""
         return bool(self.ratio != 1)
 
     @property
@@ -97,7 +97,7 @@ class Joint(Quantity):
 
     @property
     def turns(self) -> sp.Expr:
-        """The turns of the joint per turn of its axis, without its sense: a number, or a constant of the setup."""
+        """The turns of the joint per turn of its axis, as a positive number, or as a constant of the setup."""
         return sp.Abs(self.ratio) if self.ratio.is_number else real(f"turns_{self.key}")
 
     @property

@@ -1,4 +1,4 @@
-"""What the parts of a description must be: a part of another kind is refused with what was meant."""
+"""The kinds that parts of a description must have: the message about any other kind says which was expected."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def expressions(what: str, given: Iterable[object]) -> tuple[sp.Expr, ...]:
 
 
 def expression(what: str, given: object) -> sp.Expr:
-    """An expression: a quantity, and not whether something is so."""
+    """An expression: it has a value, and is no condition."""
     try:
         found = sp.sympify(given)
     except (sp.SympifyError, TypeError):
@@ -28,20 +28,20 @@ def expression(what: str, given: object) -> sp.Expr:
 
 
 def number(what: str, given: object) -> str | None:
-    """What to say of what should be a number; None where it is one."""
+    """The message where a part should be a number and is none; None where it is one."""
     if not isinstance(given, Real) or isinstance(given, bool):
         return f"{what} is {told(given)}, and no number"
     return None if not math.isnan(float(given)) else f"{what} is not a number (NaN)"
 
 
 def pair(what: str, given: object) -> str | None:
-    """What to say of what should be the two ends of a range; None where it is that."""
+    """The message where a part should be the two ends of a range; None where it is."""
     is_pair = isinstance(given, tuple | list) and len(given) == 2 and not any(number("", end) for end in given)
     return None if is_pair else f"its {what} is {told(given)}, and not two numbers: as in {what}=(-90.0, 90.0)"
 
 
 def told(given: object) -> str:
-    """A part as a message tells it."""
+    """A part as a message quotes it."""
     text = " ".join(repr(given).split())
     return f"{text if len(text) <= _LONGEST else text[:_LONGEST] + '…'} (a {type(given).__name__})"
 

@@ -1,5 +1,5 @@
-"""What a description states of a closed loop: its rods, the planes that guide its plate, points of that, and quantities
-that have bounds or limits of their own.
+"""The parts of a closed loop in a description: its rods, the planes that guide its plate, points of the plate, and
+quantities with bounds or limits of their own.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ class Rod:
     base_cone: sp.Expr | None = None
     """The largest angle between the rod and its direction at the home pose, at its joint on the base (radians)."""
     plate_cone: sp.Expr | None = None
-    """The same angle at its joint on the plate."""
+    """The largest angle between the rod and that direction at its joint on the plate (radians)."""
 
     @property
     def key(self) -> str:
-        """What programs call it."""
+        """Its name in programs."""
         return self.name
 
     @property
@@ -55,13 +55,13 @@ class Plane:
 
     name: str
     normal: tuple[sp.Expr, ...]
-    """Made of numbers and parameters; of length one, or as long as tolerances are to be in units of length."""
+    """Made of numbers and parameters. A length other than one weighs the tolerance of the plane."""
     plate: tuple[sp.Expr, ...]
     offset: sp.Expr
 
     @property
     def key(self) -> str:
-        """What programs call it, beside the rods."""
+        """Its name in programs, which differs from those of the rods."""
         return f"guide_{self.name}"
 
     @property
@@ -81,7 +81,7 @@ class Bound:
 
 @dataclass(frozen=True)
 class Limited:
-    """A quantity with limits of its own that is no axis (the relative angle of an elbow, X of an H-gantry)."""
+    """A quantity that is no axis, but has limits (the relative angle of an elbow, X of an H-gantry)."""
 
     name: str
     value: sp.Expr

@@ -177,7 +177,7 @@ class Mechanism:
     source: str = ""
     """Where the geometry is published; empty where it is published nowhere."""
     summary: str = ""
-    """What it is, in a sentence; empty: the names of its axes."""
+    """One sentence that says what machine this is; where it is empty, the names of the axes take its place."""
     parameters: tuple[Parameter, ...] = ()
     chain: Chain | None = None
     closure: tuple[sp.Expr, ...] = ()
@@ -187,7 +187,7 @@ class Mechanism:
     """Planes in which points of a platform stay: as many without joints as the loop moves coordinates that the task
     does not command; one with a joint lifts the platform."""
     bars: tuple[Rod, ...] = ()
-    """The bars that are drawn, where the rods are not the bodies: each joins two points, and is as long as stated."""
+    """The bars to draw, where the machine's bodies are not the rods: each joins two points at the stated length."""
     belt: str | None = None
     """How the belt that two fixed drives share is drawn: "H" (a beam on two rails), "T" (an arm through a carriage)."""
     assembly: Assembly | None = None
@@ -213,8 +213,8 @@ class Mechanism:
     """The answer of GetKinematicsName; None: the name of the block."""
     class_name: str | None = None
     offset_interface: bool | None = None
-    """Whether positions of a point off the flange can be commanded (orientation mode "Axis"); None: where the machine
-    can do it, True: it is refused where it cannot."""
+    """Whether positions of a point off the flange can be commanded (orientation mode "Axis"). None: if the machine
+    can do it; True: a machine that cannot is refused."""
     notes: tuple[str, ...] = field(default=())
     """Sentences for the user's documentation: definitions of our own, and properties to know."""
 
@@ -226,7 +226,7 @@ class Mechanism:
         object.__setattr__(self, "heading", None if self.heading is None else sp.sympify(self.heading))
         if self.chain is not None:
             object.__setattr__(self, "chain", with_half_turns_last(self.chain))
-        held = {joint.name for joint in self.held}  # the reference has the turn of a held joint: it needs no byte
+        held = {joint.name for joint in self.held}  # a held joint keeps the turn of the reference: it needs no byte
         joints = (replace(j, multi_turn=False) if j.name in held else j for j in self.joints)
         object.__setattr__(self, "joints", tuple(joints))
         if not self.summary:
@@ -246,7 +246,7 @@ class Mechanism:
 
     @property
     def all_notes(self) -> tuple[str, ...]:
-        """The stated notes, after what is to be known of every machine that holds joints."""
+        """The stated notes, after those that every machine with held joints has."""
         names = [joint.name for joint in self.held_joints]
         if not names:
             return self.notes
@@ -266,13 +266,13 @@ class Mechanism:
 
     @property
     def fixed_guides(self) -> tuple[Plane, ...]:
-        """The planes that no joint shifts: each holds a coordinate that the task does not command."""
+        """The planes that no joint shifts: each fixes a coordinate that the task does not command."""
         joints = {j.symbol for j in self.joints}
         return tuple(g for g in self.guides if not g.equation.free_symbols & joints)
 
     @property
     def motion(self) -> Task:
-        """What the platform of a loop moves: the task, and the coordinates that planes hold."""
+        """The coordinates in which the platform of a loop moves: those of the task, and those that planes fix."""
         if not self.fixed_guides:
             return self.task
         ends = (*(rod.plate for rod in self.rods), *(plane.plate for plane in self.guides))
@@ -282,18 +282,20 @@ class Mechanism:
 
     @property
     def passive(self) -> tuple[str, ...]:
-        """What the loop moves and the task does not command: coordinates, and the twist about the tool."""
+        """The motions of the loop that the task does not command: coordinates, and the twist about the tool."""
         own = tuple(c for c in self.motion.position if c not in self.task.position)
         return (*own, "twist") if self.motion.turning is not self.task.turning else own
 
     @property
     def is_turning_loop(self) -> bool:
-        """Whether the flange of a closed loop turns: the loop turns its platform, or a joint on the plate the tool."""
+        """Whether the flange of a closed loop turns, by the loop itself or by a joint on the plate."""
         return self.chain is None and self.task.turning is not Turning.NONE
 
     @property
     def followed_turns(self) -> int:
-        """How many turns at the end of the chain follow the commanded rotation, where the first ones do not; else 0."""
+        """The number of turns at the end of the chain that follow the commanded rotation, where the first turns do not;
+        else 0.
+        """
         return {Turning.PITCH: 1, Turning.PITCH_ROLL: 2}.get(self.task.turning, 0)
 
     @property
@@ -316,8 +318,8 @@ class Mechanism:
 
     @property
     def offers_points(self) -> bool:
-        """Whether positions of a point off the flange are to be derived, or tried: not behind a pitch, not of a loop
-        that turns its platform; unless they are asked for, not of a machine that follows the direction of the tool.
+        """Whether the inverse for a point off the flange is derived, or tried: not for a chain with a pitch, not for a
+        loop that turns its platform; for a machine that follows the tool's direction only on request.
         """
         if self.offset_interface is None:
             return self.is_position and not self.is_platform

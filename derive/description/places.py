@@ -1,4 +1,4 @@
-"""Where in its file a description is wrong, and what to do: a sentence that names a thing is given the line of it."""
+"""The place in a file where a description is wrong, and what to do: the line of the thing that a message quotes."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _FIELDS = (
     (r"^constraint|break the constraint", ("constraints",)),
     (r"does not determine|no subproblem|must not vanish", ("chain", "closure", "rods")),
 )
-"""What a sentence is about, by its words, and the fields of a mechanism that state it."""
+"""Words of a message, and the fields of a mechanism that it is then about."""
 
 
 def in_place(path: Path, problem: str) -> str:
@@ -41,7 +41,7 @@ def in_place(path: Path, problem: str) -> str:
 
 
 def line_of(path: Path, problem: str) -> int:
-    """The line that a sentence is about: of the thing that it quotes, else of the field, else of the mechanism."""
+    """The line of a message: that of the thing that it quotes, else of the field, else of the mechanism."""
     try:
         tree = ast.parse(path.read_text(encoding="utf-8"))
     except (OSError, SyntaxError, ValueError):

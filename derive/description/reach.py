@@ -43,7 +43,7 @@ def _all_three(second: Vector, third: Vector, reaches: Sequence[sp.Symbol], mess
     """The condition on three discs that intersect in pairs, in coordinates from the first centre."""
     power_2, power_3, area = real("power_2"), real("power_3"), real("corner_area")
     centre = _vector("equal_power")  # times 2 * area, seen from the first corner
-    weight_2, weight_3 = real("weight_2"), real("weight_3")  # of the corners in it, times 2 * area²
+    weight_2, weight_3 = real("weight_2"), real("weight_3")  # barycentric, of the centre, times 2 * area²
     steps = (
         Let(area, cross(second, third)),
         Let(power_2, dot(second, second) + reaches[0] ** 2 - reaches[1] ** 2),

@@ -64,7 +64,7 @@ def _problems(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _texts(mechanism: Mechanism) -> Iterator[str]:
-    """Texts stand in comments and documentation: they end none of these, and are one line each."""
+    """Texts stand in comments and documentation: none may end a comment, or have more than one line."""
     stated = [
         *((f"the {word}", text) for word, text in (("summary", mechanism.summary), ("source", mechanism.source))),
         *((f"parameter {p.name!r}", p.meaning) for p in mechanism.parameters),
@@ -121,7 +121,7 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _alike(kind: str, names: Sequence[str]) -> Iterator[str]:
-    """Structured Text reads names that differ in case alone as one."""
+    """Names that differ in case alone, which Structured Text takes for one name."""
     first: dict[str, str] = {}
     for name in names:
         other = first.setdefault(name.lower(), name)
@@ -130,7 +130,7 @@ def _alike(kind: str, names: Sequence[str]) -> Iterator[str]:
 
 
 def _joints_and_parameters(mechanism: Mechanism) -> Iterator[str]:
-    """A joint and a parameter whose names differ in case alone, and that are one symbol in every equation."""
+    """A joint and a parameter whose names differ in case alone, so that they are one symbol in every equation."""
     joints = {j.symbol: j for j in mechanism.joints}
     for parameter in mechanism.parameters:
         if (joint := joints.get(parameter.symbol)) is not None:

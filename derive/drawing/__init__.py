@@ -2,12 +2,12 @@
 
 It may import the folders from `ir` to `report`.
 
-belts: a belt that two fixed motors share: where it runs, and in which sense a drive turns its motor
+belts: a belt that two fixed motors share: its path, and the sense in which a drive turns its motor
 chain: the scene of a chain
 drawing: the whole drawing: a scene, and two poses for each choice of the configuration
 labels: the labels of dimensions
 loop: the scene of a closed loop
-parts: what is drawn at any pose: a program, and what each of its numbers is
+parts: the drawn parts at any pose: a program, and the meaning of each of its numbers
 pose: the pose that is drawn
 scene: a drawing as data: bodies, joints, dimensions, frames
 """

@@ -1,7 +1,7 @@
-"""A belt that two fixed motors share: where it runs on its frame, and the sense in which a drive turns its motor.
+"""A belt that two fixed motors share: its path on the frame, and the sense in which a drive turns its motor.
 
-The belt neither stretches nor slips. How the lengths of its strands change with the carriage then gives, drive by
-drive, how far it runs past each motor: nothing here knows a sign of a machine.
+The belt neither stretches nor slips. From the change of its strands with the carriage follows, for each drive, the
+length of belt that runs past each motor; no sign of a machine is assumed.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ _LAYOUTS: dict[str, tuple[Callable[[float, float], tuple[list[Wheel], tuple[Arra
     "H": (_of_h, (2, 5)),
     "T": (_of_t, (1, 5)),
 }
-"""By layout: its wheels at a place of the carriage, and which of them the motors turn."""
+"""For each layout: the function of its wheels at a place of the carriage, and the wheels that the motors turn."""
 
 
 def belt_of(layout: str, size: float, axes: Sequence[Array], drives: dict[sp.Symbol, Array]) -> Belt:
@@ -98,7 +98,7 @@ def belt_of(layout: str, size: float, axes: Sequence[Array], drives: dict[sp.Sym
 
 
 def _past_motors(layout: str, rate: Array) -> tuple[float, float]:
-    """How far the belt runs past each motor, in the direction from its first end to its last."""
+    """The length of belt that runs past each motor, in the direction from its first end to its last."""
     lengths = [_strands(layout, *(side * _STEP * rate)) for side in (1.0, -1.0)]
     first, _, last = (lengths[0] - lengths[1]) / (2.0 * _STEP)
     return -first, last

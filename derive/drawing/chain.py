@@ -97,9 +97,9 @@ class _Walker:
             self.rotation = self.rotation @ _turned(factor.axis, angle)
 
     def _driven(self, amount: sp.Expr, direction: Array) -> sp.Expr:
-        """What drives the body behind a turn: the turn itself, or the sum of those about parallel axes up to it.
+        """The angle that drives the body behind a turn: the turn itself, or the sum of the parallel turns up to it.
 
-        The sum, where one joint alone is left of it or none: bars from the base then give the body its direction.
+        It is the sum where at most one joint is left in it: bars from the base then give the body its direction.
         """
         if self._parallel is None or abs(self._parallel[0] @ direction) < 1.0 - _EXACT:
             self._parallel = direction, sp.sympify(amount)

@@ -25,15 +25,16 @@ from derive.report.reference_calls import Machine, branches
 _ANGLES = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0)
 """Values of the rotary axes at which a configuration is shown, tried in this order."""
 _AROUND, _TRIED = 60.0, 300
-"""Of a loop that turns its platform: how far from home (degrees), and at how many poses, a configuration is sought."""
+"""For a loop that turns its platform: the distance from home (degrees) and the number of poses at which a
+configuration is sought."""
 _VISIBLE = 0.04
 """Two poses look different where some point moves by this fraction of the machine's size."""
 
 
 _TURNED = 0.7
-"""The cosine of the angle from which on two directions of an axis look different."""
+"""The cosine of the smallest angle at which two directions of an axis look different."""
 _SAMPLED = 80
-"""Sampled poses at which a configuration is sought that the regular ones do not show."""
+"""The number of sampled poses at which a configuration is sought that the regular ones do not show."""
 
 _Pair: TypeAlias = tuple[tuple[Scene, Scene], bool]
 """The scenes of both bytes, and whether the first is that of the pose from which the second was found."""
@@ -112,8 +113,8 @@ def scene_at(machine: Machine, pose: Pose) -> Scene:
 
 
 def _choices(machine: Machine, drawn: Pose, other: Machine | None) -> Iterator[Choice]:
-    """The choice of every branch: both bytes at the same tool frame, of the machine in the other assembly mode where
-    one mode has one of them alone.
+    """The choice of every branch: both bytes at the same tool frame. Where one assembly mode has only one of them, the
+    other byte is drawn in the other mode.
     """
     branches = machine.kinematics.mechanism.branches
     told = [k for k, branch in enumerate(branches) if not branch.is_crossing]
@@ -139,7 +140,7 @@ def _pairs(machine: Machine, drawn: Pose, told: list[int], other: Machine) -> di
 
 
 def _reassembled(kinematics: Kinematics) -> Machine | None:
-    """The machine in its other assembly mode; None where there is one mode, or where the home pose tells it."""
+    """The machine in its other assembly mode; None where it has one mode, or its home pose decides the mode."""
     assembly = kinematics.mechanism.assembly
     if assembly is None or kinematics.mechanism.is_platform:
         return None
@@ -172,7 +173,7 @@ def _pair(scene: Callable[[], Scene], pose: Pose, index: int, into: Machine) -> 
     periods = (0,) * (len(pose.configuration) - count)
     _, solutions, statuses = branches(into, pose.frame, (*other, *periods), pose.axes)
     flipped = pose_at(into, solutions[0]) if statuses[0] is Status.OK else None
-    if mechanism.is_platform and statuses[0] is Status.OK:  # which forward may not find from home
+    if mechanism.is_platform and statuses[0] is Status.OK:  # forward kinematics may not find this pose from home
         flipped = Pose(solutions[0], pose.frame, (*other, *periods))
     if flipped is None:
         return None

@@ -18,7 +18,7 @@ from derive.kinematics.sampling import sample_machine
 Values = Mapping[str, Array]
 LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
 _SEEDS = (11, 12, 13)
-"""Other machines, on which a dimension that equals a parameter by coincidence does not."""
+"""Seeds of other machines, on which a dimension that equals a parameter by coincidence differs from it."""
 _SAME = 1e-9
 
 

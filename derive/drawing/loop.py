@@ -20,7 +20,8 @@ from derive.ir.interpret import Array, evaluate
 from derive.kept import kept_by_identity
 
 _EXACT, _ROUNDED = 1e-7, 1e-6
-"""Of lengths, as a part of them; and what six decimals of the drawn frame leave, of a machine in metres, too."""
+"""The tolerance of lengths, as a share of them, and the error from six decimals of the drawn frame, which counts for a
+machine in metres."""
 _HALF_WIDTH = 0.06
 """Half of the drawn width of a parallelogram over the length of its rods."""
 _TCP = (X.symbol, Y.symbol, Z.symbol)
@@ -102,7 +103,7 @@ class _Builder:
 
     def _across(self, bar: Rod, start: Array, end: Array) -> Point | None:
         """Half of the width of the parallelogram that a rod stands for, where such rods hold a plate that does not
-        turn: along the axis of the crank, or level and square to the rod's rail.
+        turn: along the axis of the crank, or horizontal and at right angles to the rod's rail.
         """
         if not is_held_by_parallelograms(self.mechanism):
             return None
@@ -134,7 +135,7 @@ class _Builder:
             self._rail(joint, ends)
 
     def _carried(self, joint: Joint) -> None:
-        """A joint that moves no bar: at the tool, which it turns about z, or shifts as a stated equation tells."""
+        """A joint that moves no bar: it turns the tool about z, or shifts it by a stated equation."""
         tool = point(vector_at(_TCP, self.values))
         heading = sp.sympify(self.mechanism.heading or 0)
         for equation in self.mechanism.closure:
@@ -291,7 +292,7 @@ class _Builder:
 
 
 def _rate(equation: sp.Expr, joint: Joint, coordinate: sp.Symbol, values: Values) -> float:
-    """The coordinate per unit of the joint, as one equation has it."""
+    """The derivative of the coordinate by the joint, from one equation."""
     slope = float(evaluate(sp.diff(equation, coordinate), values))
     return -float(evaluate(sp.diff(equation, joint.symbol), values)) / slope if slope else 0.0
 

@@ -1,7 +1,7 @@
-"""What is drawn of a machine at any pose: a program computes numbers, and the parts say what each of them is.
+"""The drawn parts of a machine at any pose: a program computes numbers, and the parts say what each number means.
 
-Of a chain: the amounts of its factors. Of a loop: points and directions, from the equations of the ends of its bars, as
-in `loop`: the circle of a crank by its centre and an end, the line of a rail by its direction.
+For a chain these are the amounts of its factors. For a loop they are points and directions, from the equations of the
+ends of its bars, as in `loop`: the circle of a crank by its centre and an end, the line of a rail by its direction.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ class Parts:
     program: Program
     """axis_*, x y z, r11 … r33 → its outputs, all numbers."""
     names: tuple[tuple[str, ...], ...]
-    """The outputs: of a chain the amount of every factor and its change with its last joint, of a loop the coordinates
-    of every vector."""
+    """The outputs: for a chain the amount of every factor and its derivative by its last joint, for a loop the
+    coordinates of every vector."""
     shape: dict[str, Any]
     """Plain data; a whole number is the place of an amount or of a vector in `names`."""
 
@@ -111,7 +111,7 @@ def _is_on_plate(entries: Entries, joints: set[sp.Basic]) -> bool:
 
 
 def _driven(mechanism: Mechanism, joint: Joint, values: _Values, held: list[int]) -> tuple[str, dict[str, Any]]:
-    """The crank or rail by which a joint moves the ends of bars, or what it moves at the tool."""
+    """The crank or rail by which a joint moves the ends of bars, or its motion of the tool."""
     ends, is_held = _moved_by(mechanism, joint)
     if not ends:
         return "carried", {"joint": joint.name, **_carried(mechanism, joint)}
@@ -146,7 +146,7 @@ def _moved_by(mechanism: Mechanism, joint: Joint) -> tuple[list[Entries], bool]:
 
 
 def _carried(mechanism: Mechanism, joint: Joint) -> dict[str, Any]:
-    """A joint that moves no bar turns the tool about z, or shifts it as a stated equation tells."""
+    """A joint that moves no bar: it turns the tool about z, or shifts it by a stated equation."""
     rate = sp.sympify(mechanism.heading or 0).coeff(joint.symbol)
     if rate != 0:
         return {"kind": "turn", "axis": [0, 0, float(rate)]}

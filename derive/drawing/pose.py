@@ -18,12 +18,12 @@ from derive.report.reference_calls import FRAME, Machine, forward, machine_with,
 
 _SAMPLES, _SEED = 3000, 3
 _DECIMALS = 3
-"""Of axis values at a pose that is found by sampling."""
+"""The decimals of axis values at a pose that is found by sampling."""
 
 
 @dataclass(frozen=True)
 class Pose:
-    """One pose of a machine: axis values, the frame as the programs have it, and the configuration there."""
+    """One pose of a machine: axis values, the frame from forward kinematics, and the configuration there."""
 
     axes: Reals
     frame: Reals
@@ -67,7 +67,7 @@ def drawn_pose(machine: Machine) -> Pose:
 
 
 def _most_regular(machine: Machine) -> Pose | None:
-    """Of sampled poses the one that is farthest from singular ones; None where no pose is possible."""
+    """The sampled pose that is farthest from singular ones; None where no pose is possible."""
     mechanism = machine.kinematics.mechanism
     drawn = sample_axes(mechanism, dict(machine.values), _SAMPLES, _SEED)
     axes = np.stack([np.round(drawn[j.axis.name], _DECIMALS) for j in mechanism.joints], axis=1)

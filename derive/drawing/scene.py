@@ -35,7 +35,7 @@ class Segment:
     end: Point
     body: Body
     across: Point | None = None
-    """Of a rod that stands for a parallelogram: from its middle line to one of the two parallel rods."""
+    """For a rod that stands for a parallelogram, the vector from its middle line to one of the two parallel rods."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Slide:
     axis: Point
     has_rail: bool = True
     has_arrow: bool = True
-    """None for a rail that several drives move together: every drive has an arrow of its own."""
+    """False for a rail that several drives move together: every drive has an arrow of its own."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class Belt:
     normal: Point
     frame: tuple[Segment, ...]
     tips: tuple[Point, Point]
-    """Where the motions that the drives share are named: at an end of the beam, and of the rail or the arm."""
+    """The places for the names of the shared motions: at an end of the beam, and of the rail or the arm."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ class Scene:
     dimensions: tuple[Dimension, ...]
     spots: tuple[Spot, ...]
     grounds: tuple[Point, ...]
-    """Where the machine is held."""
+    """The points at which the machine is fixed."""
     tool: Frame
     hidden: tuple[sp.Expr, ...] = ()
     """Lengths and angles that are zero in this machine."""

@@ -1,20 +1,20 @@
 """Output languages: a printer writes expressions, a template arranges text, and neither computes.
 
-It may import the folders from `ir` to `drawing`. Nothing outside of it knows a language, but for `view`. The folders in
-it form layers, each of which may import those before it: first `c`, `javascript`, `plcopen` and `picture`, then
-`python`, then `st` and `linuxcnc`, then `softmotion`, then `page`.
+It may import the folders from `ir` to `drawing`. No other folder knows a language, except `view`. Its own folders form
+layers, each of which may import those before it: first `c`, `javascript`, `plcopen` and `picture`, then `python`, then
+`st` and `linuxcnc`, then `softmotion`, then `page`.
 
-What no mechanism changes stands in `templates/`, in a folder for each language; `templates/native` has what joins the C
-of machines with Python, as an extension beside the package.
+Text that is the same for every mechanism stands in `templates/`, in a folder for each language; `templates/native` has
+the extension module that joins the C of machines with Python.
 
 braces: the layout of languages with braces
 c/: C99
 conditions: the conditions of a refusal, one by one
 every_branch: all branches of the inverse as one straight line, for Python and C
 expression: the walk over an expression that all languages share
-inputs: what the inputs of a machine are called in a language
+inputs: the names of the inputs of a machine in a language
 javascript/: JavaScript
-language: what an output language is
+language: the protocol of an output language
 linuxcnc/: kinematics modules of LinuxCNC
 named_package: the Python package under another name
 native: the native core of the Python package: the C of its machines

@@ -20,7 +20,7 @@ _PARTS = re.compile(
     """,
     re.VERBOSE,
 )
-"""What tells where a statement may be broken; the gap is that between the parts of a text."""
+"""The tokens at which a statement may be broken; the gap is the one between the parts of a text."""
 
 
 def indented(lines: Sequence[str]) -> list[str]:
@@ -47,7 +47,7 @@ def broken(line: str, width: int) -> Iterator[str]:
 
 
 def _place(text: str, width: int) -> int | None:
-    """The best place to break within a width: the least nested, among equals the last; else behind what is bound."""
+    """The best place to break within a width: the least nested one, among equals the last; else after the target."""
     places = [(depth, -at) for at, depth in _places(text)]
     fitting = [place for place in places if -place[1] <= width]
     far = [place for place in fitting if -place[1] > width // 4]

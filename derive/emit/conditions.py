@@ -1,4 +1,4 @@
-"""The conditions of a refusal, one by one, and what several values have in common that are only tested for size."""
+"""The conditions of a refusal, one by one, and the values whose size alone is tested."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All branches of the inverse in one straight line, for input that is trusted: what a language prints of it."""
+"""All branches of the inverse in one straight line, for trusted input, as languages print it."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from derive.solver.corners.folds import far_from_folds
 
 @dataclass(frozen=True)
 class EveryBranch:
-    """The program of all branches, and what it reads of constants alone."""
+    """The program of all branches, and the bindings of its constants."""
 
     program: Program
-    """Its outputs are the axes of every slot in some turn, and what refuses it; near a fold it has no answer."""
+    """Its outputs are the axes of every slot on any turn, and the refusal of the slot; near a fold it has no answer."""
     parts: tuple[Let, ...]
     counted: frozenset[sp.Symbol]
-    """The axes that are on their turn already, because another one moves with it."""
+    """The axes whose turn is already chosen, because another axis moves with it."""
 
 
 def can_be_unrolled(kin: Kinematics) -> bool:
@@ -57,32 +57,32 @@ def signs(kin: Kinematics) -> tuple[Sign, ...]:
 
 
 def trusted(kin: Kinematics) -> Program:
-    """One branch for input that is trusted, before its turns are let go. No turn is commanded."""
+    """One branch for trusted input, before the choice of its turns is removed. No turn is commanded."""
     given = specialised(kin.branch, {j.turn: sp.Integer(0) for j in kin.period_joints})
     return with_rotation_identities(with_added_angles(given, constants(kin)))
 
 
 def constants(kin: Kinematics) -> frozenset[str]:
-    """The names of what is computed once."""
+    """The names of the values that the setup computes."""
     return frozenset(o.name for o in kin.setup.outputs)
 
 
 def known_constants(kin: Kinematics) -> Sequence[Let]:
-    """Those that are computed from others."""
+    """The bindings of constants that are computed from other constants."""
     return [let for let in kin.setup.lets() if let.name.name in constants(kin)]
 
 
 @dataclass(frozen=True)
 class StraightLines:
-    """The inverse away from folds, for trusted input and axes in any turn: of all branches, and of one."""
+    """The inverse away from folds, for trusted input and axes on any turn: one program of all branches, one of one."""
 
     trusted: Program
-    """The one branch before it was lowered, and before its turns were let go."""
+    """One branch before it was lowered, and before the choice of its turns was removed."""
     every: Program
-    """Its outputs are the axes of every slot, and what refuses it."""
+    """The program whose outputs are the axes and the refusal of every slot."""
     one: Program
     parts: tuple[Let, ...]
-    """What both read of constants alone."""
+    """The bindings of the constants that both programs read."""
 
 
 @kept_by_identity(10)
@@ -109,7 +109,7 @@ def every_branch(kin: Kinematics, name: str) -> EveryBranch:
 
 
 def read_of(parts: Sequence[Let], program: Program) -> tuple[Let, ...]:
-    """The parts that a program reads, by way of others, too."""
+    """The parts that a program reads, directly or through other parts."""
     wanted, found = set(program.inputs), list[Let]()
     for part in reversed(parts):
         if part.name in wanted:

@@ -1,4 +1,4 @@
-"""What the inputs of a machine are called in a language: as the description calls them, wherever the language permits.
+"""The names of the inputs of a machine in a language: those of the description wherever the language permits them.
 
 One pass decides over all inputs of a machine. Names that can be used as they are come first, so that what replaces
 another name never takes the place of one of these.
@@ -25,13 +25,13 @@ class Spelling:
     """How a language writes the names of inputs."""
 
     wish: Callable[[Parameter], str]
-    """What an input should be called."""
+    """The wanted name of an input."""
     others: Callable[[Parameter, str], Iterator[str]]
-    """What it may be called instead, the best first, without an end."""
+    """Other names for the input, the best first; an endless iterator."""
     meaning: Callable[[str], str | None]
     """The other meaning that a name has in the language, in words."""
     same: Callable[[str], str] = str
-    """What two names have in common that the language reads as one."""
+    """The form in which the language compares names: two names with the same form are one."""
 
 
 @dataclass(frozen=True)
@@ -41,9 +41,9 @@ class Inputs:
     names: Mapping[str, str]
     """Name inside the derivation → name in the language."""
     notes: tuple[str, ...]
-    """A sentence for each input that is not called as its description calls it."""
+    """A sentence for each input that has not the name of its description."""
     inner: Mapping[str, str]
-    """Of `names` those that are called otherwise inside the derivation."""
+    """The entries of `names` that differ from the name inside the derivation."""
 
     def told(self, text: str) -> str:
         """A sentence about the derivation, in the names of the language."""
@@ -51,7 +51,7 @@ class Inputs:
 
 
 def inputs_of(kinematics: Kinematics, spelling: Spelling, taken: Mapping[str, str]) -> Inputs:
-    """The names of all inputs, and what is told of them.
+    """The names of all inputs, and the notes on them.
 
     taken: further names that an input cannot have, each with what it means.
     """
@@ -66,7 +66,7 @@ def inputs_of(kinematics: Kinematics, spelling: Spelling, taken: Mapping[str, st
         meanings[spelling.same(name)] = f'the input for "{p.meaning}"'
 
     stated = {p.name for p in kinematics.mechanism.parameters}
-    ordered = sorted(kinematics.parameters, key=lambda p: p.name in stated)  # those that every machine has come first
+    ordered = sorted(kinematics.parameters, key=lambda p: p.name in stated)  # inputs that every machine has come first
     refused: list[tuple[Parameter, str]] = []
     for p in ordered:
         wish = spelling.wish(p)
@@ -85,5 +85,5 @@ def inputs_of(kinematics: Kinematics, spelling: Spelling, taken: Mapping[str, st
 
 
 def word_of(parameter: Parameter) -> str:
-    """What a parameter is, in a word that can stand behind its name."""
+    """The kind of a parameter, as a word that can be appended to its name."""
     return _WORDS[parameter.role]

@@ -1,4 +1,4 @@
-"""What an output language is: a name, which is its folder, and functions from kinematics to files.
+"""The protocol of an output language: a name, which is its folder, and functions from kinematics to files.
 
 A language is one printer, which spells, and one folder of templates, which arrange. Neither computes.
 """
@@ -33,8 +33,8 @@ class Language(Protocol):
         """The folder below `generated/` and below `templates/`."""
 
     def part(self, kinematics: Kinematics) -> Part | None:
-        """What is written about one mechanism; it does not depend on the others. None where the language cannot hold
-        the mechanism.
+        """The texts about one mechanism, which do not depend on the others. None where the language cannot express the
+        mechanism.
         """
 
     def files(self, parts: Sequence[Part]) -> dict[str, str]:

@@ -13,7 +13,7 @@ from derive.emit.python.layout import formatted
 from derive.kinematics.kinematics import Kinematics
 
 _IMPORT = re.compile(rf"^( *(?:from|import) ){python.PACKAGE}\b", re.MULTILINE)
-"""What names the package inside it."""
+"""The lines inside the package that name it."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The native core of the Python package: the C of its machines, and what joins it with their classes."""
+"""The native core of the Python package: the C of its machines, and the extension that joins it with their classes."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 
 FOLDER = "native"
-"""Beside the package: what stands here is compiled, and never imported."""
+"""The folder beside the package whose files are compiled, and never imported."""
 _SHARED = ("batches.c", "batches.h", "lanes.h", "machine.c")
 _DIGITS = 16
 
 
 def key(kin: Kinematics) -> str:
-    """What a class and its C have in common: the module with a digest of the C. Empty where there is none."""
+    """The key that a class and its C have in common: the module with a digest of the C. Empty where there is no C."""
     found = c.part(kin)
     return "" if found is None else f"{found['index']['module']} {_digest(_sources(kin))}"
 
@@ -61,7 +61,7 @@ def extension(package: str) -> str:
 
 
 def shared(listed: Sequence[Mapping[str, Any]], package: str) -> dict[str, str]:
-    """The files of the core that hold no machine. listed: what the lists of the package say of each machine."""
+    """The files of the core that hold no machine. listed: the entry of each machine in the lists of the package."""
     known = {
         "extension": extension(package),
         "sources": digest_of_shared(),
@@ -78,7 +78,7 @@ def shared(listed: Sequence[Mapping[str, Any]], package: str) -> dict[str, str]:
 
 
 def digest_of_shared() -> str:
-    """The digest of what all machines share in C: structures, calls, and the object of Python."""
+    """The digest of the C that all machines share: structures, calls, and the Python object."""
     own = {path: _templates().get_template(f"{path}.j2").render() for path in _SHARED}
     return _digest({**c.shared(), **own})
 

@@ -1,4 +1,4 @@
-"""The setup program as every language without a base block writes it: what it computes, and which parameters it reads.
+"""The setup program for languages without a base block: its statements, and the parameters that it reads.
 
 Two steps are the same for every machine, and stand in the runtime of a language: the table of parameters tests the
 range of each parameter, and one call for each axis computes its range of motion.
@@ -33,7 +33,7 @@ def own_setup(kin: Kinematics, read: Collection[str]) -> Program:
 
 
 def parameters_read(kin: Kinematics, program: Program, found: Collection[Window]) -> list[Parameter]:
-    """The parameters that the setup program reads, but for the limits that it hands to the runtime."""
+    """The parameters that the setup program reads, except the limits that it passes to the runtime."""
     refusals = {window.refusal for window in found}
     values = [o.value for o in program.outputs] + [e for window in found for f in window.fallback for e in f]
     symbols = {s for value in values for s in symbols_of(value)}

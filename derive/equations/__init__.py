@@ -7,12 +7,12 @@ to the reference. Limits refuse, and never choose: where another turn is inside 
 
 axes: axis values to joint values and back, the choice of a turn, the checks of inputs
 chain_splits: a chain as T = L M S (Paul, Pieper), and the equations of its position at the best split
-choices: flags and signs of a machine: numbers in equations, choices in programs
-closures/: the closure equations: as data, as a mechanism states them, for what is commanded
-conditions: values of parameters that must not vanish, or the derivation does not hold
+choices: flags and signs of a machine, which are numbers in equations and choices in programs
+closures/: the closure equations: as data, as a mechanism states them, and for the commanded coordinates
+conditions: values of parameters that must not vanish where the derivation is to hold
 known_turns: rotations that are known: their matrices, and names for their entries
 limits: the test of the limits
-named_pose: the pose of a spatial chain, every entry of every frame under a name
+named_pose: the pose of a spatial chain, with a name for every entry of every frame
 pitch/: arms whose last turns alone follow the commanded rotation
 pose_at_axes: the pose at axis values as data: statements, position, entries of the rotation
 positions: the equations of the commanded position for the joints that are still unknown
@@ -20,5 +20,5 @@ problem: the problem that a rule gets, and the binding that it answers
 rotation_repair: the repair of a commanded rotation, once a call, before every other program
 rotations: the equations of the commanded rotation for the joints that are still unknown
 trigonometry: sines and cosines by their names
-windows: where an axis may be: constants of a machine, made of its limits
+windows: the range of every axis: constants of a machine, made of its limits
 """

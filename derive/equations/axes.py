@@ -38,7 +38,7 @@ _CHECK = "inputs must be numbers, and of reasonable size"
 
 
 def finite(symbols: Sequence[sp.Symbol]) -> tuple[Require, ...]:
-    """The condition that every input that is read is a number of reasonable size."""
+    """The condition that every given input is finite and of reasonable size."""
     conditions = list(map(_is_reasonable, symbols))
     reason = about_input(Why.NOT_GIVEN, _REASONABLE)
     return (Require(sp.And(*conditions), Status.BAD_INPUT, _CHECK, reason),) if conditions else ()
@@ -46,7 +46,7 @@ def finite(symbols: Sequence[sp.Symbol]) -> tuple[Require, ...]:
 
 @cache
 def _is_reasonable(symbol: sp.Symbol) -> sp.Basic:
-    """The condition for one of them. Cached: machines share the names of their inputs."""
+    """The condition for one input. Cached: machines share the names of their inputs."""
     return compared(sp.Le, sp.Abs(symbol), LARGEST)
 
 
@@ -67,8 +67,8 @@ def _motor_and_joint(value: sp.Expr, motor: sp.Symbol, joint: sp.Symbol, gear: t
 
 
 def _axis_of(joint: Joint, value: sp.Expr) -> sp.Expr:
-    """The axis value at a joint value in units of the axis: without gear, with its coupling subtracted, and its
-    offset.
+    """The axis value of a joint value that is given in units of the axis: its coupling is subtracted, its gear undone,
+    its offset added.
     """
     if not joint.is_geared:
         return value + joint.offset - joint.coupling / joint.unit
@@ -76,7 +76,7 @@ def _axis_of(joint: Joint, value: sp.Expr) -> sp.Expr:
 
 
 def reference_lets(mechanism: Mechanism) -> tuple[Let, ...]:
-    """Joint values at the reference: `reference_a1`, taken where nothing else determines the joint."""
+    """Joint values at the reference, such as `reference_a1`: the value of a joint that nothing else determines."""
     table = {j.motor: _reference_motor(j) for j in mechanism.joints}
     lets: list[Let] = []
     for joint in mechanism.joints:
@@ -115,7 +115,7 @@ def axis_lets(joint: Joint) -> tuple[Let, ...]:
 
 
 def _turned(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
-    """The axis value of a joint with a gear: its turn is chosen in degrees of the joint, counted as the axis counts."""
+    """The axis value of a joint with a gear: its period is chosen in degrees of the joint, in the sense of the axis."""
     turned = real(f"turned_{joint.key}")
     direction = Atan2(joint.sense * sine(joint.symbol), cosine(joint.symbol))
     shift = joint.turns * joint.offset - joint.sense * joint.coupling / joint.unit
@@ -127,10 +127,10 @@ def _turned(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
 
 
 def _near(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
-    """The axis value to which the nearest period is chosen: of the commanded turn, the middle of the limits, or the
+    """The axis value next to which the period is chosen: that of the commanded turn, the middle of the limits, or the
     reference. With a gear it is in degrees of the joint.
 
-    The middle is taken where one value at most lies inside the limits. In wider limits another value inside may be a
+    The middle is taken where at most one value lies inside the limits. In wider limits another value inside may be a
     whole turn away, so limits never choose there: they only refuse. The reference is compared joint by joint, because
     with gear coupling an axis moves with its neighbours.
     """

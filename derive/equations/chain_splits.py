@@ -101,15 +101,15 @@ def split_positions(chain: Chain, point: tuple[sp.Expr, ...], commanded: Command
 
 
 def _split(factors: Sequence[Factor], target: Target, unknowns: Unknowns) -> tuple[Equation, ...]:
-    """The equations seen from behind the first joints, up to the first that turns, if more of them have one unknown
-    than those seen from the base.
+    """The equations in a frame behind some of the first joints, up to the first that turns, if more of them have one
+    unknown than in the frame of the base.
     """
     seen = views(factors, target, unknowns)
     return max(seen, key=lambda equations: _alone(equations, unknowns))  # max keeps the first of equals
 
 
 def views(factors: Sequence[Factor], target: Target, unknowns: Unknowns) -> list[tuple[Equation, ...]]:
-    """The equations seen from the base, and from behind every joint up to the first that turns."""
+    """The equations in the frame of the base, and in the frame behind every joint up to the first that turns."""
     moving = [i for i, f in enumerate(factors) if f.amount.free_symbols & {*unknowns.angles, *unknowns.lengths}]
     turning = next((k for k, i in enumerate(moving) if factors[i].motion is Motion.TURN), 0)
     return [_equations(factors, first, target, unknowns) for first in (-1, *moving[: turning + 1])]
@@ -139,7 +139,7 @@ def _behind_the_wrist(
 
 
 def _with_shifts_in_front(factors: Sequence[Factor], columns: Sequence[int]) -> tuple[Factor, ...]:
-    """The same chain, with every shift across the commanded columns in front of the turns about its own direction."""
+    """An equal chain: every shift across the commanded columns stands in front of the turns about its own direction."""
     found: list[Factor] = []
     for factor in factors:
         place = len(found)
@@ -189,8 +189,8 @@ def _wrist(point: sp.Matrix, rotation: sp.Matrix, seen: Sequence[sp.Expr]) -> Ta
 
 
 def _equations(factors: Sequence[Factor], first: int, target: Target, unknowns: Unknowns) -> tuple[Equation, ...]:
-    """The equations of the point in the frame behind the joint at `first` and the links fixed to it; -1: in that of the
-    base.
+    """The equations of the point in the frame behind the joint at `first` and the links fixed to it; where `first` is
+    -1, in the frame of the base.
     """
     moving = {*unknowns.angles, *unknowns.lengths}
     end = first + 1

@@ -26,7 +26,7 @@ _NAMED = {Role.FLAG: flag, Role.SIGN: count}
 
 
 def input_of(parameter: Parameter) -> sp.Symbol:
-    """The name of a parameter as the setup reads it: of a flag a Boolean, of a sign an integer."""
+    """The name of a parameter as the setup reads it: a flag is a Boolean there, a sign an integer."""
     return _NAMED.get(parameter.role, real)(parameter.name)
 
 
@@ -70,7 +70,7 @@ def _chosen(value: sp.Basic, name: str) -> sp.Basic:
 
 
 def _asked(value: Relational, name: str) -> sp.Basic:
-    """A comparison: the flag itself, or its negative, where the flag alone decides it."""
+    """A comparison; where the flag alone decides it, the flag itself or its negation."""
     holds, fails = (value.xreplace({real(name): sp.Integer(number)}) for number in (1, 0))
     if holds == fails or {holds, fails} == {sp.true, sp.false}:
         return holds if holds == fails else flag(name) if holds == sp.true else sp.Not(flag(name))

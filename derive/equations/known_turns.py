@@ -1,4 +1,4 @@
-"""Rotations that are known: their matrices, and the names of what is seen in a frame behind or in front of them.
+"""Known rotations: their matrices, and names for coordinates in a frame behind them or in front of them.
 
 `x_from_a12` is an x in the frame behind A1 and A2, `r13_before_a6` an entry of the rotation in front of A6.
 """
@@ -20,14 +20,14 @@ from derive.ir.symbols import COORDINATE_NAMES, real
 
 @dataclass(frozen=True)
 class Side:
-    """The known rotations at one end of the chain, which names of entries end in."""
+    """The known rotations at one end of the chain, from which the endings of names are made."""
 
     word: str
     end: str
     joints: tuple[str, ...] = ()
     """Base first."""
     fixed: int = 0
-    """The number of oblique fixed rotations since the last joint: one by right angles only permutes the entries."""
+    """The number of fixed rotations since the last joint, without those by right angles, which only permute entries."""
 
     def behind(self, joints: tuple[str, ...], turn: Factor) -> Side:
         """The side with one more rotation."""
@@ -53,13 +53,13 @@ def is_unknown(problem: Problem, factor: Factor) -> bool:
 
 
 def joints_of(problem: Problem, turn: Factor) -> tuple[str, ...]:
-    """The names of the joints of a rotation: of `a23 - a2`, A3."""
+    """The names of the joints of a rotation: A3 for `a23 - a2`."""
     turned = sp.expand(turn.amount.xreplace(dict(problem.sums)))
     return tuple(a.name for a in problem.units if a in turned.free_symbols)
 
 
 def matrix_of(problem: Problem, turn: Factor, lets: list[Let]) -> sp.Matrix:
-    """The matrix of a known rotation; the cosine and sine of a sum of angles by their names."""
+    """The matrix of a known rotation, with names for the cosine and sine of a sum of angles."""
     matrix = sp.Matrix(turn.matrix()[:3, :3])
     table: dict[sp.Expr, sp.Expr] = {}
     for function in sorted(matrix.atoms(sp.sin, sp.cos), key=sp.default_sort_key):
@@ -73,12 +73,12 @@ def matrix_of(problem: Problem, turn: Factor, lets: list[Let]) -> sp.Matrix:
 
 
 def named_entries(entries: sp.Matrix, word: str, lets: list[Let]) -> sp.Matrix:
-    """The entries of a rotation by names of their own, where they are more than a name."""
+    """The entries of a rotation; an entry that is more than a name gets a name."""
     return sp.Matrix(3, 3, lambda i, j: _named(entries[i, j], f"r{i + 1}{j + 1}{word}", lets))
 
 
 def named_point(point: sp.Matrix, word: str, lets: list[Let]) -> sp.Matrix:
-    """The coordinates of a point by names of their own, where they are more than a name."""
+    """The coordinates of a point; a coordinate that is more than a name gets a name."""
     return sp.Matrix([_named(v, f"{c}{word}", lets) for c, v in zip(COORDINATE_NAMES, point, strict=True)])
 
 

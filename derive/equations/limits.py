@@ -1,4 +1,4 @@
-"""The test of the limits; where it refuses, the axes that may be inside their limits on another turn."""
+"""The test of the limits. Where it refuses, it states which axes may be inside their limits on another turn."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def limits_program(mechanism: Mechanism) -> Program:
 
 
 def _inside(key: str, value: sp.Symbol, reason: Reason, note: str) -> tuple[Require, Require]:
-    """Not below the lower end, and not above the upper one; each with its own reason and amount."""
+    """The conditions for the lower and for the upper end, each with its own reason and amount."""
     (lowest,), (highest,) = _ends(key)
     below, above = (
         replace(reason, why=Why.BELOW, amount=lowest - value),
@@ -62,12 +62,12 @@ def _unit(is_angle: bool) -> Unit:
 
 
 def value_of(quantity: Limited) -> sp.Symbol:
-    """What programs call the value of a quantity."""
+    """The name of a quantity's value in programs."""
     return real(f"value_{quantity.name}")
 
 
 def _other_turns(mechanism: Mechanism) -> dict[str, tuple[OtherTurn, ...]]:
-    """By the key of an axis or a quantity: the axes whose turn its limits may refuse, the last one first."""
+    """For the key of an axis or a quantity: the axes whose turn its limits may refuse, the last axis first."""
     found = {j.key: (_other_turn(j),) for j in mechanism.period_joints}
     return found | {q.name: tuple(_of_quantity(q, mechanism)) for q in mechanism.limited if q.is_angle}
 
@@ -79,7 +79,7 @@ def _other_turn(joint: Joint) -> OtherTurn:
 
 
 def _of_quantity(quantity: Limited, mechanism: Mechanism) -> Iterator[OtherTurn]:
-    """The axes that turn a quantity once per turn, inside their own limits and those of the quantity."""
+    """The axes that change a quantity by one turn per turn, with their own limits and those of the quantity."""
     value = value_of(quantity)
     low, high = _ends(quantity.name)
     for joint in reversed(mechanism.joints):

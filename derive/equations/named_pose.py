@@ -1,4 +1,4 @@
-"""The pose of a spatial chain, frame by frame, every entry of every frame under a name.
+"""The pose of a spatial chain, frame by frame, with a name for every entry of every frame.
 
 `r13_at_a23` is the x component of the z axis behind A2 and A3, in the frame of the base; `x_at_a4` is the x of axis A4.
 Consecutive rotations about parallel axes are one rotation by the sum of their angles, so that `cos(a2 + a3)` stays one
@@ -99,7 +99,7 @@ class _Frames:
         return tuple((c[0], c[1], c[2]) for c in columns)
 
     def _frame(self) -> str:
-        """The name of the frame: that of the angles of its rotation, or of the joint in front of a fixed rotation."""
+        """The name of the frame: that of its angle, or of the joint in front where its rotation is fixed."""
         assert self._turn is not None
         angles = [a for a in angles_of(self.mechanism) if a in self._turn.amount.free_symbols]
         terms = terms_of(self._turn.amount, angles) or tuple((a, 1) for a in angles)

@@ -1,8 +1,8 @@
 """The equations of the commanded position for the joints of a chain that are still unknown: L^-1 p = M.
 
 They are written again whenever joints become known: the known frames at the base are moved to the side of the commanded
-point, one after the other, each coordinate under a name: `x_from_c` is the x of the point in the frame behind C. Where
-the rotations of a machine are known, every slide that they carry is then alone in its equation.
+point, one after the other, and each coordinate gets a name: `x_from_c` is the x of the point in the frame behind C.
+Where the rotations of a machine are known, every slide behind them is then alone in its equation.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ def positions_and_distance(problem: Problem) -> tuple[Equation, ...]:
 
 
 def positions_from_flange(problem: Problem) -> tuple[Equation, ...]:
-    """The same of the point in which the first joints intersect, seen from the flange: once joints behind it are known
-    it may hold one of the others alone.
+    """`positions` for the point in which the first joints intersect, seen from the flange: once joints between the two
+    are known, an equation may hold one other joint alone.
     """
     if problem.back is None or problem.pending:
         return ()
@@ -62,7 +62,7 @@ def positions_from_flange(problem: Problem) -> tuple[Equation, ...]:
 
 
 def behind_known(problem: Problem, side: Side) -> tuple[list[Factor], sp.Matrix, Side, list[Let]]:
-    """The links behind the known joints at the base, the point seen from there, the frame, and what binds names."""
+    """The links behind the known joints at the base, the point seen from there, the frame, and bindings of names."""
     links = list(problem.links)
     point, lets = sp.Matrix(problem.point), list(problem.point_lets)
     while links and not is_unknown(problem, links[0]):

@@ -1,4 +1,4 @@
-"""The problem that the solver works on, unknowns and equations, and the binding that a subproblem answers."""
+"""The problem that the solver works on, with unknowns and equations, and the binding that a subproblem returns."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ from derive.ir.program import (
 from derive.ir.symbols import cosine, names_in, real, sine
 
 _NUMBER = 1e-9
-"""A sum of numbers is zero where it is at most this share of its terms."""
+"""A sum of numbers counts as zero where it is at most this share of its terms."""
 
 
 @dataclass(frozen=True)
 class Column:
-    """One column of a known rotation: the squares of its entries add up to one."""
+    """One column of a known rotation, whose squared entries add up to one."""
 
     entry: sp.Expr
-    """One of them; or a polar radius, of one of them and another value."""
+    """One entry; or a polar radius, of one entry and another value."""
     others: sp.Expr
-    """The sum of the squares of the other two, of a polar radius less that of the other value."""
+    """The sum of the squares of the other two entries; of a polar radius, less the square of the other value."""
     lets: tuple[Let, ...]
-    """The statements that bind all three."""
+    """The statements that bind all three entries."""
     size: sp.Expr = sp.Integer(1)
-    """The largest value of the entry: a length of the machine where it is multiplied by one."""
+    """The largest value of the entry: a length of the machine where the entry is multiplied by one."""
     beside: sp.Expr = sp.Integer(0)
     """The other value of a polar radius."""
 
     @property
     def terms(self) -> sp.Expr:
-        """The sum of the sizes of what `others` is made of, over the square of the largest value."""
+        """The sum of the sizes of the terms of `others`, over the square of the largest value."""
         return (self.others + 2 * self.beside**2) / self.size**2
 
 
@@ -51,7 +51,7 @@ class Equation:
     expression: sp.Expr
     lets: tuple[Let, ...] = ()
     scales: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    """By an unknown: the largest derivative, where it is made of parameters alone. Margins are divided by it."""
+    """For an unknown, the largest derivative by it, where parameters alone determine it. Margins are divided by it."""
     is_length: bool = True
     """Whether its terms are lengths; those of a rotation have no unit."""
     column: Column | None = None
@@ -79,7 +79,7 @@ class Legs:
     across: sp.Expr
 
     def renamed(self, names: Mapping[sp.Symbol, sp.Expr]) -> Legs:
-        """The same with other names."""
+        """A copy with other names."""
         return Legs(*(getattr(self, f.name).xreplace(names) for f in fields(self)))
 
 
@@ -92,17 +92,17 @@ class Swing:
 
     cos: sp.Symbol
     sin: sp.Symbol
-    """Their names; where b is zero those of u itself."""
+    """The names of sine and cosine of s; where b is zero, those of u itself."""
     along: sp.Expr
     across: sp.Expr
     is_coarse: bool = False
-    """Whether e is a polar radius, or an entry of a rotation, whose other entries do not replace it near one: the root
-    may round to zero where they are not zero."""
+    """Whether e is a polar radius, or an entry of a rotation that the other entries cannot replace near one: the root
+    may then round to zero where those entries are not zero."""
     terms: sp.Expr | None = None
-    """Where they do: the sum of the sizes of what the squared sine is made of, whose digits the root has."""
+    """Where they can replace it: the sum of the sizes of the terms of the squared sine, whose digits the root has."""
 
     def renamed(self, names: Mapping[sp.Symbol, sp.Expr]) -> Swing:
-        """The same with other names."""
+        """A copy with other names."""
         cos_s, sin_s, along, across = (v.xreplace(names) for v in (self.cos, self.sin, self.along, self.across))
         terms = None if self.terms is None else self.terms.xreplace(names)
         return replace(self, cos=cos_s, sin=sin_s, along=along, across=across, terms=terms)
@@ -138,7 +138,7 @@ class StepDeterminant:
         return sign_of(self.step)
 
     def renamed(self, names: Mapping[sp.Symbol, sp.Expr]) -> StepDeterminant:
-        """The same with other names of what earlier steps bind."""
+        """A copy with other names for the values that earlier steps bind."""
         return replace(
             self,
             value=self.value.xreplace(names),
@@ -175,7 +175,7 @@ class Conditioning:
     value: sp.Expr
     scale: sp.Expr
     word: str = "free"
-    """Where it vanishes the angle is "free", or two solutions "meet" of which the machine has one."""
+    """What happens where it vanishes: the angle is "free", or two solutions "meet" of which the machine has one."""
 
     @property
     def name(self) -> str:
@@ -185,7 +185,7 @@ class Conditioning:
 
 @dataclass(frozen=True)
 class Binding:
-    """The answer of a subproblem: statements that bind unknowns, and the determinant and the conditioning of the step,
+    """The result of a subproblem: statements that bind unknowns, and the determinant and the conditioning of the step,
     which vanish in its singularities.
     """
 
@@ -261,7 +261,8 @@ class Problem:
     numbers: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     """The values of names that stand for numbers: those of a chain, their sines and cosines."""
     fixed: tuple[sp.Symbol, ...] = ()
-    """The same once no other equation is left: a determinant made of them becomes a condition on the machine."""
+    """The names made of parameters alone, set once no other equation is left: a determinant made of them then becomes a
+    condition on the machine."""
     definitions: Mapping[sp.Symbol, sp.Expr] | None = None
     """The polynomials that known names stand for, to test whether an expression is zero."""
 
@@ -281,7 +282,7 @@ class Problem:
         return (*(u for u in self.lengths if u in present), *angles)
 
     def reduce(self, expression: sp.Expr) -> sp.Expr:
-        """The normal form of an expression with known names written out: zero if and only if the expression is."""
+        """The normal form of an expression with known names written out: zero if and only if the expression is zero."""
         definitions = self.definitions or {}
         while expression.free_symbols & definitions.keys():
             expression = expression.xreplace(dict(definitions))
@@ -308,7 +309,7 @@ class Problem:
         return self.is_never_zero(determinant) or bool(self.conditions(determinant))
 
     def conditions(self, determinant: sp.Expr) -> tuple[sp.Expr, ...]:
-        """What a machine must have other than zero, where the determinant of equations is made of parameters alone."""
+        """The values that a machine must not have at zero, where a determinant is made of parameters alone."""
         if not self.fixed or self.is_never_zero(determinant):
             return ()
         reduced = self.reduce(determinant)

@@ -1,10 +1,10 @@
-"""A rotation that a caller gives: refused where it is none, repaired where rounding has bent it, otherwise used bit for
-bit.
+"""A rotation that a caller gives: a matrix that is no rotation is refused, a rounded one is repaired, any other is used
+bit for bit.
 
-A frame may have passed through single precision. The repair keeps the direction of the tool: z is normalised, x is made
-perpendicular to it and normalised, and y = z × x. It runs once a call, before everything else; all other programs read
-a rotation that is orthogonal to all digits. Nearly every frame is a rotation to rounding, which `surely_exact` tells
-with half of the operations.
+A frame may have been stored in single precision. The repair keeps the direction of the tool: z is normalised, x is made
+perpendicular to it and normalised, and y = z × x. The repair runs once a call, before everything else; all other
+programs read a rotation that is orthogonal to all digits. Nearly every frame is a rotation but for rounding, which
+`surely_exact` finds out with half of the operations.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _PAIRS = ((0, 1), (0, 2), (1, 2))
 
 @cache
 def rotation_program() -> Program:
-    """r11 … r33 as given → as they are used. The program is the same for every mechanism that reads a rotation."""
+    """The program from r11 … r33 as given to r11 … r33 as used: the same for every mechanism that reads a rotation."""
     columns = [_GIVEN[:, k] for k in range(3)]
     sizes = [Let(real(f"uneven_{c}"), sp.Abs(v.dot(v) - 1)) for c, v in zip(_COLUMNS, columns, strict=True)]
     angles = [Let(real(f"askew_{_COLUMNS[i]}{_COLUMNS[j]}"), sp.Abs(columns[i].dot(columns[j]))) for i, j in _PAIRS]

@@ -1,7 +1,7 @@
 """The equations of the commanded rotation for the rotations of a chain that are still unknown: L^-1 R S^-1 = M.
 
 They are written again whenever an angle becomes known: the known rotations at both ends are moved to the side of the
-commanded one, one after the other, each entry under a name: `r13_from_a12` is r13 in the frame behind A1 and A2,
+commanded one, one after the other, and each entry gets a name: `r13_from_a12` is r13 in the frame behind A1 and A2,
 `r13_before_a6` is r13 of the frame in front of A6.
 """
 
@@ -27,7 +27,7 @@ _MOST_UNKNOWN = 2
 
 
 def rotations(problem: Problem) -> tuple[Equation, ...]:
-    """The entries of L^-1 R S^-1 = M that depend on unknown angles; of a pitch its own equations."""
+    """The entries of L^-1 R S^-1 = M that depend on unknown angles; for a pitch, its own equations."""
     if problem.followed:
         return followed_entries(problem) if problem.turns else ()
     return tuple(e for e in _entries(problem) if problem.unknowns_of(e.expression))
@@ -75,7 +75,7 @@ def _entry_equations(
 
 
 def _column(entries: sp.Matrix, row: int, lets: tuple[Let, ...]) -> Column | None:
-    """What an entry has to do with the others of its column; None where it has no name."""
+    """The column of an entry, with its other two entries; None where the entry has no name."""
     entry = entries[row] if entries[row].is_Symbol else -entries[row]
     others = sp.Add(*[entries[k] ** 2 for k in range(3) if k != row])
     return Column(entry, others, needed(lets, entry + others)) if entry.is_Symbol else None

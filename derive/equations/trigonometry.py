@@ -1,4 +1,4 @@
-"""Sines and cosines by their names: `cos_a12` for the cosine of A1 + A2."""
+"""Names for sines and cosines: `cos_a12` for the cosine of A1 + A2."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _FUNCTIONS = ((sine, sp.sin), (cosine, sp.cos))
 
 
 def heading_at_joints(mechanism: Mechanism) -> tuple[Let, ...]:
-    """Cosine and sine of the heading of a loop, at joint values; nothing where its equations alone hold the pose."""
+    """Cosine and sine of the heading of a loop at joint values; empty for a loop without a heading."""
     if mechanism.heading is None:
         return ()
     lets, values = named_trigonometry(mechanism, [sp.cos(mechanism.heading), sp.sin(mechanism.heading)])

@@ -1,4 +1,4 @@
-"""Where an axis may be: the part of the setup program that makes constants of its limits.
+"""The range of every axis: the part of the setup program that computes constants from its limits.
 
 Where a controller hands over the limits of its drives, `limits_of_axis` narrows those of the machine by them.
 """
@@ -27,12 +27,12 @@ from derive.ir.verify import verify
 from derive.kept import kept_by_identity
 
 Fallback = tuple[tuple[sp.Basic, sp.Expr, sp.Expr], ...]
-"""(condition, lower, upper) where no limit is given; the last one counts."""
+"""(condition, lower, upper) for the case that no limit is given; only the last one counts."""
 
 
 @dataclass(frozen=True)
 class Window:
-    """Where an axis or a limited quantity may be, by the last part of the names of its limits."""
+    """The range of an axis or of a limited quantity. `key` is the last part of the names of its limits."""
 
     key: str
     fallback: Fallback = ()
@@ -43,24 +43,24 @@ class Window:
 
     @property
     def given(self) -> tuple[str, str]:
-        """The parameters: the lower and the upper limit."""
+        """The names of the parameters: the lower and the upper limit."""
         return f"lower_{self.key}", f"upper_{self.key}"
 
     @property
     def refusal(self) -> Reason:
-        """Why parameters are refused that are no limits."""
+        """The reason why parameters are refused that are no limits."""
         return about_parameters(f"lower_{self.key} below upper_{self.key}, or both 0")
 
     @cached_property
     def ordered(self) -> Require:
-        """The condition on them."""
+        """The condition that the parameters are limits."""
         lower, upper = map(real, self.given)
         condition = sp.Or(compared(sp.Lt, lower, upper), compared(sp.Le, sp.Abs(lower) + sp.Abs(upper), 0))
         return Require(condition, Status.NOT_INITIALIZED, reason=self.refusal)
 
     @cached_property
     def limits(self) -> tuple[Let, ...]:
-        """The limits that hold, given or not."""
+        """The limits in force, whether they were given or not."""
         lower, upper = map(real, self.given)
         low, high, unlimited = self._effective
         low_value, high_value, free = lower, upper, compared(sp.Le, sp.Abs(lower) + sp.Abs(upper), 0)
@@ -79,18 +79,16 @@ class Window:
 
     @property
     def limit_outputs(self) -> list[Output]:
-        """The limits that hold, as constants."""
+        """The limits in force, as constants."""
         low, high, unlimited = self._effective
         names = (*self.given, f"unlimited_{self.key}")
         return [Output(name, value) for name, value in zip(names, (low, high, unlimited), strict=True)]
 
     @cached_property
     def ends(self) -> tuple[Let, ...]:
-        """The ends that are tested, which are the limits and their tolerance; and of an axis with turns what chooses
-        one.
-
-        That is whether the axis has one value inside its limits at most, with a gap that no step crosses; and the
-        middle of its range.
+        """The ends that are tested, which are the limits widened by their tolerance. For an axis with periods also the
+        values that choose one: whether at most one value of the axis lies inside its limits, with a gap that no step
+        crosses, and the middle of its range.
         """
         low, high, unlimited = self._effective
         tolerance = real(f"tolerance_{self.key}")
@@ -113,7 +111,7 @@ class Window:
 
     @property
     def outputs(self) -> list[Output]:
-        """The same as constants."""
+        """The values of `ends`, as constants."""
         words = ("lowest", "highest", "single", "mid") if self.has_turns else ("lowest", "highest")
         named = {"single": flag}
         return [Output(f"{word}_{self.key}", named.get(word, real)(f"{word}_{self.key}")) for word in words]
@@ -126,13 +124,13 @@ class Window:
 
 @kept_by_identity(10)
 def windows(mechanism: Mechanism) -> tuple[Window, ...]:
-    """Of all axes, then of all limited quantities."""
+    """The windows of all axes, then of all limited quantities."""
     axes = (Window(j.key, _fallback(j), has_turns=j.multi_turn, is_axis=True, turns=j.turns) for j in mechanism.joints)
     return (*axes, *(Window(quantity.name) for quantity in mechanism.limited))
 
 
 def _fallback(joint: Joint) -> Fallback:
-    """Where no limit is given: those of a carried pitch, or what the closure allows."""
+    """The limits where none is given: those of a helical joint, or the range that the closure allows."""
     found: list[tuple[sp.Basic, sp.Expr, sp.Expr]] = []
     if joint.pitch != 0 and joint.limit_range is not None:
         low, high = (sp.Integer(int(v)) for v in joint.limit_range)
@@ -147,7 +145,7 @@ def limits_of_axis() -> Program:
     """The limits of an axis of the machine and those of its drive together, for any axis.
 
     own_unlimited own_lower own_upper, drive_limited drive_lower drive_upper → lowest highest single middle: both ends
-    with their tolerance, whether at most one turn is inside, and the middle. A drive that has handed over nothing has
+    with their tolerance, whether at most one turn is inside, and the middle. A drive that has reported nothing has
     no limits: `drive_limited` is false, and its ends are not read.
     """
     axis = rotary("axis", "any axis")
@@ -191,4 +189,4 @@ _OF_ANY_AXIS = {
     "single": ("single", _FLAG),
     "mid": ("middle", _REAL),
 }  # fmt: skip
-"""The names of the limits of an axis, where no axis is named."""
+"""The names of the limits of an axis in a program that serves every axis."""

@@ -122,8 +122,8 @@ def flip_x(flag: object) -> Chain:
 
 
 def denavit_hartenberg(*rows: tuple[object, object, object, object]) -> Chain:
-    """A chain by its table, a row a joint: angle about z, distance along z, length along x, twist about x (angles in
-    radians).
+    """A chain from its table, one row for each joint: angle about z, distance along z, length along x, twist about x
+    (angles in radians).
     """
     factors = (f for angle, d, a, twist in rows for f in (Rz(angle) * Tz(d) * Tx(a) * Rx(twist)).factors)
     return Chain(tuple(f for f in factors if f.amount != 0))

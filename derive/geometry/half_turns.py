@@ -1,7 +1,8 @@
-"""Fixed half turns of a chain that turns about z alone: they stand at its end, as flips of the flange.
+"""Fixed half turns of a chain that turns about z alone: they are moved to its end, as flips of the flange.
 
 A ceiling SCARA begins with Rx(pi), a table of Denavit and Hartenberg has a twist of pi before the quill, a tool that
-points down ends in Rx(pi). Rx(pi) Rz(a) = Rz(-a) Rx(pi): each is the same chain with a half turn behind its joints.
+points down ends in Rx(pi). Since Rx(pi) Rz(a) = Rz(-a) Rx(pi), each equals a chain with the half turn behind its
+joints.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from derive.geometry.frames import Chain, Factor, Motion
 
 
 def with_half_turns_last(chain: Chain) -> Chain:
-    """The chain with its fixed half turns about x and y as flips at its end; where other turns than those about z would
-    be left, the chain itself.
+    """The chain with its fixed half turns about x and y moved to its end as flips. Where turns about other axes than z
+    would be left, the chain is unchanged.
     """
     signs = [1, 1, 1]
     moved: list[Factor] = []
@@ -44,10 +45,10 @@ _FIXED: Mapping[tuple[int, ...], tuple[Factor, ...]] = {
     (-1, 1, -1): (Factor(Motion.FLIP, 1, sp.Integer(1)),),
     (-1, -1, 1): (Factor(Motion.TURN, 2, sp.pi),),
 }
-"""The diagonal of a rotation by half turns, and what stands for it at the end of a chain."""
+"""For the diagonal of each rotation by half turns, the factors that replace it at the end of a chain."""
 
 
 def _is_half_turn(factor: Factor) -> bool:
     if factor.motion is not Motion.TURN or factor.axis == 2 or not isinstance(factor.amount, sp.Expr):
-        return False  # what is no angle is refused later, in its own words
+        return False  # an amount that is no angle is refused later, with its own message
     return bool((factor.amount / sp.pi).is_odd)

@@ -6,10 +6,10 @@ arms/: the robot as lines in space, and its chain in the simple form
 branches: the branches of common arms: shoulder, elbow, wrist
 expressions: amounts of a chain as Python text
 formats/: the readers of robot files
-importing: the whole import: read, put back what was rounded, bring into the simple form, write, tell
+importing: the whole import: read, undo rounding, bring into the simple form, write, report
 line: the command line of an import
 naming: names of axes, parameters and blocks, made of the names in the file
-report: what an import tells its user
-robot: what a robot file says, as data in which no file format shows
+report: the report of an import for its user
+robot: the content of a robot file, as data that are independent of the file format
 writing: a description as text
 """

@@ -1,8 +1,8 @@
-"""Branches that the arms of the field have, named after what the two solutions look like.
+"""The usual branches of robot arms, named after the shapes of the two solutions.
 
 shoulder: the wrist in front of axis 1 or behind it. elbow: the two links of a pair of axes bent one way or the other.
-wrist: the sine (or cosine) between the first and the last axis of a wrist. Where a chain is none of these, no branch is
-named here, and the derivation names its own.
+wrist: the sine (or cosine) of the angle between the first and the last axis of a wrist. For other chains no branch is
+named here, and the derivation names its branches.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def _turned(passed: Sequence[tuple[int, sp.Expr]], vector: sp.Matrix) -> sp.Matr
 
 
 def branches(pieces: Sequence[Piece], amounts: Sequence[sp.Expr], task: Followed) -> tuple[Named, ...]:
-    """The branches of an arm; none where it is none that has names."""
+    """The branches of an arm; none where they have no usual names."""
     held = set(task.held)
     turns = [
         k
@@ -101,7 +101,7 @@ def branches(pieces: Sequence[Piece], amounts: Sequence[sp.Expr], task: Followed
 
 
 def _is_arm(arm: Skeleton) -> bool:
-    """Whether the second and the third axis are parallel, and the first one is square to them."""
+    """Whether the second and the third axis are parallel, and the first one is at right angles to them."""
     return arm.letter(0) != arm.letter(1) == arm.letter(2) and arm.is_shifted(0, 1) and arm.is_shifted(1, 2)
 
 
@@ -135,13 +135,13 @@ def _wrist(arm: Skeleton, first: int) -> Named | None:
 
 
 def _shoulder(arm: Skeleton, centre: int) -> Named:
-    """How far the wrist is in front of the first axis, square to the first two."""
+    """The distance of the wrist in front of the first axis, at right angles to the first two axes."""
     forward = 3 - arm.letter(0) - arm.letter(1)
     return Named("shoulder", sp.expand(arm.along(arm.turns[0], centre)[forward]), ("front", "back"))
 
 
 def _elbow(arm: Skeleton, before: int, at: int, end: int, names: tuple[str, str]) -> Named:
-    """The links before and behind an axis, crossed: zero where they are stretched or folded."""
+    """The cross product of the links before and behind an axis: zero where they are stretched or folded."""
     letter = arm.letter(at)
     i, j = (letter + 1) % 3, (letter + 2) % 3
     first = _back(arm, arm.turns[before], arm.turns[at])
@@ -151,7 +151,7 @@ def _elbow(arm: Skeleton, before: int, at: int, end: int, names: tuple[str, str]
 
 
 def _up(arm: Skeleton, letter: int) -> int:
-    """Which way round an axis turns a link up: +1 where it does as y does, with axis 1 along z and x in front."""
+    """The sense in which an axis turns a link up: +1 where it turns as y does, with axis 1 along z and x in front."""
     return -1 if (letter - arm.letter(0)) % 3 == 1 else 1
 
 

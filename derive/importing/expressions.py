@@ -14,7 +14,7 @@ from derive.importing.arms.snapping import STEP, nearest_angle
 from derive.importing.naming import parameter_meaning, parameter_name
 
 _DIGITS = 14
-"""Decimal digits of the machine's size that a length is written with: more are rounding of the calculation."""
+"""The decimal digits, relative to the machine's size, with which a length is written: further ones are rounding."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Dimension:
 
     @property
     def variable(self) -> str:
-        """What the file calls it."""
+        """Its name in the file."""
         return self.name.upper()
 
 

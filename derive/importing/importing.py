@@ -1,4 +1,4 @@
-"""From a robot file to a description: read, snap, bring into simple form, write, and tell what was done."""
+"""From a robot file to a description: read, snap, bring into simple form, write, and report."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ SNAP = 1e-6
 UNITS = {"mm": 1000.0, "m": 1.0}
 _LARGEST_SNAP = 0.05
 _SLIDE = 2.0
-"""A slide without limits reaches this many sizes, for the bound on forward kinematics."""
+"""The assumed travel of a slide without limits, in sizes of the machine, for the bound on forward kinematics."""
 Reader = Callable[[Path, str | None, str | None, float], Robot]
 
 
 @dataclass(frozen=True)
 class Options:
-    """How to import: the links between which the chain is, what may be snapped, the unit of length, what is held."""
+    """The options of an import: the end links of the chain, the snapping limit, the unit of length, the held joints."""
 
     base: str | None = None
     tip: str | None = None
@@ -45,18 +45,18 @@ class Options:
 
 @dataclass(frozen=True)
 class Imported:
-    """A description, and what has to be known about it."""
+    """A description, and the facts to report about it."""
 
     name: str
     text: str
     report: str
     moved: tuple[Snapped, ...]
     bounds: Bounds
-    """How far forward kinematics of the description can be from the file's."""
+    """The largest difference of the description's forward kinematics from the file's."""
     robot: Robot
     axes: tuple[str, ...]
     facing: int
-    """Which axis of the file's tip (0, 1, 2) is z of the description's: 2, unless the task is about another one."""
+    """The axis of the file's tip (0, 1, 2) that is z in the description: 2, unless the task is about another one."""
 
 
 def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa: B008
@@ -77,7 +77,7 @@ def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa:
 
 
 def _reader(path: Path) -> Reader:
-    """The reader of a file, by its name; of XML by what it says."""
+    """The reader of a file, by the file's name; for XML, by its content."""
     suffix = path.suffix.lower()
     if suffix == ".xacro":
         raise UnreadableRobot(f"{path}: expand it first: `xacro {path.name} > {path.stem}.urdf`, and import that")
@@ -138,7 +138,7 @@ def _held(robot: Robot, axes: Sequence[str], names: Sequence[str]) -> tuple[int,
 
 
 def _strokes(robot: Robot, arm: Arm) -> float:
-    """How far the slides reach in all."""
+    """The total travel of all slides."""
     slides = [a for a in robot.axes if a.kind is Kind.LINEAR]
     return sum(max(map(abs, a.limits)) if a.limits else _SLIDE * arm.size for a in slides)
 

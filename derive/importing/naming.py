@@ -11,12 +11,12 @@ from derive.importing.robot import Robot
 
 _SHORT = re.compile(r"[A-Z][0-9]\Z")
 _TAKEN = {"X", "Y", "Z", "Rx", "Ry", "Rz", "Tx", "Ty", "Tz", "TURN", "ROTATION", "MECHANISM"}
-"""What a mechanism file imports or defines."""
+"""The names that a mechanism file imports or defines."""
 LETTERS = "xyz"
 
 
 def words(name: str) -> list[str]:
-    """The words of a name: at anything that is no letter or digit, and where capitals begin."""
+    """The words of a name, split at characters that are no letters or digits, and before capitals."""
     return re.findall(r"[A-Z]+(?![a-z])[0-9]*|[A-Z]?[a-z]+[0-9]*|[0-9]+", name)
 
 
@@ -40,7 +40,7 @@ def place_names(arm: Arm, axes: Sequence[str]) -> list[str]:
 
 
 def _short(name: str) -> str | None:
-    """A letter and a number, where that is what a name says."""
+    """A letter and a number, where a name consists of them but for "joint" and "axis"; else None."""
     kept = "".join(w for w in words(name) if w.lower() not in ("joint", "axis")).upper()
     kept = f"A{kept}" if kept.isdigit() else kept
     return kept if _SHORT.match(kept) and kept not in _TAKEN else None
@@ -56,13 +56,13 @@ def block_name(robot: Robot) -> str:
 
 
 def parameter_name(piece: Piece, places: Sequence[str]) -> str:
-    """What a fixed shift or turn is called: between which axes, and along or about what."""
+    """The name of a fixed shift or turn: the axes between which it stands, and its direction."""
     kind = "turn_" if piece.motion.value == "turn" else ""
     return f"{_between(piece.place, places, '_').lower()}_{kind}{LETTERS[piece.letter]}"
 
 
 def parameter_meaning(piece: Piece, places: Sequence[str], is_negative: bool) -> str:
-    """A sentence for the same."""
+    """A phrase that explains such a parameter."""
     place = _where(piece.place, places)
     if piece.motion.value == "turn":
         return f"{place}, turn about {LETTERS[piece.letter]}"

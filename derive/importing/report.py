@@ -1,4 +1,4 @@
-"""What an import tells: neighbouring axes, what would have to be moved for a closed form, and what was moved."""
+"""The report of an import: neighbouring axes, the changes that a closed form would need, and the changes made."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from derive.importing.arms.lines import ROUNDING, Arm, relation, spread
 from derive.importing.arms.snapping import Snapped
 
 _NEARLY = 2e-2
-"""A share of the size (or of one radian) up to which axes are said to stand nearly so."""
+"""The share of the size (or of one radian) up to which a relation of axes is called near."""
 
 
 @dataclass(frozen=True)
 class Bounds:
-    """How far forward kinematics can be from the file's: a length, and an angle in radians."""
+    """The largest difference of forward kinematics from the file's: a length, and an angle in radians."""
 
     position: float
     rotation: float
 
 
 def bounds(moved: Sequence[Snapped], arm: Arm, strokes: float) -> Bounds:
-    """What everything that was moved adds up to at any joint values. strokes: how far slides reach in all."""
+    """The sum of all changes, at any joint values. strokes: the total travel of slides."""
     angles = sum(s.amount for s in moved if s.is_angle)
     lengths = sum(s.amount for s in moved if not s.is_angle)
     return Bounds(2.0 * angles * (arm.size + strokes) + 2.0 * lengths, 2.0 * angles)
 
 
 def neighbours(raw: Arm, arm: Arm, names: Sequence[str], limit: float, unit: str) -> Iterator[str]:
-    """A line for each pair of neighbouring axes: distance, angle, and what is missing to a simple relation.
+    """A line for each pair of neighbouring axes: distance, angle, and the difference from a simple relation.
 
-    raw: as the file has them; arm: with its angles put back.
+    raw: the arm of the file; arm: the arm with exact angles.
     """
     for k, (one, other) in enumerate(pairwise(names)):
         stands, back = (relation(*a.lines[k : k + 2]) for a in (raw, arm))
@@ -49,7 +49,7 @@ def neighbours(raw: Arm, arm: Arm, names: Sequence[str], limit: float, unit: str
 
 
 def closed_form(arm: Arm, names: Sequence[str], limit: float) -> str:
-    """Whether three neighbouring axes meet in one point or are parallel, or by how much they miss that least."""
+    """Whether three neighbouring axes meet in one point or are parallel, or the least amount by which they do not."""
     found: list[tuple[float, str]] = []
     for k in range(len(arm.lines) - 2):
         three, three_names = arm.lines[k : k + 3], ", ".join(names[k : k + 3])
@@ -69,7 +69,7 @@ def closed_form(arm: Arm, names: Sequence[str], limit: float) -> str:
 
 
 def _distance_hints(distance: float, put_back: float, limit: float) -> Iterator[str]:
-    """Both as shares of the size: in the file, and with its angles put back."""
+    """distance, put_back: in the file, and with exact angles, both as shares of the size."""
     if distance <= ROUNDING * 100:
         yield "they meet"
     elif put_back <= max(limit, ROUNDING * 100):
@@ -90,13 +90,13 @@ def _angle_hints(angle: float, put_back: float, limit: float) -> Iterator[str]:
 
 
 def _above(amount: float) -> str:
-    """A number with two digits that is not less."""
+    """An upper bound of an amount with two digits."""
     digits = 10.0 ** (np.floor(np.log10(amount)) - 1)
     return f"{np.ceil(amount / digits * (1 - 1e-12)) * digits:.2g}"
 
 
 def snaps(moved: Sequence[Snapped], missed: Sequence[float], found: Bounds, snap: float, unit: str) -> Iterator[str]:
-    """What was moved, and what that can make of a pose."""
+    """The changes that were made, and their largest effect on a pose."""
     if missed:
         count, them = f"{len(missed)} angles of the file are nearly multiples", "them"
         if len(missed) == 1:

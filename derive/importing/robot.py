@@ -1,4 +1,4 @@
-"""What a robot file says between its base and its tip, as data that no file format shows through.
+"""The content of a robot file between its base and its tip, as data that are independent of the file format.
 
 Lengths are in the unit of the description that is written, angles in radians.
 """
@@ -28,7 +28,7 @@ class Turned:
     axis: int
     angle: float
     rounding: float = 0.0
-    """How far the angle may be from the one that the file has rounded (radians), by the decimals that it writes."""
+    """The largest distance of the angle from the exact one that the file has rounded (radians), by its decimals."""
 
     def matrix(self) -> Array:
         """The homogeneous 4 x 4 matrix."""
@@ -56,7 +56,7 @@ class Oriented:
 
     rows: tuple[Triple, Triple, Triple]
     rounding: float = 0.0
-    """As that of `Turned`."""
+    """The rounding of its angle: see `Turned`."""
 
     def matrix(self) -> Array:
         """The homogeneous 4 x 4 matrix."""
@@ -77,17 +77,17 @@ class Moving:
     drives: tuple[tuple[str, float], ...]
     offset: float = 0.0
     rounding: float = 0.0
-    """As that of `Turned`, of the offset."""
+    """The rounding of the offset: see `Turned`."""
 
     @property
     def turns(self) -> bool:
-        """Whether it is about a direction: its offset is an angle."""
+        """Whether the movement is about a direction, so that its offset is an angle."""
         return self.kind is Kind.ROTARY
 
 
 @dataclass(frozen=True)
 class Step:
-    """A joint of the file: where it stands on the link before it, and how it moves (None: it is fixed)."""
+    """A joint of the file: its place on the link before it, and its movement (None: it is fixed)."""
 
     name: str
     places: tuple[Place, ...]
@@ -114,11 +114,11 @@ class Robot:
     steps: tuple[Step, ...]
     axes: tuple[Axis, ...]
     notes: tuple[str, ...] = ()
-    """What was left out, and what was assumed: sentences for the report."""
+    """Omissions and assumptions: sentences for the report."""
 
 
 def reversed_step(step: Step, is_reversed: bool = True) -> tuple[Step, ...]:
-    """The step, or what leads back over it: the opposite movement, then the way back."""
+    """The step, or its inverse: the opposite movement, then the inverse of its place."""
     if not is_reversed:
         return (step,)
     back = Step(step.name, tuple(_opposite(p) for p in reversed(step.places)))

@@ -1,4 +1,4 @@
-"""A description as text: what a careful person would write of a machine, to be read, edited and derived."""
+"""A description as text, as a careful person would write it, to be read, edited and derived."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from derive.importing.robot import Axis, Robot, UnreadableRobot
 
 _WIDTH = 118
 _FAR = 1e6
-"""A limit beyond this many degrees or units of length is none."""
+"""A limit beyond this many degrees or units of length counts as no limit."""
 _FRAMES = ("Rx", "Ry", "Rz", "Tx", "Ty", "Tz", "flip_x")
 
 
@@ -58,7 +58,7 @@ def description_of(robot: Robot, arm: Arm, chain: Simple, task: Followed) -> Des
 
 
 def _refuse_leaning(chain: Simple, tip: int) -> None:
-    """A chain that turns its tip about z commands that turn: the tip's z axis must be along it."""
+    """Refuse a chain that turns its tip about z if the tip's z axis is not along that turn, which is commanded."""
     turns = [p for p in chain.pieces if p.place == tip and p.motion is Motion.TURN and not p.drives]
     if any(p.letter != 2 and not is_half_turn(p) for p in turns):
         raise UnreadableRobot(
@@ -102,7 +102,7 @@ def _docstring(robot: Robot, description: Description, unit: str, notes: Sequenc
 
 
 def _plain(text: str) -> str:
-    """Text of a file without what would end a string."""
+    """Text of a file without characters that would end a string."""
     return re.sub(r'["\\\s]+', " ", text)
 
 

@@ -3,10 +3,10 @@
 It may import `kept`, and no other folder. `cells` and `roots` are also the text of two modules of the Python package.
 
 cells: the cells of a root scan, on arrays: how many roots a cell may hold, and where it is cut
-constants: the numerical constants of the product, but for those of the root scan
+constants: the numerical constants of the product, except those of the root scan
 graph: values as a graph, in which equal values are one node
 interpret: the reference interpreter, which executes a program over arrays
-names: names that are free
+names: new names that differ from all names in use
 passes: passes over programs: aliases folded, statements in the order of their use, constants hoisted
 primitives: the functions that every language implements, and their values on arrays
 program: programs, their statements and their statuses

@@ -1,4 +1,4 @@
-"""Cells of a root scan along one joint, on arrays: how many roots a cell may hold, and where it is cut.
+"""Cells of a root scan along one joint, on arrays: how many roots a cell may hold, and where a cell is cut.
 
 A trial is a function of the scanned joint. It has a value, which is zero at a root, with its slope; a guard, which is
 negative where the trial has no solution, with its slope; and directions, the cosines and sines of angles that a step
@@ -59,13 +59,14 @@ class At(NamedTuple):
 
 
 Trial = Callable[[At], Reals]
-"""The columns value, slope, guard, slope of the guard, then cosine and sine of every direction."""
+"""A function that returns the columns value, slope, guard, slope of the guard, then cosine and sine of every
+direction."""
 VALUE, SLOPE, GUARD, GUARD_SLOPE, DIRECTIONS = range(5)
 
 
 @dataclass(frozen=True)
 class Cells:
-    """Intervals low < high of s, with the trials at both ends; slopes are by s."""
+    """Intervals low < high of s, with the trials at both ends; slopes are derivatives by s."""
 
     rows: Rows
     base: Reals
@@ -90,7 +91,7 @@ class Cells:
         return np.asarray(self.base + self.scale * np.where(self.curved, s * s, s))
 
     def extent(self) -> Reals:
-        """The way of the joint from one end to the other, also where it turns back in between."""
+        """The distance that the joint travels from one end to the other, also where it turns back in between."""
         way = np.where(self.curved, np.abs(self.low) + np.abs(self.high), 1.0)
         return np.asarray(np.abs(self.scale) * (self.high - self.low) * way)
 
@@ -122,8 +123,8 @@ def joined(*parts: Cells) -> Cells:
 
 
 class Verdicts(NamedTuple):
-    """The kind of every cell: at most one of these is true, none where the cell has no root; where the two sides join,
-    a jump is touched, too."""
+    """The kind of every cell: at most one of these flags is true, and none where the cell has no root. Where the two
+    sides join, a jump counts as touched, too."""
 
     jumps: Flags
     ends: Flags
@@ -133,7 +134,7 @@ class Verdicts(NamedTuple):
     touches: Flags
     cut: Flags
     by_guard: Flags
-    """Whether it is cut by the tangents of the guard, not by those of the value."""
+    """Whether the cell is cut by the tangents of the guard, not by those of the value."""
 
 
 def look(cells: Cells) -> Verdicts:
@@ -159,7 +160,7 @@ def look(cells: Cells) -> Verdicts:
 
 
 def at_seam(cells: Cells) -> Flags:
-    """Whether a cell lies where the two sides join, and is cut no more."""
+    """Whether a cell lies where the two sides join, and is so short that it is cut no more."""
     return np.asarray(cells.curved & (cells.low >= -2.0 * SEAM) & (cells.high <= 2.0 * SEAM))
 
 

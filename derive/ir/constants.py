@@ -1,5 +1,5 @@
-"""The numerical constants of the product. Each stands here once and nowhere else; those of a search: `cells`,
-`roots`."""
+"""The numerical constants of the product. Each is defined here and nowhere else; the root scan has its own constants
+in `cells` and `roots`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ FREE_ANGLE = sp.Float("1e-11")
 KNOWN_ANGLE = sp.Float("0.1")
 """Conditioning over its scale above this gives the angle of a step to 1e-15: there is hardly a reason to move it."""
 OUT_OF_REACH = sp.Float("1e-9")
-"""What is beyond its bound by more than this share is not reached by moving an angle that is known."""
+"""A pose that exceeds a bound by more than this share is not reached by moving an angle that is known."""
 BOUNDARY = sp.Float("1e-12")
 """A normalised radicand negative by at most this is zero: the boundary belongs to the workspace."""
 FOLD = sp.Float("1e-6")
@@ -21,21 +21,21 @@ rounding."""
 ROUNDING = sp.Float("1e-12")
 """A motion of the pose smaller than this share of the machine is rounding."""
 INSIDE = sp.Float("1e-7")
-"""An angle that is moved to where a later step reaches is moved inside of its boundary by this share, where that is
-free."""
+"""A nearly free angle that is moved to where a later step has a solution is moved this share inside the boundary of
+that step."""
 LARGEST = sp.Integer(10) ** 9
 """Inputs larger in size than this are refused."""
 ROTATION = sp.Float("1e-4")
-"""How far the product of a rotation with its transpose may be from the identity: frames come from single precision,
-too."""
+"""How far the product of a rotation with its transpose may be from the identity: some frames come from single
+precision."""
 EXACT_ROTATION = sp.Float("1e-12")
-"""A rotation nearer to one than this is used as it is; one that is further away is repaired."""
+"""A matrix nearer to a rotation than this is used as it is; one that is further away is repaired."""
 SURE_ROTATION = sp.Float("1e-13")
 """A matrix that misses x x = y y = 1, x y = 0 and z = x × y by no more than this is nearer to a rotation than
 `EXACT_ROTATION`."""
 LEAST = sp.Float("1e-12")
-"""A length or a ratio of this size or less, where it may not be zero, is refused: products of such numbers, and their
-reciprocals, are numbers then."""
+"""A length or a ratio that may not be zero is refused at this size or less, so that products of such numbers, and
+their reciprocals, stay finite."""
 PLANE = sp.Float("1e-6")
 """How far a planar machine's commanded z may be from its plane, per unit of reach."""
 LIMIT = sp.Float("1e-9")
@@ -43,7 +43,8 @@ LIMIT = sp.Float("1e-9")
 SHORTEST_LINK = sp.Float("1e-9")
 """An effective link shorter than this fraction of the machine's scale cannot be aimed."""
 HELD = sp.Float("1e-9")
-"""A shift up to this share of all shifts may turn with a flange unnoticed; and axes this far apart are one."""
+"""A shift up to this share of all shifts may turn with a flange unnoticed. Axes up to this share apart count as
+one axis."""
 SINGULAR = sp.Float("1e-3")
 """A pose is singular where a margin is smaller than this in size."""
 PIVOT = sp.Float("1e-14")
@@ -52,29 +53,31 @@ SOLVABLE = sp.Float("1e30")
 """Linear equations are solved where all their numbers are at most this size, and the largest at least its
 reciprocal."""
 CONVERGED = sp.Float("1e-11")
-"""An iteration has converged where what is left of a length is at most this share of the machine's scale."""
+"""An iteration has converged where the error of every length is at most this share of the machine's scale."""
 NEARLY = sp.Float("1e-6")
-"""A root of a search lies on a branch whose scaled margin it does not miss by more than this, the root of
-`BOUNDARY`."""
+"""A root of a scan counts as on a branch where its scaled margin has the wrong sign by no more than this, which is
+the square root of `BOUNDARY`."""
 TRIALS = 760
-"""Trials of a search for a root, at most."""
+"""The largest number of trials in a root scan."""
 FINISHED = 24
-"""Roots of a search that are looked at, at most."""
+"""The largest number of roots that a scan examines."""
 MET = sp.Float("1e-10")
-"""A root of a search meets the pose: what is left is at most this share of the machine, and so many radians."""
+"""A root of a scan meets the pose where its error is at most this share of the machine's scale, and at most this
+many radians."""
 DAMPED = sp.Float("1e-12")
-"""The square of how slowly an error may fall with the joints, in lengths of the machine, to be mended by them."""
+"""The square of the damping in damped least squares: an error that the joints reduce more slowly than the damping, in
+lengths of the machine, is left."""
 IMPROVEMENTS = 3
-"""Steps of Newton's method that improve a root of a search, at most."""
+"""The largest number of Newton steps that improve a root of a scan."""
 TIE = sp.Float("1e-6")
 """An automatic choice takes a later branch only where its squared distance (degrees) is smaller by more than this."""
 TIE_SHARE = sp.Float("1e-6")
-"""Of linear axes, only where it is smaller by more than the square of this share of the machine's scale."""
+"""The same for linear axes: a later branch must be nearer by more than the square of this share of the scale."""
 ONE_TURN = sp.Integer(350)
 """An axis has one value inside its limits where they are at most this far apart (degrees): no step of a path crosses
 the gap."""
 GEARED_TURN = sp.Float("350.001")
-"""The same in degrees of a joint with a gear, between the ends that tolerances have widened."""
+"""`ONE_TURN` for a joint with a gear: in degrees of the joint, between limits that tolerances have widened."""
 EDGE = sp.Float("1e-9")
 """How far (degrees) the intervals of the periods are shifted down: see `NearestPeriod`."""
 UNLIMITED = sp.Integer(10) ** 12

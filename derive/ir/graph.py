@@ -26,7 +26,7 @@ Head = Any
 """A name or a positive number; or the operation on the parts: `SUM`, `PRODUCT`, a primitive, a comparison, AND, OR."""
 _EVEN = (sp.cos, sp.Abs)
 ODD = (sp.sin, ToReal)
-"""What changes its sign with its argument."""
+"""The odd functions: f(-x) = -f(x)."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -48,9 +48,9 @@ class Node:
     is_number: bool = False
     """Whether it is a number."""
     is_whole: bool = False
-    """Whether it is an integer, by the names in it: told once, since what is shared is reached along many ways."""
+    """Whether it is an integer, by the types of its names. Stored, because a shared node is reached many times."""
     read: tuple[Node, ...] = ()
-    """The nodes that it reads, made once: every pass asks for them."""
+    """The nodes that it reads. Stored, because every pass asks for them."""
 
 
 class Value(NamedTuple):
@@ -114,7 +114,7 @@ class Graph:
         return Value(self._node(key, PRODUCT, tuple(Value(f, 1) for f in above), tuple(below)), sign)
 
     def apply(self, head: type[sp.Basic], arguments: Sequence[Value]) -> Value:
-        """A primitive, a comparison, AND or OR of its arguments; conditions that are decided are left out."""
+        """A primitive, a comparison, AND or OR of its arguments; conditions whose truth is known are left out."""
         parts = tuple(arguments)
         if head is Select:
             return self._choice(*parts)
@@ -173,7 +173,7 @@ class Graph:
 
 
 def reached(starts: Iterable[Node], is_end: Callable[[Node], bool] = lambda _: False) -> Iterator[Node]:
-    """These nodes and all that they read, each once; the search does not go beyond an `end`."""
+    """These nodes and all nodes that they read, each once; the search stops at nodes for which `is_end` holds."""
     seen: set[Node] = set()
     pending = list(starts)
     while pending:

@@ -1,4 +1,4 @@
-"""The reference interpreter: it executes a program over arrays. What primitives are on arrays stands with them."""
+"""The reference interpreter: it executes a program over arrays. `primitives` defines the primitives on arrays."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from derive.kept import kept_by_identity
 Array = NDArray[np.float64]
 _PIVOT, _SOLVABLE = float(PIVOT), float(SOLVABLE)
 _FEW = 8
-"""So many systems of equations are solved one by one: arrays cost more than what they compute."""
+"""Up to this many systems of equations are solved one by one, which is faster than with arrays."""
 
 
 @dataclass
@@ -32,9 +32,9 @@ class Repeats:
     """How often the bodies of loops have run, for all rows together."""
 
     trials: int = 0
-    """Trials of searches for a root."""
+    """Trials of root scans."""
     finished: int = 0
-    """Roots that were looked at."""
+    """Roots that the finishing program examined."""
     passes: int = 0
     """Passes of iterations."""
 
@@ -44,7 +44,7 @@ _REPEATS: ContextVar[Repeats | None] = ContextVar("repeats", default=None)
 
 @contextmanager
 def repeats_counted() -> Iterator[Repeats]:
-    """What runs inside is counted."""
+    """A context in which the repeated bodies of loops are counted."""
     found = Repeats()
     token = _REPEATS.set(found)
     try:
@@ -119,13 +119,13 @@ def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array]
 
 
 def _common_shape(all_shapes: Iterable[tuple[int, ...]]) -> tuple[int, ...]:
-    """The shape of what is computed with values of these: at once where they have one, apart from plain numbers."""
+    """The common shape of values with these shapes; found quickly where all but plain numbers have the same one."""
     shapes = {*all_shapes} - {()}
     return np.broadcast_shapes(*shapes) if len(shapes) > 1 else next(iter(shapes), ())
 
 
 def _broadcast(value: Array, shape: tuple[int, ...]) -> Array:
-    """A value for every entry of a shape."""
+    """The value repeated for every entry of a shape."""
     return np.asarray(value) if np.shape(value) == shape else np.broadcast_to(value, shape)
 
 
@@ -151,7 +151,7 @@ def _execute(statements: Sequence[Statement], known: _State, status: _Statuses) 
 
 @kept_by_identity(2000)
 def _steps(statements: Sequence[Statement]) -> list[_Step]:
-    """Statements as functions that change what is known; kept, because programs run often."""
+    """Statements as functions that update the known values; cached, because programs run often."""
     return [_step(s) for s in statements]
 
 
@@ -193,7 +193,7 @@ def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> N
 
 
 def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]) -> None:
-    """Find roots, only where they are wanted and nothing has refused before."""
+    """Find roots, only in rows where they are wanted and no statement has refused yet."""
     shape = status.shape
     looked = np.broadcast_to(evaluate(search.wanted, known), shape) & (status == Status.OK)
     rows = {k: np.broadcast_to(v, shape)[looked] for k, v in known.items()}
@@ -311,7 +311,7 @@ def solve(matrix: Array, right: Array) -> tuple[Array, Array]:
 
 
 def _solved_one_by_one(matrix: Array, right: Array) -> tuple[Array, Array]:
-    """The same with Python's numbers, of which every operation rounds as those of arrays do."""
+    """`solve` with Python's own numbers, which round like those of arrays."""
     size, columns, *shape = right.shape
     count = matrix[0, 0].size
     systems = np.concatenate([matrix, right], axis=1).reshape(size, size + columns, count)
@@ -321,10 +321,10 @@ def _solved_one_by_one(matrix: Array, right: Array) -> tuple[Array, Array]:
 
 
 def _solved(rows: list[list[float]], size: int) -> tuple[float, list[list[float]]]:
-    """Determinant and solution of one system, whose rows have their right sides behind them."""
+    """Determinant and solution of one system; every row ends in its right-hand sides."""
     nothing, most = (0.0, [[0.0] * len(row[size:]) for row in rows]), _SOLVABLE
     largest, determinant = max(abs(v) for row in rows for v in row[:size]), 1.0
-    if largest < 1.0 / most or not all(abs(v) <= most for row in rows for v in row):  # nor where one is no number
+    if largest < 1.0 / most or not all(abs(v) <= most for row in rows for v in row):  # also false for NaN
         return nothing
     for k in range(size):
         best = max(range(k, size), key=lambda i: abs(rows[i][k]))

@@ -1,4 +1,4 @@
-"""Names that are free: different from all that are taken, even where a language joins the words of a name."""
+"""New names that differ from all names in use, even where a language joins the words of a name."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from derive.ir.symbols import (
 
 
 class Names:
-    """The names that are taken: a new one is taken from then on."""
+    """The names in use. A new name is in use as soon as it has been made."""
 
     def __init__(self, taken: Iterable[str]) -> None:
-        """taken: with words between underscores, as every name of a program."""
+        """taken: the names in use, written as a program writes them, with underscores between words."""
         self._joined = {name.replace("_", "") for name in taken}
 
     @classmethod
     def of(cls, program: Program) -> Names:
-        """Those that a program reads or binds."""
+        """The names that a program reads or binds."""
         return cls(s.name for s in (*program.inputs, *program.bound()))
 
     def fresh(self, proposal: str, like: sp.Symbol | None = None) -> sp.Symbol:
-        """The proposal, with a number behind it where it is taken. like: a name of the same type, else it is a real
-        number.
+        """The proposed name, followed by a number where the proposal is in use. like: a symbol whose type the new name
+        gets; without it the new name is a real number.
         """
         number, name = 1, proposal
         while name.replace("_", "") in self._joined:

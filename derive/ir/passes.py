@@ -33,8 +33,8 @@ from derive.ir.program import (
     Statement,
     binds,
     reads,
+    reason_expressions,
     rewritten,
-    told,
 )
 from derive.ir.reason import Unit
 from derive.ir.symbols import (
@@ -188,7 +188,7 @@ def depending_on(statements: Iterable[Statement], names: Collection[sp.Symbol]) 
 
 
 def needed_lets(lets: Iterable[Let], values: Iterable[sp.Expr]) -> tuple[Let, ...]:
-    """Those bindings that values need, in the order in which they stand."""
+    """The bindings that values need, in their given order."""
     wanted = {name for value in values for name in value.free_symbols}
     found: list[Let] = []
     for let in reversed(tuple(lets)):
@@ -199,18 +199,20 @@ def needed_lets(lets: Iterable[Let], values: Iterable[sp.Expr]) -> tuple[Let, ..
 
 
 def written_out(body: Sequence[Statement], known: Iterable[Statement]) -> tuple[Statement, ...]:
-    """The statements, with each name that a reason reads before it is bound replaced by its value."""
+    """The statements; where a reason reads a name that is bound only later, its value stands in place of the name."""
     values = {s.name: s.value for s in known if isinstance(s, Let)}
     found: list[Statement] = []
     bound: set[sp.Symbol] = set()
     for s in body:
-        found.append(told_in(s, bound, values))
+        found.append(with_bound_reason(s, bound, values))
         bound |= set(binds(s))
     return tuple(found)
 
 
-def told_in(statement: Statement, bound: Container[sp.Symbol], values: Mapping[sp.Symbol, sp.Expr]) -> Statement:
-    """The statement with its reason in names that are bound; `values` has the values of all others."""
+def with_bound_reason(
+    statement: Statement, bound: Container[sp.Symbol], values: Mapping[sp.Symbol, sp.Expr]
+) -> Statement:
+    """The statement with a reason that reads bound names alone; `values` holds the values of all other names."""
     if not isinstance(statement, Require) or statement.reason is None:
         return statement
     reason = statement.reason.rewritten(partial(_in_full, bound=bound, values=values))
@@ -228,8 +230,8 @@ def _in_full(value: sp.Basic, bound: Container[sp.Symbol], values: Mapping[sp.Sy
 
 @kept_by_identity(200)
 def untold(program: Program) -> Program:
-    """The program for callers that get a status alone: its reasons compute nothing."""
-    if not any(next(told(s), None) is not None for s in program.body):
+    """The program for callers that get a status but no reason: nothing is computed for reasons."""
+    if not any(next(reason_expressions(s), None) is not None for s in program.body):
         return program
     body = tuple(
         replace(s, reason=replace(s.reason, amount=None, unit=Unit.NONE, turns=()))
@@ -243,7 +245,7 @@ def untold(program: Program) -> Program:
 def is_read_once(program: Program, name: sp.Symbol) -> bool:
     """Whether exactly one statement or output reads a name, and no reason does."""
     readers = sum(name in reads(s) for s in program.body) + sum(name in symbols_of(o.value) for o in program.outputs)
-    return readers == 1 and not any(name in symbols_of(e) for s in program.body for e in told(s))
+    return readers == 1 and not any(name in symbols_of(e) for s in program.body for e in reason_expressions(s))
 
 
 def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
@@ -281,7 +283,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
 
 
 def calling(statement: Statement, programs: Mapping[str, Program]) -> Statement:
-    """The statement; where it is a call, of the current version of its program."""
+    """The statement; a call then calls the current version of its program."""
     if isinstance(statement, FindRoot):
         return replace(statement, trial=programs[statement.trial.name], finish=programs[statement.finish.name])
     return replace(statement, program=programs[statement.program.name]) if isinstance(statement, Call) else statement
@@ -292,7 +294,7 @@ def _with_names(statement: Statement, names: Mapping[sp.Symbol, sp.Expr]) -> Sta
 
 
 def _varying(program: Program, constants: set[str]) -> list[sp.Symbol]:
-    """The names that depend on more than constants."""
+    """The names that depend on inputs other than constants."""
     own, constant = set(program.bound()), set[sp.Symbol]()
     for let in program.lets():
         if all(s in constant if s in own else s.name in constants for s in names_in(let.value)):

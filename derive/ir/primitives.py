@@ -23,7 +23,7 @@ class Root(sp.Function):
     is_nonnegative = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """The derivative; zero where the root is."""
+        """The derivative; zero where the root is zero."""
         is_long = sp.Gt(self.args[0], 0)
         return Select(is_long, 1 / (2 * Select(is_long, self, sp.Integer(1))), sp.Integer(0))
 
@@ -48,7 +48,7 @@ class Select(sp.Function):
         return first if first == second else None
 
     def _eval_derivative(self, s: sp.Symbol) -> sp.Expr:
-        """The derivative of the side that is taken: the condition has none."""
+        """The derivative of the chosen side; a condition has no derivative."""
         condition, first, second = self.args
         return Select(condition, first.diff(s), second.diff(s))
 
@@ -61,7 +61,7 @@ class ToReal(sp.Function):
 
     @classmethod
     def eval(cls, number: sp.Expr) -> sp.Expr | None:
-        """Simplify a known number, which is an integer and a real number."""
+        """Simplify a literal number, which serves both as an integer and as a real number."""
         return number if number.is_Integer else None
 
 
@@ -160,4 +160,4 @@ VALUES: dict[type[sp.Basic], Callable[..., Array]] = {
     sp.Mul: np.multiply,
     sp.Pow: np.power,
 }
-"""What primitives and operations are on arrays: the reference of every language."""
+"""The primitives and operations as functions of arrays: the reference for every language."""

@@ -43,14 +43,14 @@ class Let:
 
     name: sp.Symbol
     value: sp.Basic
-    """A number; for a flag, a condition."""
+    """The value of a number, or the condition of a flag."""
     note: str = ""
     turn_of: str = ""
     """The axis whose whole turns the value chooses; empty where it chooses none."""
 
     @property
     def comment(self) -> str:
-        """What the reader is told."""
+        """The comment for the reader of the generated code."""
         turn = f"{self.turn_of}: whole turns added" if self.turn_of else ""
         return "; ".join(text for text in (self.note, turn) if text)
 
@@ -63,11 +63,11 @@ class Require:
     otherwise: Status
     note: str = ""
     reason: Reason | None = None
-    """What a caller is told; None where nobody is."""
+    """The reason that a caller gets; None where it gets the status alone."""
 
     @property
     def comment(self) -> str:
-        """What the reader is told: the note, or else the reason."""
+        """The comment for the reader of the generated code: the note, or else the reason."""
         return self.note or (self.reason.words if self.reason is not None else "")
 
 
@@ -78,8 +78,8 @@ class Solve:
     Total: determinant and solution are zeros where the matrix is singular, or a number is NaN or larger than
     `SOLVABLE`.
 
-    All three by rows: the matrix is square, `names` and `right` have as many columns as there are right-hand sides,
-    which may be none where the determinant alone is wanted.
+    All three are given by rows. The matrix is square; `names` and `right` have a column for each right-hand side, and
+    none where only the determinant is wanted.
     """
 
     names: tuple[sp.Symbol, ...]
@@ -101,7 +101,7 @@ class Solve:
 
 @dataclass(frozen=True)
 class Iterate:
-    """Repeat `step` from `start` until `done` holds, at most `limit` times; status `otherwise` where it never does.
+    """Repeat `step` from `start` until `done` holds, at most `limit` times; else the status is `otherwise`.
 
     Every pass evaluates the step at the state. Then the loop ends, or the state becomes `following`. So the names of
     the step are bound behind the loop, too, and belong to the final state.
@@ -117,15 +117,15 @@ class Iterate:
     otherwise: Status
     note: str = ""
     reason: Reason | None = None
-    """The reason given to a caller where the loop never ends; it has no amount."""
+    """The reason given to a caller where `done` never holds; it has no amount."""
 
 
 @dataclass(frozen=True)
 class Call:
     """Run a program that several programs share, and bind names of its outputs; where it refuses, so does the caller.
 
-    given: the values of its arguments. Its other inputs are constants of the machine, which are inputs of the caller,
-    too.
+    given: the values of the arguments. The other inputs of the shared program are constants of the machine, which are
+    inputs of the caller, too.
     """
 
     program: Program
@@ -172,7 +172,7 @@ class FindRoot:
     """The arguments of both programs besides the place; their other inputs are constants of the machine."""
     note: str = ""
     sides: tuple[int, ...] = ()
-    """The side of each candidate that is listed; none where a trial is scanned."""
+    """The side of each listed candidate; empty where a trial is scanned."""
 
     @property
     def is_listed(self) -> bool:
@@ -204,7 +204,7 @@ class Program:
     body: tuple[Statement, ...]
     outputs: tuple[Output, ...]
     summary: str = ""
-    """A sentence on a shared program, where its name does not suffice."""
+    """A sentence that explains a shared program, where its name does not suffice."""
 
     def lets(self) -> tuple[Let, ...]:
         """The bindings, in order."""
@@ -222,7 +222,7 @@ class Program:
         """Every free symbol that a statement, its reason or an output reads."""
         used: set[sp.Symbol] = set()
         for statement in self.body:
-            used |= reads(statement).union(*map(names_in, told(statement)))
+            used |= reads(statement).union(*map(names_in, reason_expressions(statement)))
         for output in self.outputs:
             used |= names_in(output.value)
         return frozenset(used) - set(self.bound())
@@ -258,7 +258,7 @@ def expressions(statement: Statement) -> Iterator[sp.Basic]:
         yield from (statement.done, *statement.following)
 
 
-def told(statement: Statement) -> Iterator[sp.Expr]:
+def reason_expressions(statement: Statement) -> Iterator[sp.Expr]:
     """The expressions that are computed where a statement refuses, and nowhere else."""
     if isinstance(statement, Require) and statement.reason is not None:
         yield from statement.reason.expressions
@@ -277,7 +277,7 @@ def reads(statement: Statement) -> set[sp.Symbol]:
 
 
 def shared(programs: Iterable[Program]) -> tuple[Program, ...]:
-    """The programs that these call, each once and before its callers."""
+    """The shared programs that the given programs call, each once and before its callers."""
     found: dict[str, Program] = {}
     for statement in (s for program in programs for s in program.body):
         called = [statement.program] if isinstance(statement, Call) else []

@@ -3,8 +3,8 @@
     Require(distance <= 1e-6 machine_scale, UNREACHABLE, reason=Reason(z, OUT_OF_PLANE, distance - 1e-6 machine_scale,
     LENGTH)) →  "z: a planar machine has none [u]", with the amount
 
-An amount is computed where the program refuses, and nowhere else: whatever it reads that nothing else needs is written
-out in it (see `passes`).
+An amount is computed where the program refuses, and nowhere else: a value that only the amount needs is written out in
+it (see `passes`).
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ class Kind(Enum):
     """What a subject is."""
 
     JOINT = "joint"
-    """Its name is that of the joint value; whoever tells the reason knows the axis."""
+    """Its name is that of the joint value; the code that writes the message knows the axis."""
     QUANTITY = "quantity"
     LEG = "leg"
     INPUT = "input"
     PARAMETERS = "parameters"
-    """Its name is what they must be."""
+    """Its name states the condition that the parameters must satisfy."""
     MACHINE = "machine"
 
 
@@ -88,7 +88,7 @@ class Why(Enum):
 
     @property
     def is_about_a_subject(self) -> bool:
-        """Whether the sentence starts with the subject, and is the same of another one."""
+        """Whether the sentence starts with its subject, so that it reads the same for another subject."""
         return self.value.startswith("{}: ")
 
 
@@ -103,11 +103,11 @@ class OtherTurn:
 
     @property
     def expressions(self) -> tuple[sp.Expr, ...]:
-        """What it takes to look for the turn."""
+        """The values that the search for another turn needs."""
         return (self.axis, *self.lowest, *self.highest)
 
     def rewritten(self, change: Callable[[sp.Basic], sp.Expr]) -> OtherTurn:
-        """The same with every expression changed."""
+        """A copy in which every expression is changed."""
         ends = (tuple(map(change, end)) for end in (self.lowest, self.highest))
         return OtherTurn(self.name, change(self.axis), *ends)
 
@@ -138,7 +138,7 @@ class Reason:
         return self.why.of(self.subject.name)
 
     def rewritten(self, change: Callable[[sp.Basic], sp.Expr]) -> Reason:
-        """The same with every expression changed."""
+        """A copy in which every expression is changed."""
         amount = None if self.amount is None else change(self.amount)
         if amount is self.amount and not self.turns:
             return self

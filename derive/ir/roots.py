@@ -99,7 +99,7 @@ def nearest(trial: Trial, finish: Finish, start: Reals) -> tuple[Flags, Reals]:
 
 
 def nearest_listed(places: Sequence[tuple[Reals, Flags, int]], finish: Finish, start: Reals) -> tuple[Flags, Reals]:
-    """The same where the candidates are listed: values of the joint, whether each is offered, and its side."""
+    """`nearest` for listed candidates: values of the joint, whether each is a candidate, and its side."""
     every = []
     for joint, is_offered, side in places:
         rows = np.flatnonzero(is_offered)
@@ -108,7 +108,7 @@ def nearest_listed(places: Sequence[tuple[Reals, Flags, int]], finish: Finish, s
 
 
 def _of_rows(asked: Callable[[At], T], rows: Rows) -> Callable[[At], T]:
-    """The problem for some of the rows."""
+    """The function for some of the rows."""
     return lambda place: asked(place._replace(rows=rows[place.rows]))
 
 
@@ -142,7 +142,7 @@ def _vanishes(results: Reals) -> Flags:
 
 
 def _start(trial: Trial, start: Reals) -> At:
-    """The starts that are roots themselves, as on a path that stands still."""
+    """The starts that are roots themselves, for example where a path stands still."""
     rows = np.arange(len(start))
     place = At(rows, start, np.ones(len(rows), dtype=int), np.full(len(rows), -1), np.zeros(len(rows)))
     results = trial(place)
@@ -183,7 +183,7 @@ def _over_the_end(trial: Trial, cells: Cells) -> Cells:
 
 
 def _part(trial: Trial, cells: Cells, low: float, high: float) -> Cells:
-    """The part of the same maps from low to high."""
+    """The parts of the cells from low to high, with the same relation between s and the joint."""
     ends = (np.full(len(cells), low), np.full(len(cells), high))
     return replace(cells, low=ends[0], high=ends[1], first=cells.at(trial, ends[0]), last=cells.at(trial, ends[1]))
 
@@ -199,8 +199,8 @@ def _ordered(cells: Cells, swap: Flags) -> tuple[Reals, Reals]:
 
 
 def _closing(trial: Trial, cells: Cells, column: int, level: Reals) -> tuple[Reals, Reals, Reals]:
-    """Find the place where a column equals a level. Returns the end on the side of the first, the other, and the
-    better.
+    """Find the place where a column equals a level. Returns the bracketing end on the side of the cell's first end, the
+    other bracketing end, and the nearer of the two.
 
     Newton's method from the end that is nearer to zero; bisection outside the cell, and in every third step.
     """
@@ -260,7 +260,9 @@ def _touched(cells: Cells) -> At:
 
 
 def _jumps(trial: Trial, cells: Cells) -> At:
-    """The roots at a constant joint, with the angle that turns most free: both angles at which the value vanishes."""
+    """The roots in a jump, where the joint is constant and the angle that turns most is free: both angles at which the
+    value vanishes.
+    """
     turned = turned_over(cells)
     if not turned.size:  # no cells, or no directions
         return _places(cells.take(np.zeros(0, dtype=int)), np.zeros(0))

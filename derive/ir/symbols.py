@@ -1,4 +1,4 @@
-"""Every name that programs share, as a symbol; branch signs, and what values are called that stand for some of them."""
+"""Every name that programs share, as a symbol; branch signs, and the names of values that belong to some of them."""
 
 from __future__ import annotations
 
@@ -20,62 +20,62 @@ class Flag(sp.Symbol):
 
 @cache
 def real(name: str) -> sp.Symbol:
-    """The name of a real number; of an angle, too: see `types`."""
+    """The name of a real number or of an angle: see `types`."""
     return sp.Symbol(name, real=True)
 
 
 @cache
 def flag(name: str) -> sp.Symbol:
-    """The name of what is true or false."""
+    """The name of a truth value."""
     return Flag(name)
 
 
 @cache
 def count(name: str) -> sp.Symbol:
-    """The name of a whole number: a sign, the number of a turn or of a status, a count of passes."""
+    """The name of an integer: a sign, the number of a turn or of a status, a count of passes."""
     return sp.Symbol(name, integer=True)
 
 
 def is_count(symbol: sp.Basic) -> bool:
-    """Whether it is the name of a whole number."""
+    """Whether a symbol is the name of an integer."""
     return isinstance(symbol, sp.Symbol) and bool(symbol.is_integer)
 
 
 def is_condition(value: sp.Basic) -> bool:
-    """Whether a value is true or false: a comparison, what is made of such, or a flag."""
+    """Whether a value is true or false: a comparison, a combination of comparisons, or a flag."""
     return isinstance(value, Flag) or (isinstance(value, Boolean) and not value.is_Symbol)
 
 
 def compared(kind: type[Relational], left: sp.Expr, right: sp.Expr | int) -> Relational:
-    """A comparison as it is written. SymPy would first ask whether it is decided, which takes long, and of names whose
-    values may be any number it never is.
+    """A comparison, not evaluated. SymPy would first try to decide it, which takes long, and never succeeds for names
+    that may have any value.
     """
     return kind(left, right, evaluate=False)
 
 
 def replaced(expression: sp.Basic, names: Mapping[sp.Basic, sp.Basic]) -> sp.Basic:
-    """The expression with other values for some names; asked first whether it reads any, which takes less time."""
+    """The expression with some names replaced. To save time it is returned at once where it reads none of them."""
     return expression if names.keys().isdisjoint(names_in(expression)) else expression.xreplace(names)
 
 
 def is_decided(value: object) -> bool:
-    """Whether a condition is true or false whatever its names are. Asked by its type: SymPy compares slowly."""
+    """Whether a condition is the constant true or false. Tested by its type: SymPy compares slowly."""
     return isinstance(value, BooleanAtom)
 
 
 def called(name: str, like: sp.Symbol) -> sp.Symbol:
-    """A name of the same type as another, whatever else the solver knows of that one."""
+    """A name of the same type as `like`, without the assumptions that the solver makes about `like`."""
     return flag(name) if isinstance(like, Flag) else count(name) if is_count(like) else real(name)
 
 
 def symbols_of(expression: sp.Basic) -> set[sp.Symbol]:
-    """The free symbols of an expression, without the named constant."""
+    """The free symbols of an expression, without `DEGREE`."""
     return set(names_in(expression))
 
 
 @cache
 def names_in(expression: sp.Basic) -> frozenset[sp.Symbol]:
-    """The same as a set that stays: asked again and again of the same expressions."""
+    """`symbols_of` as a frozen set; cached, because the same expressions are asked for many times."""
     return frozenset(s for s in expression.free_symbols if isinstance(s, sp.Symbol)) - {DEGREE}
 
 
@@ -90,7 +90,7 @@ def cosine(angle: sp.Symbol) -> sp.Symbol:
 
 
 def angle_of(name: sp.Symbol) -> sp.Symbol | None:
-    """The angle whose cosine has a name; None for any other name. Rules ask here, and look at no name themselves."""
+    """The angle whose cosine has this name; None for any other name. Rules call this, and never inspect a name."""
     return real(name.name.removeprefix(_COSINE)) if name.name.startswith(_COSINE) else None
 
 
@@ -110,7 +110,7 @@ def branch_with(sign: sp.Symbol) -> str:
 
 
 def angle_word(name: sp.Symbol) -> str:
-    """What an angle is called whose cosine, or whose direction's x, has this name: `cos_q2` → `q2`."""
+    """The name of the angle whose cosine, or whose direction's x, has this name: `cos_q2` → `q2`."""
     return str(name.name.removeprefix(_COSINE).removeprefix("direction_x_"))
 
 
@@ -133,19 +133,19 @@ POSITION = tuple(map(real, COORDINATE_NAMES))
 HOME_ROTATION = tuple(real(f"home_{r.name}") for r in ROTATION_ENTRIES)
 
 FLANGE_AXIS = tuple(real(f"flange_axis_{c}") for c in COORDINATE_NAMES)
-"""The line about which the carrying flange turns, as the flange sees it; zero where it turns freely."""
+"""The line about which the carrying flange turns, in the frame of the flange; zero where the flange turns freely."""
 BASE_AXIS = tuple(real(f"base_axis_{c}") for c in COORDINATE_NAMES)
-"""The same line as the machine sees it."""
+"""The line of `FLANGE_AXIS` as the base sees it."""
 
 START_POSITION = tuple(real(f"start_{c}") for c in COORDINATE_NAMES)
 START_ROTATION = tuple(real(f"start_{r.name}") for r in ROTATION_ENTRIES)
 
 TRIED, SIDE, FREED, FREED_ANGLE = real("tried"), count("side"), count("freed"), real("freed_angle")
 PLACE = (TRIED, SIDE, FREED, FREED_ANGLE)
-"""Where a trial is made: see `FindRoot`."""
+"""The arguments that say where a trial is made: see `FindRoot`."""
 
 REFUSAL = "refusal"
-"""The output of a branch that is 0, or the number of the status that refuses it: its place in `Status`."""
+"""An output of a branch: 0 where it has a solution, else the number of its status, which is its place in `Status`."""
 
 Choice = tuple[int, ...]
 """+1 or -1 for each of some signs."""
@@ -153,7 +153,7 @@ Choice = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Sign:
-    """A branch sign, and what its two values are called."""
+    """A branch sign, and the names of its two values."""
 
     symbol: sp.Symbol
     words: tuple[str, str]
@@ -171,7 +171,7 @@ def suffixed(name: str, signs: Sequence[Sign], choice: Choice) -> str:
 
 
 def without_words(name: str, signs: Sequence[Sign]) -> tuple[str, tuple[str, ...]]:
-    """A name without the words of signs behind it, and these words."""
+    """A name without the words of signs at its end, and these words."""
     found: list[str] = []
     for sign in reversed(signs):
         word = next((w for w in sign.words if name.endswith(f"_{w}")), None)

@@ -1,4 +1,4 @@
-"""A program as a structured tree: statements in order, and choices of which one side alone is run.
+"""A program as a structured tree: statements in order, and choices of which only one side is executed.
 
 if radius > tolerance:
     cos_q4 = x/radius
@@ -20,13 +20,13 @@ from derive.ir.symbols import names_in
 
 @dataclass(frozen=True)
 class If:
-    """A choice: what is run where the condition holds, and where it does not. Both bind the names."""
+    """A choice: the statements for a true condition, and those for a false one. Both sides bind `names`."""
 
     condition: sp.Basic
     holds: tuple[Item, ...]
     fails: tuple[Item, ...]
     names: tuple[sp.Symbol, ...]
-    """What both sides bind, and is read behind them."""
+    """The names that both sides bind and that later statements read."""
 
 
 Item = Statement | If
@@ -52,7 +52,7 @@ def expressions_in(items: Iterable[Item]) -> Iterator[sp.Basic]:
 
 
 def bindings_in(items: Iterable[Item]) -> Iterator[sp.Symbol]:
-    """The names that a tree binds, as often as it does, in order."""
+    """The names that a tree binds, in order; a name that is bound twice comes twice."""
     return (name for s in statements_in(items) for name in binds(s))
 
 
@@ -70,7 +70,7 @@ def bound_behind(item: Item) -> set[sp.Symbol]:
 
 
 def read_in(items: Iterable[Item]) -> set[sp.Symbol]:
-    """The names that a tree reads, whoever binds them."""
+    """The names that a tree reads, whether it binds them itself or not."""
     found = set[sp.Symbol]()
     for item in items:
         if isinstance(item, If):

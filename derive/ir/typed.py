@@ -20,7 +20,7 @@ def check_types(program: Program) -> None:
 
 
 def check_statement(statement: Statement, known: Known) -> dict[sp.Symbol, Type]:
-    """The names that a statement binds to angles, where some names are; raises `IllTypedError` if it mixes types."""
+    """The names that a statement binds to angles, given the `known` ones; raises `IllTypedError` if it mixes types."""
     if isinstance(statement, Let):
         return _check_let(statement, known)
     bound = angles_of(statement, known)
@@ -51,7 +51,7 @@ def _check_let(let: Let, known: Known) -> dict[sp.Symbol, Type]:
 
 
 def _wanted(statement: Statement) -> Iterator[tuple[sp.Basic, Type]]:
-    """The values of a statement that is no binding, with the types that they must have."""
+    """The values of a statement other than a `Let`, with the types that they must have."""
     if isinstance(statement, Require):
         yield statement.condition, Type.BOOL
     elif isinstance(statement, Solve):

@@ -1,8 +1,9 @@
 """The types of the intermediate representation, and the operations on each.
 
     Real     a number
-    Bool     a condition, and a name that is one: `flag`
-    Int      an integer: `count`. It is compared with, added to and multiplied by integers; `ToReal` makes it a Real
+    Bool     a condition, or a name made by `flag`
+    Int      an integer, or a name made by `count`. It is compared with, added to and multiplied by integers; `ToReal`
+             makes it a Real
     Angle    a Real modulo a turn, in radians. It comes from `Atan2` and `NearestOnArc`. It has sums, integer multiples,
              choices, a sine and a cosine. `Wrap` makes it a Real; every other use is refused
     Heading  an Angle in degrees, the unit of axes: `NearestPeriod` makes it a Real
@@ -54,7 +55,7 @@ Known = Mapping[sp.Symbol, Type]
 """The names that are angles."""
 _NUMBERS = (Type.REAL, Type.INT)
 TURNING = (Type.ANGLE, Type.HEADING)
-"""What may be a turn more or less."""
+"""The types of values that are defined modulo a turn."""
 _NOTHING: Known = {}
 
 
@@ -68,8 +69,8 @@ def type_of(value: sp.Basic, known: Known = _NOTHING) -> Type:
 
 @cache
 def _type_of(value: sp.Basic, angles: frozenset[tuple[sp.Symbol, Type]]) -> Type:
-    """The same, with the names in it that are angles. Cached: every pass checks the expressions that it has not
-    changed, too.
+    """The type of an expression, given the names in it that are angles. Cached: every pass also checks the expressions
+    that it has not changed.
     """
     known = dict(angles)
     if isinstance(value, sp.Symbol):
@@ -100,7 +101,7 @@ def angles_in(body: Iterable[Statement]) -> dict[sp.Symbol, Type]:
 
 
 def angles_of(statement: Statement, known: Known) -> dict[sp.Symbol, Type]:
-    """The names that a statement binds to angles, where some are known."""
+    """The names that a statement binds to angles, given those that are already known."""
     found: dict[sp.Symbol, Type] = {}
     if isinstance(statement, Let):
         found = {statement.name: type_of(statement.value, known)}
@@ -123,7 +124,7 @@ def output_types(program: Program) -> dict[str, Type]:
 
 
 def _same(value: sp.Basic, found: Sequence[Type], *among: Type) -> Type:
-    """The common type of some parts, which must be one of these."""
+    """The common type of some parts, which must be one of `among`."""
     named = {*found} - {Type.WRITTEN}
     if len(named) > 1 or not named <= {*among}:
         raise IllTypedError(f"{value} mixes types: {', '.join(sorted(t.value for t in {*found}))}")
@@ -235,4 +236,4 @@ _RULES: dict[type[sp.Basic], Callable[[sp.Basic, Sequence[Type]], Type]] = {
     sp.Or: _logic,
     sp.Not: _opposite,
 }
-"""By operation: the function from the types of the parts to the type of the result."""
+"""For each operation, the function from the types of its parts to the type of its result."""

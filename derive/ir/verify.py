@@ -21,7 +21,7 @@ from derive.ir.program import (
     Statement,
     binds,
     expressions,
-    told,
+    reason_expressions,
 )
 from derive.ir.symbols import is_decided, names_in, symbols_of
 from derive.ir.typed import check_types
@@ -37,10 +37,10 @@ class BrokenProgram(Exception):
 
 
 class RepeatedName(BrokenProgram):
-    """Two values of a program have one name, or names that a language joins to one."""
+    """Two values of a program have the same name, or names that become the same in a language that joins words."""
 
     def __init__(self, message: str, *names: str) -> None:
-        """names: as each of the two is called."""
+        """names: the names of both values."""
         super().__init__(message)
         self.names = names
 
@@ -75,7 +75,7 @@ def _check_statement(program: Program, statement: Statement, bound: dict[str, sp
             raise BrokenProgram(f"{program.name}: the matrix, the right-hand sides and the names do not fit together")
     if isinstance(statement, Call):
         _check_call(program, statement)
-    for value in (*expressions(statement), *told(statement)):
+    for value in (*expressions(statement), *reason_expressions(statement)):
         _check_expression(program, value, bound)
     bound |= {name.name: name for name in binds(statement)}
 
@@ -123,7 +123,7 @@ def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:
 
 @cache
 def _joined(name: str) -> str:
-    """A name as Structured Text has it, which joins its words, and ignores case; empty for one that is not portable."""
+    """A name as Structured Text compares it, with its words joined and without case; empty where it is not portable."""
     return name.replace("_", "") if _PORTABLE.match(name) else ""
 
 
@@ -137,7 +137,7 @@ def _check_expression(program: Program, value: sp.Basic, bound: dict[str, sp.Sym
 
 
 def _refuse_name(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol]) -> None:
-    """Raise for the first name that is not bound, or bound as another type."""
+    """Raise an error for the first name that is not bound, or is bound with another type."""
     for node in sp.preorder_traversal(value):
         if isinstance(node, sp.Symbol) and node.name not in bound:
             message = f"{program.name}: {node.name!r} is read before it is bound, in {value}"
@@ -149,7 +149,7 @@ def _refuse_name(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol])
 
 @cache
 def _strange_part(value: sp.Basic) -> str:
-    """What of an expression no language can print, in words; nothing where all of it can be."""
+    """A description of the part of an expression that no language can print; empty where every part can be printed."""
     for node in sp.preorder_traversal(value):
         if isinstance(node, sp.Pow) and not _is_power_printable(node):
             return f"power {node} is not an integer power"

@@ -1,23 +1,23 @@
 """All programs of one mechanism: forward and inverse, branches, Jacobian, margins, limits, couplings.
 
-It may import the folders from `ir` to `optimize`. Of a branch, `sigma_elbow` = +1, a positive `branch_elbow` and
-configuration byte 1 are the same.
+It may import the folders from `ir` to `optimize`. For a branch, `sigma_elbow` = +1, a positive `branch_elbow` and
+configuration byte 1 mean the same.
 
-branches/: which step of the derivation a branch is
+branches/: the step of the derivation that decides each branch
 build: from a description to all programs
-bundle: all programs lowered together and checked; what never changes moved into the setup
-coupling: what a coupling calls of an orientation kinematics, and which offsets are allowed
+bundle: all programs lowered together and checked, with constants moved into the setup
+coupling: the programs that a coupling calls of an orientation kinematics, and the allowed offsets
 differential: the Jacobian, from A x' + B q' = 0
-flange_rotation: how the flange turns: the programs of its rotation
+flange_rotation: the rotations that the flange can have: their programs
 forward: forward kinematics, and the values of the inverse derivation at given axis values
 inverse: inverse kinematics of one branch, for a pose or for a point off the flange
-kinematics: what all later folders read: every program of a mechanism, and what its names mean
+kinematics: the bundle that all later folders read: every program of a mechanism, and the meanings of its names
 margins/: the singularity margins of a machine that is solved in closed form
-no_pose: why a machine has no pose at its nominal dimensions
-number_of_joints: a refusal of more or fewer joints than the task commands quantities
+no_pose: the reason why a machine has no pose at its nominal dimensions
+number_of_joints: the refusal of more or fewer joints than commanded quantities
 parameters: all inputs of a machine, and the setup program
 reference_cases: the data of a test on the controller: machines, calls, expected answers
 sampling: samples of machines and axis values, for numerical decisions of the build
 scan/: a mechanism with a root scan along one joint
-shared_names: an input and a derived value with one name, found and derived again under another
+shared_names: where an input has the name of a derived value, the mechanism is derived again with another name
 """

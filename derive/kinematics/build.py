@@ -78,8 +78,8 @@ def build(mechanism: Mechanism) -> Kinematics:
 
 
 def prepared(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> Mechanism:
-    """The mechanism as it is derived: its inputs with names of their own, its numbers named, its gears at the joints,
-    its rods found.
+    """The mechanism as it is derived: its inputs have unique names, its numbers have names, its gears are moved to the
+    joints, and its rods are recognised.
     """
     mechanism = with_gears(with_named_numbers(with_inner_names(mechanism, further)))
     check_joints(mechanism)
@@ -126,7 +126,7 @@ def _built(mechanism: Mechanism) -> Kinematics:
 def _factors(
     mechanism: Mechanism, closed: Assembled, inverse: Inverse, assignments: Sequence[Assignment]
 ) -> list[Factor]:
-    """What the determinants of the two Jacobians are products of: a factor for each way of being singular."""
+    """The factors of the determinants of the two Jacobians, one for each kind of singularity."""
     told: list[Assignment | Conditioning] = [*assignments, *inverse.derivation.conditionings]
     factors = [factor_of(mechanism, found) for found in told]
     if mechanism.passive:
@@ -171,8 +171,8 @@ def _forward_from(mechanism: Mechanism, inverse: Inverse, margins: tuple[Let, ..
 
 
 def _scanned(mechanism: Mechanism) -> Kinematics:
-    """The programs of a chain without a closed form, or with one where a parameter is zero: one joint is scanned, the
-    determinant is the margin.
+    """The programs of a chain that has no closed form, or has one only where a parameter is zero: one joint is scanned,
+    and the determinant of the Jacobian is the margin.
     """
     both = solve_both(mechanism)
     refuse_names(mechanism, names_of_search(mechanism, trial_on_branch(both)))
@@ -207,8 +207,8 @@ def _last(
 
 
 def _offset_programs(mechanism: Mechanism, closed: Assembled, conditions: tuple[sp.Expr, ...]) -> list[Program]:
-    """The programs for a point off the flange; they may not need more of the machine than the pose does. None where
-    they do, unless the description asks for them: then it is refused.
+    """The programs for a point off the flange. They may not put further conditions on the machine: where they do, there
+    are none, or the description is refused if it asks for them.
     """
     forward = closed.forward
     try:

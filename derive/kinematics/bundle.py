@@ -1,4 +1,4 @@
-"""All programs of a mechanism as one bundle: lowered together, checked, what never changes moved into the setup."""
+"""All programs of a mechanism as one bundle: lowered together, checked, with constants moved into the setup."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class _Hoisted:
 def _hoisted(
     mechanism: Mechanism, parameters: tuple[Parameter, ...], programs: Sequence[Program], at_home: Sequence[Statement]
 ) -> _Hoisted:
-    """The programs as they are lowered; refuses what none of them may read or answer."""
+    """The lowered programs; refuses a name that no program may read or return."""
     constants = constants_of(mechanism, parameters, at_home)
     unsettled = {o.name for window in windows(mechanism) for o in window.outputs}  # drives may change these later
     settled = [name for name in constants if name not in unsettled]
@@ -47,7 +47,7 @@ def _hoisted(
     setup = setup_program(mechanism, parameters, hoisted, read, at_home=at_home)
     settable = setup_program(mechanism, parameters, hoisted, read, has_settings=True, at_home=at_home)
     called = {program.name for program in shared(shorter)}
-    for program in (p for p in shorter if p.name not in called):  # a caller gives what those read
+    for program in (p for p in shorter if p.name not in called):  # a caller passes the inputs of the others
         _check_inputs(mechanism, program, {o.name for o in setup.outputs})
         _check_outputs(program)
     return _Hoisted(setup, settable, derived, tuple(shorter))
@@ -92,8 +92,8 @@ def bundle_of(
 
 
 def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -> None:
-    """Refuse a name that is read and is no input: a mistake of the derivation, found here and not
-    in a generated file.
+    """Refuse a name that is read but is no input: a mistake of the derivation, found here before it reaches a generated
+    file.
     """
     allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
     allowed |= {branch_sign(b.name).name for b in mechanism.branches}
@@ -106,6 +106,6 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
 
 
 def _check_outputs(program: Program) -> None:
-    """Refuse an output that is an angle without its turns: a call answers numbers."""
+    """Refuse an output that is an angle modulo a turn: a call returns numbers."""
     if angles := [name for name, kind in output_types(program).items() if kind in (Type.ANGLE, Type.HEADING)]:
         raise BrokenProgram(f"{program.name}: nothing has chosen a turn of {', '.join(angles)}")

@@ -58,7 +58,7 @@ _MET: dict[Turning, tuple[int, ...]] = {
     Turning.DIRECTION: (2,),
     Turning.FULL: (0, 1, 2),
 }
-"""The columns of the commanded rotation that are met for every turn of the flange."""
+"""The columns of the commanded rotation that are reached exactly for every turn of the flange."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def _compatible(mechanism: Mechanism) -> Program:
     unmet = [s for k, s in enumerate(parts.tool) if k not in _MET[mechanism.task.turning]]
     lengths = [p.symbol for p in mechanism.parameters if p.unit == "u"]
     body: list[Statement] = [
-        Let(_UNNOTICED, HELD * sp.Add(*map(sp.Abs, lengths)), "offsets up to this are not noticed")
+        Let(_UNNOTICED, HELD * sp.Add(*map(sp.Abs, lengths)), "offsets up to this length count as zero")
     ]
     if any(parts.flange):
         body += [*finite(FLANGE_AXIS), *_along(parts), Let(real("flange_offset"), _size(across), _ACROSS)]
@@ -114,7 +114,7 @@ def _compatible(mechanism: Mechanism) -> Program:
 
 
 def _unnoticed(name: str) -> Require:
-    """The condition that the shift of this name is too small to be noticed."""
+    """The condition that the shift with this name is so small that it counts as zero."""
     return Require(
         sp.Le(real(name), _UNNOTICED), Status.INVALID_COUPLING, reason=about_machine(Why.TURNS_WITH_THE_FLANGE)
     )
@@ -134,7 +134,7 @@ def _end_point_shift(mechanism: Mechanism) -> Program:
 def _total_image(mechanism: Mechanism) -> Program:
     """The orientations that tool and flange can take together, and the distance between both axes of rotation."""
     assert mechanism.chain is not None
-    without_joints = mechanism.task.turning is Turning.NONE  # then it may be inclined by any angle
+    without_joints = mechanism.task.turning is Turning.NONE  # then the tool may be inclined by any angle
     own = sp.Matrix(pose_of(mechanism.chain).rotation if without_joints else flange_rotation(mechanism.chain))
     outputs = [Output(f"zero_{r.name}", v) for r, v in zip(ROTATION_ENTRIES, _ROTATION * own, strict=True)]
     read = [*FLANGE_AXIS]

@@ -54,7 +54,7 @@ axis."""
 TWIST_ROWS = _ROWS[:6]
 """The rows of a twist along and about the axes of the base."""
 _FOLLOWED = ("pitch", "roll")
-"""About the axes of the turns that follow the commanded rotation, where the first turns do not."""
+"""The rows of a twist about the axes of the turns that follow the commanded rotation, where the first turns do not."""
 _TURNS: dict[Turning, tuple[str, ...]] = {
     Turning.PITCH: _FOLLOWED[:1],
     Turning.PITCH_ROLL: _FOLLOWED,
@@ -103,7 +103,7 @@ def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[
 
 
 def solved_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
-    """The same without the columns of the joints that are held."""
+    """`jacobian_entries` without the columns of the held joints."""
     lets, entries = jacobian_entries(mechanism)
     width = len(mechanism.joints)
     solved = [k for k, j in enumerate(mechanism.joints) if j in mechanism.solved_joints]
@@ -122,7 +122,7 @@ def scaled_entries(mechanism: Mechanism, entries: Sequence[sp.Expr]) -> tuple[sp
 
 
 def _per_motor(mechanism: Mechanism, matrix: sp.Matrix) -> tuple[tuple[Let, ...], list[sp.Expr]]:
-    """The entries per velocity of a motor; their sines and cosines by names."""
+    """The entries per velocity of a motor, with names for their sines and cosines."""
     coupled = matrix * _motor_matrix(mechanism)
     planar = mechanism.chain is not None and not is_spatial(mechanism.chain)
     entries = [sp.expand_mul(e) if planar else e for e in coupled]
@@ -197,7 +197,7 @@ def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]
 
 
 def _solved(mechanism: Mechanism, by_pose: sp.Matrix, by_joints: sp.Matrix) -> tuple[sp.Matrix, tuple[Statement, ...]]:
-    """-A^-1 B. The coordinates that equations of numbers alone hold (z of a quill) come first, without a divisor."""
+    """-A^-1 B. Coordinates with numeric coefficients alone (z of a quill) are solved first, without a divisor."""
     first = [k for k in range(by_pose.rows) if not by_pose.row(k).free_symbols]
     held = [c for c in range(by_pose.cols) if any(by_pose[k, c] != 0 for k in first)]
     if len(held) != len(first):
@@ -236,7 +236,7 @@ def _by_adjugate(
 def _entries(
     mechanism: Mechanism, matrix: sp.Matrix, names: Sequence[str], equations: Sequence[int]
 ) -> tuple[sp.Matrix, tuple[Let, ...]]:
-    """The entries of a matrix of derivatives by names of their own, `slope_<equation>_by_<unknown>`."""
+    """The entries of a matrix of derivatives, under the names `slope_<equation>_by_<unknown>`."""
     trigonometric, values = named_trigonometry(mechanism, list(matrix))
     lets: list[Let] = [*trigonometric]
     entries = []

@@ -1,4 +1,4 @@
-"""How the flange turns: the programs of its rotation, which an orientation kinematics behind it asks."""
+"""The rotations that the flange can have: their programs, which an orientation kinematics behind it calls."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from derive.kinematics.kinematics import Freedom
 
 
 def projection_program(mechanism: Mechanism) -> Program:
-    """The rotation nearest to the commanded one that the flange can take; of a direction, with any twist about it.
+    """The rotation of the flange nearest to the commanded one; where it follows a direction, with any twist about it.
 
-    Of a pitch it depends on the position, too: nothing is projected before that is known.
+    The rotation of a pitch depends on the position, too, so there is no projection before the position is known.
     """
     if mechanism.task.turning is Turning.ABOUT_Z:
         return projection_about_z(rotation_behind(mechanism))
@@ -34,18 +34,18 @@ def projection_about_z(behind: sp.Matrix) -> Program:
 
 
 def needs_twist(mechanism: Mechanism) -> bool:
-    """Whether its Jacobian lacks rows of the twist that are not zero: a coupling and a turned base need them."""
+    """Whether the Jacobian lacks rows of the twist that are not zero: a coupling and a turned base need them."""
     return freedom_of(mechanism) is not Freedom.ZERO and not set(TWIST_ROWS) <= set(jacobian_rows(mechanism))
 
 
 def freedom_of(mechanism: Mechanism) -> Freedom:
-    """How the flange turns."""
+    """The orientations that the flange can have."""
     if mechanism.motion.turning is Turning.FULL or mechanism.followed_turns:
         return Freedom.THREE
     if mechanism.chain is None:
         return Freedom.ONE if mechanism.is_turning_loop else Freedom.ZERO
     joints = {j.symbol for j in mechanism.joints}
-    turns = [t for t in pose_of(mechanism.chain).turns if t.amount.free_symbols & joints]  # opposite ones have merged
+    turns = [t for t in pose_of(mechanism.chain).turns if t.amount.free_symbols & joints]  # parallel turns are merged
     return Freedom.THREE if len(turns) > 1 else Freedom.ONE if turns else Freedom.ZERO
 
 

@@ -58,8 +58,8 @@ from derive.solver.solve import Derivation, solve
 
 
 def pose_at_axes(mechanism: Mechanism) -> Forward:
-    """The pose of a mechanism at its axis values; it requires the quantities to be positive that the description says
-    are.
+    """The pose of a mechanism at its axis values. It requires the quantities to be positive that the description states
+    to be positive.
     """
     if mechanism.is_platform:
         return forward_from_home(mechanism)
@@ -107,7 +107,7 @@ def solve_for_position(mechanism: Mechanism) -> Derivation:
 
 
 def _in_assembly_mode(derivation: Derivation, mechanism: Mechanism) -> tuple[Statement, ...]:
-    """The derivation in the assembly mode of the machine; where the loop does not close it is IMPOSSIBLE."""
+    """The derivation in the assembly mode of the machine; its status is IMPOSSIBLE where the loop does not close."""
     sides = {s.sigma: ASSEMBLY_SIGN for s in derivation.determinants}
     chosen = (rewritten(s, lambda e: e.xreplace(sides)) for s in derivation.statements)
     return tuple(replace(s, otherwise=Status.IMPOSSIBLE) if isinstance(s, Require) else s for s in chosen)
@@ -159,7 +159,7 @@ def forward_program(mechanism: Mechanism, forward: Forward, margins: tuple[Let, 
 
 
 def orientation_program(forward: Forward) -> Program:
-    """The rotation alone. Of a plate that keeps its orientation it is a constant, whatever numbers the axes are."""
+    """The rotation alone. For a plate that keeps its orientation it is constant, whatever the axis values are."""
     outputs = _rotation_outputs(forward)
     statements = forward.statements
     if not any(o.value.free_symbols for o in outputs):

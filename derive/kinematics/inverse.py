@@ -79,11 +79,11 @@ class Inverse:
     moving: tuple[Joint, ...]
     frozen: tuple[Joint, ...] = ()
     checks: tuple[MachineCheck, ...] = ()
-    """Of a trial: what the machine must have, whatever the pose."""
+    """The checks of a trial on the machine, which do not depend on the pose."""
 
     @property
     def known(self) -> tuple[Statement, ...]:
-        """Its statements, with those in front of the derivation."""
+        """The statements of the derivation, with those in front of it."""
         return (*self.naming, *self.derivation.statements)
 
     @property
@@ -107,7 +107,7 @@ def solve_pose(mechanism: Mechanism) -> Inverse:
 
 
 def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:
-    """Solve the closure of a commanded pose for all joints but one that is known. The equations need not agree."""
+    """Solve the closure of a commanded pose for all joints except a known one. The equations need not agree."""
     closure, held = closure_at(mechanism, known), mechanism.held_joints
     moving = tuple(j for j in mechanism.solved_joints if j != known)
     kept = tuple(s for j in held for s in frozen_lets(j))
@@ -173,8 +173,8 @@ def _solve(
 
 
 def _frozen_joints(mechanism: Mechanism) -> tuple[Joint, ...]:
-    """The held joints, and the last rotary ones of a chain, as many as the position does not determine; of a loop the
-    joint of its heading that the fewest equations of the position read.
+    """The held joints, and as many of the last rotary joints of a chain as the position does not determine; for a loop
+    the joint of its heading that the fewest equations of the position read.
     """
     held, solved = mechanism.held_joints, mechanism.solved_joints
     if mechanism.heading is not None:
@@ -212,7 +212,7 @@ def heading_lets(behind: sp.Matrix) -> tuple[Statement, ...]:
         Let(
             along,
             cos_value,
-            "nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept",
+            "nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is kept",
         ),
         Let(across, sin_value),
         Let(length, Root(along**2 + across**2)),
@@ -255,7 +255,7 @@ def inverse_program(
 
 
 def _in_plane(mechanism: Mechanism, name: str, value: sp.Expr) -> Require:
-    """The condition that a coordinate that the task does not command is where the machine has it."""
+    """The condition that a coordinate outside the task has the value that the machine gives it."""
     distance = sp.Abs(real(name) - value)
     why = Why.OUT_OF_PLANE if mechanism.task.position == COORDINATE_NAMES_OF_A_PLANE else Why.NOT_MOVED
     reason = about(name, why, distance - PLANE * SCALE, Unit.LENGTH)

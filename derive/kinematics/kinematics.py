@@ -1,4 +1,4 @@
-"""The bundle that the build gives to the emitters: every program of one mechanism, and what its names mean.
+"""The bundle that the build gives to the emitters: every program of one mechanism, and the meanings of its names.
 
 Names that programs share:
 
@@ -31,7 +31,7 @@ class Freedom(Enum):
 
 @dataclass(frozen=True)
 class Margin:
-    """A dimensionless distance from a singularity, with the exponent it has in sqrt(det(J^T J))."""
+    """A dimensionless distance from a singularity, with its exponent in sqrt(det(J^T J))."""
 
     name: str
     exponent: int
@@ -39,8 +39,7 @@ class Margin:
     """"type 1" (serial) or "type 2" (parallel)."""
     length: str | None = None
     """For a machine without a length to divide by: the output that is the distance, in the user's unit. The margin
-    itself
-    is then 1, or 0 where the distance leaves an axis free: it has no unit, but does not tell the distance."""
+    itself is then 1, or 0 where the distance leaves an axis free: it has no unit, and is no measure of distance."""
 
     @property
     def factor(self) -> str:
@@ -57,7 +56,7 @@ class Inverted:
     solutions: int
     """Real solutions found by multi-start root finding, agreeing with the slots at every sampled pose."""
     missed: tuple[int, int] | None = None
-    """With a root scan: how many solutions no slot held, of how many in all."""
+    """With a root scan: the number of solutions that no slot held, and the number of all solutions."""
 
 
 @dataclass(frozen=True)
@@ -136,7 +135,7 @@ class Kinematics:
     search_given: Program | None = None
     from_joints: Program | None = None
     tried_branches: int = 0
-    """With a root scan: how many of the first branches are signs of the steps of a trial; the others tell roots
+    """With a root scan: the number of first branches that are signs of the steps of a trial; the others tell roots
     apart."""
     twist: Program | None = None
     compatible: Program | None = None
@@ -146,11 +145,11 @@ class Kinematics:
     self_test: SelfTest | None = None
     """The cases of the self-test on the controller; None until they are made."""
     undrawn: str = ""
-    """Why there is no drawing; empty where there is one."""
+    """The reason why there is no drawing; empty where there is one."""
 
     @property
     def shared(self) -> tuple[Program, ...]:
-        """The programs that several of these call, each before its callers."""
+        """The programs that several programs call, each before its callers."""
         return shared(self.programs)
 
     @property
@@ -160,7 +159,7 @@ class Kinematics:
 
     @property
     def programs(self) -> tuple[Program, ...]:
-        """All programs but `setup`, without those that are shared."""
+        """All programs except `setup` and the shared ones."""
         found = (
             self.forward, self.forward_from, self.orientation, self.branch, self.limits, self.singularity,
             self.jacobian,

@@ -1,7 +1,8 @@
-"""Why a machine has no pose at its nominal dimensions: rods that cannot meet, or a quantity that is never positive.
+"""The reason why a machine has no pose at its nominal dimensions: rods that cannot meet, or a quantity that is never
+positive.
 
-Found by numbers alone, and only where sampling has found no pose. A loop is brought as near to closing as it goes, from
-many starts; what is left is told of each rod.
+It is found numerically, and only where sampling has found no pose. From many starts a loop is brought as near to
+closing as possible; the message states the remaining error of each rod.
 """
 
 from __future__ import annotations
@@ -23,15 +24,15 @@ from derive.plate.turning import NoPoseAtHome, samples_near_home
 _STARTS, _STEPS, _SEED = 200, 60, 41
 _DRAWS = 4000
 _CLOSED = 1e-6
-"""What a loop misses that closes, in lengths of the machine."""
+"""The largest error of a closed loop, in lengths of the machine."""
 _DIFFERENCE = 1e-6
 _CHECK = "check the nominal values of parameters"
 _AWAY = 3.0
-"""Lengths and positions are sought up to so many lengths of the machine."""
+"""The largest start of a length or a position, in lengths of the machine."""
 
 
 def why_no_pose(mechanism: Mechanism, *, at_home: bool = False) -> str:
-    """The sentence for a machine without a pose. at_home: of a loop, without one at its home pose."""
+    """The message for a machine without a pose. at_home: for a loop without a pose near its home pose."""
     machine = machine_at(mechanism)
     if mechanism.chain is None:
         search = _Search(mechanism, machine, at_home)
@@ -45,7 +46,7 @@ def why_no_pose(mechanism: Mechanism, *, at_home: bool = False) -> str:
 
 
 def _elsewhere(mechanism: Mechanism, values: Mapping[str, Array]) -> str:
-    """Where a loop closes that closes at no pose of those that were sampled."""
+    """The message that a loop closes at a pose that was not sampled."""
     units = [np.pi / 180.0 if j.is_angle else 1.0 for j in mechanism.joints]
     joints = zip(mechanism.joints, units, strict=True)
     told = ", ".join(f"{j.name} = {float(values[j.symbol.name][0]) / unit:.4g}" for j, unit in joints)
@@ -75,7 +76,7 @@ def _open_loop(mechanism: Mechanism, machine: Samples, missed: NDArray[np.float6
 
 
 def _not_positive(mechanism: Mechanism, values: Mapping[str, Array]) -> str | None:
-    """Which quantities that must be positive never are; None where that is not the reason."""
+    """The message about quantities that must be positive and never are; None where that is not the reason."""
     told = [f"{q}" for q in mechanism.positive]
     found = [evaluate(sp.sympify(q), values) for q in mechanism.positive]
     for text, value in zip(told, found, strict=True):
@@ -94,7 +95,7 @@ def _not_positive(mechanism: Mechanism, values: Mapping[str, Array]) -> str | No
 
 
 def _anywhere(mechanism: Mechanism, machine: Samples) -> dict[str, Array]:
-    """Joint values of a chain, over all that the joints may be."""
+    """Joint values of a chain, over the whole ranges of the joints."""
     rng, size = np.random.default_rng(_SEED), size_of(mechanism, machine)
     drawn = {}
     for joint in mechanism.joints:
@@ -107,7 +108,7 @@ def _anywhere(mechanism: Mechanism, machine: Samples) -> dict[str, Array]:
 def near_home(
     mechanism: Mechanism, derivation: Sequence[Statement], signs: Sequence[sp.Symbol], machine: Samples, seed: int
 ) -> Samples:
-    """`samples_near_home`; raises `DescriptionError` with what the legs miss where there are none."""
+    """`samples_near_home`; where there are none, raises `DescriptionError` with the errors of the legs."""
     try:
         return samples_near_home(mechanism, derivation, signs, machine, seed)
     except NoPoseAtHome:
@@ -143,7 +144,7 @@ class _Search:
         return known
 
     def residual(self, unknowns: NDArray[np.float64]) -> NDArray[np.float64]:
-        """What every equation misses, a column each: a rod its length."""
+        """The error of every equation, a column each; for a rod, the error of its length."""
         known = self.values(unknowns)
         stated = (*self._mechanism.closure, *(g.equation for g in self._mechanism.guides))
         missed = [evaluate(sp.sympify(e), known) / self.size for e in stated]
@@ -170,7 +171,7 @@ class _Search:
         return here
 
     def most_regular_first(self, closed: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Those that close and whose positive quantities are, the pose that the joints hold best in front."""
+        """The closed poses with positive quantities where they must be, the most regular pose first."""
         columns = range(len(self._mechanism.joints), closed.shape[1])
         if not columns:
             return closed
@@ -180,7 +181,7 @@ class _Search:
         return np.asarray(closed[np.argsort(-np.where(np.all(is_own, axis=0), held, -1.0), kind="stable")])
 
     def missed(self, found: NDArray[np.float64]) -> NDArray[np.float64]:
-        """What the equations miss at the best of these."""
+        """The errors of the equations at the best of the found unknowns."""
         missed = self.residual(found)
         return np.asarray(missed[int(np.argmin((missed**2).sum(axis=1)))])
 

@@ -1,4 +1,4 @@
-"""As many joints are solved for as the task commands quantities: any other number is refused, before all else."""
+"""The inverse solves for as many joints as the task commands quantities: any other number is refused at the start."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def check_joints(mechanism: Mechanism) -> None:
     spare = len(mechanism.solved_joints) - len(rows)
     if spare:
         raise DescriptionError(_wrong_number(mechanism, spare, commanded))
-    if mechanism.is_platform:  # those without joints hold what is not commanded: see `check_home`
+    if mechanism.is_platform:  # conditions without joints fix coordinates that are not commanded: see `check_home`
         joints = {j.symbol for j in mechanism.joints}
         equations = sum(bool(sp.sympify(e).free_symbols & joints) for e in mechanism.equations)
     if equations > len(rows):
@@ -28,7 +28,7 @@ def check_joints(mechanism: Mechanism) -> None:
 
 
 def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
-    """The sentence for a machine with other than as many joints as its task commands quantities."""
+    """The message for a machine with more or fewer joints than commanded quantities."""
     joints, held = mechanism.joints, mechanism.held
     if spare < 0:
         left = f", of which {len(held)} {'is' if len(held) == 1 else 'are'} held" if held else ""
@@ -38,7 +38,7 @@ def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
     number = "one joint" if spare == 1 else f"{spare} joints"
     names = "the one that is" if spare == 1 else "those that are"
     remedy = f"name {names} held at the reference: held=({joints[0].name},)"
-    if mechanism.chain is None:  # of a closed loop every joint follows from the pose
+    if mechanism.chain is None:  # in a closed loop every joint follows from the pose
         remedy = "command more of the pose, or leave out joints"
     return (
         f"{number} too many: the task commands {commanded}, and {len(mechanism.solved_joints)} joints are to be solved "
@@ -47,7 +47,7 @@ def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
 
 
 def _follow_pitch(mechanism: Mechanism, spare: int) -> str:
-    """What to command instead, of a chain whose heading may follow from its position."""
+    """The advice on what to command instead, for a chain whose heading may follow from its position."""
     instead = {(Turning.DIRECTION, -1): Turning.PITCH, (Turning.FULL, -1): Turning.PITCH_ROLL}
     found = instead.get((mechanism.task.turning, spare))
     if found is None or mechanism.chain is None or mechanism.task.position != "xyz" or not is_spatial(mechanism.chain):

@@ -47,8 +47,8 @@ _LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH)
 
 
 def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
-    """The description's parameters, then offset and limits of every axis and of every limited quantity: all that users
-    give.
+    """All inputs that users give: the parameters of the description, then offset and limits of every axis, then the
+    limits of every limited quantity.
     """
     parameters = [p for p in mechanism.parameters if p.fixed is None]
     for joint in mechanism.joints:
@@ -96,7 +96,7 @@ def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:
 
 
 def _at_home(branch: Branch) -> Parameter:
-    """The branch at the home pose: with it the assembly mode of the machine is told."""
+    """The branch at the home pose, on which the assembly mode of the machine depends."""
     meaning = f"branch {branch.name} at the home pose: {branch.names[1]} instead of {branch.names[0]}"
     name = home_flag(branch)
     return Parameter(real(name), name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, 0.0)
@@ -149,7 +149,7 @@ def constants_of(mechanism: Mechanism, parameters: tuple[Parameter, ...], at_hom
 def _of_machine(
     mechanism: Mechanism, parameters: tuple[Parameter, ...], has_settings: bool, at_home: Sequence[Statement]
 ) -> tuple[list[Statement], list[Output]]:
-    """Statements and outputs of the setup without what is hoisted."""
+    """Statements and outputs of the setup without hoisted values."""
     body: list[Statement] = [condition for p in parameters for condition in _range_of(p)]
     numbers = [Let(real(p.name), p.fixed, p.meaning) for p in mechanism.parameters if p.fixed is not None]
     body += numbers
@@ -172,7 +172,7 @@ def _of_machine(
     body += sized
     outputs += constants
     if chooses_by_lengths(mechanism):
-        body.append(Let(TIE_OF_LENGTHS, TIE_SHARE**2 * SCALE**2, "squared distances closer than this are equal"))
+        body.append(Let(TIE_OF_LENGTHS, TIE_SHARE**2 * SCALE**2, "squared distances that differ by less are equal"))
         outputs.append(Output(TIE_OF_LENGTHS.name, TIE_OF_LENGTHS))
     return body, outputs
 
@@ -189,7 +189,7 @@ def _gears(mechanism: Mechanism) -> tuple[list[Let], list[Output]]:
 
 
 def _size(mechanism: Mechanism, at_home: Sequence[Statement]) -> tuple[tuple[Statement, ...], tuple[Output, ...]]:
-    """The characteristic length of the machine; of a loop that turns its platform all that its home pose tells."""
+    """The characteristic length of the machine; for a loop that turns its platform all constants of its home pose."""
     if mechanism.is_platform:
         return machine_statements(mechanism, at_home), machine_constants(mechanism)
     let = Let(SCALE, machine_scale(mechanism), "characteristic length of the machine")
@@ -197,7 +197,7 @@ def _size(mechanism: Mechanism, at_home: Sequence[Statement]) -> tuple[tuple[Sta
 
 
 def _as_constant(parameter: Parameter) -> Output:
-    """The parameter as other programs read it: a sign is a real number, which multiplies."""
+    """The parameter as other programs read it: a sign is a real number, for products."""
     own = input_of(parameter)
     return Output(parameter.name, ToReal(own) if is_count(own) else own)
 
@@ -254,7 +254,7 @@ def _range_of(parameter: Parameter) -> tuple[Require, ...]:
 
 
 def ranges(parameters: Iterable[Parameter]) -> frozenset[Reason | None]:
-    """The reasons that refuse a parameter for itself, whatever the others are."""
+    """The reasons that refuse a single parameter, whatever the others are."""
     return frozenset(condition.reason for p in parameters for condition in _range_of(p))
 
 
@@ -269,7 +269,7 @@ def _inequality(condition: sp.Basic) -> sp.Basic:
 
 
 def _without_limits(joint: Joint) -> str:
-    """The limits of an axis for which none are given, in words: see `windows`."""
+    """The limits of an axis in words, for the case that none are given: see `windows`."""
     if joint.domain is not None:
         low, high = joint.domain
         return f"joint value {low:g} .. {high:g}" if high < float(LARGEST) else f"joint value {low:g} or more"

@@ -35,13 +35,13 @@ class Case:
     configuration: Bytes = ()
     is_singular: bool = False
     operations: int = 0
-    """The floating operations of the call, at most; those of a loop as often as the reference ran it."""
+    """The largest number of floating operations of the call; a loop counts as often as the reference ran it."""
 
 
 @dataclass(frozen=True)
 class SelfTest:
-    """Machines by their parameters, and cases in the order in which they run: a machine is initialised by its first
-    one.
+    """Machines by their parameters, and cases in the order in which they run: the first case of a machine initialises
+    it.
     """
 
     machines: tuple[Mapping[str, float], ...]

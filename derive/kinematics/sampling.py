@@ -22,10 +22,10 @@ from derive.kinematics.parameters import (
 
 Samples = dict[str, NDArray[np.float64]]
 ENOUGH = 16
-"""Possible poses by which a sign or an exponent is told."""
+"""The number of possible poses from which a sign or an exponent is determined."""
 _MANY = 1024
 _SHARES = (1.0, 0.5, 0.25, 0.1)
-"""Of the ranges, in which further poses are drawn."""
+"""The shares of the ranges from which further poses are drawn."""
 
 
 def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False) -> Samples:
@@ -47,7 +47,7 @@ def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False)
 def machine_at(mechanism: Mechanism) -> Samples:
     """The nominal machine: its parameters, and its characteristic length."""
     values = {p.name: np.asarray(p.nominal) for p in machine_parameters(mechanism)} | fixed_values(mechanism)
-    if mechanism.is_platform:  # its length follows from its home pose: nothing here divides by it
+    if mechanism.is_platform:  # its length follows from its home pose, and is not needed here
         return {**values, SCALE.name: np.asarray(_coordinates(mechanism, values))}
     return {**values, SCALE.name: np.asarray(evaluate(machine_scale(mechanism), values), dtype=float)}
 
@@ -58,13 +58,13 @@ def _coordinates(mechanism: Mechanism, values: Samples) -> float:
 
 
 def fixed_values(mechanism: Mechanism) -> Samples:
-    """The numbers of a chain that have names."""
+    """The values of the named numbers of a chain."""
     return {p.name: np.asarray(p.nominal) for p in mechanism.parameters if p.fixed is not None}
 
 
 def size_of(mechanism: Mechanism, machine: Mapping[str, NDArray[np.float64]]) -> float:
-    """A length of the size of the machine: of one without a length that is never zero, the sum of its distances; of a
-    loop at least its largest coordinate that is a number or a distance.
+    """A length of the size of the machine. Without a length that is never zero, it is the sum of the distances; for a
+    loop it is at least the largest coordinate that is a number or a distance.
     """
     distances = [abs(_first(machine[p.name])) for p in mechanism.parameters if p.role is Role.DISTANCE]
     size = _first(machine[SCALE.name]) if has_length(mechanism) else sum(distances) or 1.0
@@ -76,7 +76,7 @@ def size_of(mechanism: Mechanism, machine: Mapping[str, NDArray[np.float64]]) ->
 
 
 def _first(values: NDArray[np.float64]) -> float:
-    """The value of the first of some equal machines."""
+    """The first of some equal values."""
     return float(np.ravel(values)[0])
 
 
@@ -98,10 +98,10 @@ def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, s
 
 
 def possible_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, program: Program) -> Samples:
-    """The machine, with axis values that the program accepts some of: a loop closes at few of all that are drawn.
+    """The machine with axis values, of which the program accepts at least some: a loop closes at few random poses.
 
     Where fewer than `ENOUGH` of the first are possible, further ones are drawn, ever nearer to the nominal values of
-    the joints; then only those that are possible are left.
+    the joints; then only possible ones are kept.
     """
     first = {**machine, **sample_axes(mechanism, machine, count, seed)}
     if _possible(program, first, count).sum() >= ENOUGH:

@@ -19,14 +19,14 @@ from derive.kinematics.kinematics import Kinematics
 from derive.solver.solve import Unsolved
 
 _ATTEMPTS = 4
-"""How often an input gets another name."""
+"""The largest number of times that an input gets another name."""
 
 
 class SharedName(DescriptionError):
     """A parameter has the name of a value of the derivation."""
 
     def __init__(self, message: str, name: str = "") -> None:
-        """name: what the parameter is called inside the derivation."""
+        """name: the name of the parameter inside the derivation."""
         super().__init__(message)
         self.names = (name,)
 
@@ -53,9 +53,9 @@ def refuse_names(mechanism: Mechanism, names: Iterable[sp.Symbol]) -> None:
 
 
 def with_free_names(mechanism: Mechanism, derived: Callable[[Mapping[str, int]], Kinematics]) -> Kinematics:
-    """What `derived` answers, given the symbols of inputs that need another name inside, and how often they met one.
+    """The result of `derived`, given the symbols of inputs that need another name inside, and the number of attempts.
 
-    Raises what it raises, in the names of the description.
+    Raises the errors of `derived`, in the names of the description.
     """
     further: Counter[str] = Counter()
     while True:
@@ -73,7 +73,7 @@ def with_free_names(mechanism: Mechanism, derived: Callable[[Mapping[str, int]],
 
 
 def _met(mechanism: Mechanism, inner: Mechanism, problem: Exception) -> frozenset[str]:
-    """The inputs whose names a derivation has met, or may have met where it came to nothing."""
+    """The inputs whose names a derivation uses, or may use where it failed."""
     if isinstance(problem, SharedName | RepeatedName):
         return inputs_named(mechanism, inner, problem.names)
     return suspects(inner)

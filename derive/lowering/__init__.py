@@ -1,20 +1,20 @@
-"""Programs with fewer operations, the same for every language: read into a graph, changed, and written again.
+"""Programs with fewer operations, the same for every language: each is read into a graph, changed, and written again.
 
 It may import the folders from `ir` to `solver`.
 
-coefficients: coefficients of one value added, and constants multiplied into sums
-decided: a condition that a refusal has decided, not asked again
+coefficients: the coefficients of one value are added, and constants are multiplied into sums
+decided: a condition that a refusal has decided is not tested again
 draft: a program as values in the graph of `ir`, with their names and places
-factoring: common factors and divisors of a sum, applied once
-hoisting: what depends on parameters alone, computed once by the setup
+factoring: a common factor or divisor of a sum is applied once
+hoisting: values that depend on parameters alone are computed once, by the setup
 lower: all changes to the programs of a mechanism, in their order
-opening: a sum that one other sum reads, opened where terms of both make a known pair
-readers: who reads a value in a draft
-scheduling: what one side of a choice alone needs, computed on that side
-sharing: pairs of terms or factors that several values have in common, computed once
-stretches: choices by one condition gathered, between two refusals
-symmetry: values that another one gives by a change of sign or half a turn
+opening: a sum that only one other sum reads is merged into it where terms of both make a known pair
+readers: the readers of every value in a draft
+scheduling: a value that only one side of a choice needs is computed on that side
+sharing: a pair of terms or factors that several values have in common is computed once
+stretches: choices with the same condition are gathered, between two refusals
+symmetry: a value that follows from another by a change of sign or half a turn is not computed again
 unrolling: all branches in one straight line, by substitution of their signs
-wording: what a value without a name is called
+wording: names for values without a name
 writing: a draft, written as a program
 """

@@ -1,11 +1,11 @@
-"""Coefficients: constants that multiply one value are one constant, and a constant in front of a sum goes into its
-terms.
+"""Coefficients: the constants that multiply one value are added to one constant, and a constant in front of a sum is
+multiplied into its terms.
 
     c * x + d * x                    →  (c + d) * x
     c * (d * x + f * y)              →  (c d) * x + (c f) * y
     c * select(p, d * x, f * y)      →  select(p, (c d) * x, (c f) * y)
 
-Both only where that saves an operation: what is read elsewhere is computed anyway.
+Both only where that saves an operation: a value that something else reads is computed anyway.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ _ONE = sp.Integer(1)
 
 
 def collected(draft: Draft, graph: Graph, constant: Constant) -> Draft:
-    """The draft with the coefficients of a value in a sum added."""
+    """The draft in which the coefficients of one value in a sum are added."""
     return changed(draft, _Collecting(graph, constant, readers_of(draft)))
 
 
 def distributed(draft: Draft, graph: Graph, constant: Constant) -> Draft:
-    """The draft with constants in front of sums in the coefficients of their terms."""
+    """The draft in which constants in front of sums are multiplied into the coefficients of their terms."""
     rule = _Distributing(graph, constant, readers_of(draft))
     done = changed(draft, rule)
     for node, value in rule.scaled.items():
@@ -43,14 +43,14 @@ def distributed(draft: Draft, graph: Graph, constant: Constant) -> Draft:
 
 
 class _Coefficients:
-    """A product as its constant coefficient and the rest."""
+    """Splits a product into its constant coefficient and the rest."""
 
     def __init__(self, graph: Graph, constant: Constant) -> None:
         self._graph, self._constant = graph, constant
 
     def split(self, node: Node) -> tuple[Value, Value] | None:
-        """The coefficient, with the numbers in it, and what it multiplies; None of a constant and of what is no
-        product.
+        """The coefficient, with the numbers in it, and the value that it multiplies; None for a constant, and where the
+        node is no product.
         """
         if node.head is not PRODUCT or self._constant.allows(node):
             return None
@@ -61,7 +61,7 @@ class _Coefficients:
         return self._product(fixed, fixed_below), self._product(others, others_below)
 
     def times(self, first: Node, second: Node) -> Value:
-        """The product of two constants: a factor that is a divisor of the other is neither."""
+        """The product of two constants; a factor of one that is a divisor of the other cancels."""
         above, below = (Counter(n for node in (first, second) for n in side(node)) for side in (_above, _below))
         return self._product((above - below).elements(), (below - above).elements())
 
@@ -84,7 +84,7 @@ def _below(node: Node) -> list[Node]:
 
 
 class _Collecting(Rewriting):
-    """Adds the coefficients of what a sum holds more than once, where one of the products is read by this sum alone."""
+    """Adds the coefficients of a value that a sum holds more than once, if only this sum reads one of the products."""
 
     def __init__(self, graph: Graph, constant: Constant, readers: Readers) -> None:
         super().__init__(graph)
@@ -123,10 +123,10 @@ class _Distributing(Rewriting):
         self._constant, self._readers = constant, readers
         self._coefficients = _Coefficients(graph, constant)
         self.scaled: dict[Node, Value] = {}
-        """What is no longer computed as it was, and the multiple that is."""
+        """The values that are no longer computed, each with the multiple that is computed instead."""
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
-        """A product without its constant, where that goes into a sum."""
+        """A product without its constant, where the constant is multiplied into a sum."""
         split = self._coefficients.split(node)
         if split is None or split[1].node.head not in (SUM, Select) or not self._constant(split[0].node):
             return super().rewritten(node, parts)
@@ -137,9 +137,7 @@ class _Distributing(Rewriting):
         return Value(value.node, value.sign * sign * inner_sign)
 
     def _can_scale(self, start: Node, factor: Node) -> bool:
-        """Whether a value, and what is a part of it, is read by such multiples alone, and each part
-        has a coefficient.
-        """
+        """Whether only multiples by this factor read a value and its parts, and each part has a coefficient."""
         seen: set[Node] = set()
         pending = [start]
         while pending:

@@ -1,4 +1,4 @@
-"""What a refusal has decided is not asked again, where a program ends at its first refusal.
+"""A condition that a refusal has decided is not tested again, where a program ends at its first refusal.
 
 require(length > tolerance)
 divisor = select(length > tolerance, length, 1)      →  length is read where divisor was
@@ -19,7 +19,7 @@ from derive.ir.symbols import names_in
 def decided(program: Program) -> Program:
     """The program for a language that returns where a condition does not hold."""
     known: dict[sp.Basic, sp.Basic] = {}
-    about: set[sp.Symbol] = set()  # the names in what is known: an expression without any of them stays
+    about: set[sp.Symbol] = set()  # the names in the known conditions: an expression without any of them stays
     body: list[Statement] = []
 
     def read(expression: sp.Basic) -> sp.Basic:

@@ -1,4 +1,4 @@
-"""Programs as drafts: their values in a graph, and a table of what stands where and under which name.
+"""Programs as drafts: the values in a graph, and a table of their names and of the places of statements.
 
 A draft is read from a program, changed, and written as a program again. A name belongs to a value: two statements that
 bind equal values bind one name, and a value that is read twice without a name gets one.
@@ -12,47 +12,47 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 
 from derive.ir.graph import PRODUCT, Graph, Node, Value
-from derive.ir.program import Iterate, Let, Program, Statement, expressions, told
+from derive.ir.program import Iterate, Let, Program, Statement, expressions, reason_expressions
 
 _ONE = sp.Integer(1)
 
 
 @dataclass(frozen=True)
 class Named:
-    """What a node is called: `name` is bound to the node, or to its negative."""
+    """The name of a node: `name` is bound to the node, or to its negative."""
 
     name: sp.Symbol
     sign: int
     note: str
     order: int
-    """Where the program bound it."""
+    """The place at which the program bound the name."""
     turn_of: str = ""
     """See `Let`."""
 
 
 @dataclass(frozen=True)
 class Effect:
-    """A statement that is no binding, and the values of its expressions."""
+    """A statement other than a `Let`, and the values of its expressions."""
 
     statement: Statement
     read: tuple[tuple[sp.Basic, Value], ...]
-    told: tuple[tuple[sp.Basic, Value], ...]
-    """What is computed where it refuses, and nowhere else."""
+    refused: tuple[tuple[sp.Basic, Value], ...]
+    """The values that are computed where it refuses, and nowhere else."""
 
     @property
     def values(self) -> tuple[Value, ...]:
-        """What it reads."""
+        """The values that it reads."""
         return tuple(value for _, value in self.read)
 
     def changed(self, change: Callable[[Value], Value]) -> Effect:
-        """The same with every value changed."""
-        read, told = (tuple((e, change(v)) for e, v in pairs) for pairs in (self.read, self.told))
-        return Effect(self.statement, read, told)
+        """A copy in which every value is changed."""
+        read, refused = (tuple((e, change(v)) for e, v in pairs) for pairs in (self.read, self.refused))
+        return Effect(self.statement, read, refused)
 
 
 @dataclass(frozen=True)
 class Loop:
-    """An iteration: what it starts from, the statements of its step, and when it is done and what follows."""
+    """An iteration: its start, the statements of its step, its condition to end, and its next state."""
 
     statement: Iterate
     start: tuple[Value, ...]
@@ -87,7 +87,7 @@ class Reader:
         return Draft(program, items, outputs, reading.names)
 
     def constant(self, let: Let) -> tuple[Node, Named]:
-        """What is bound elsewhere, in terms of other names that are."""
+        """The node and the name of a value that is bound outside of all programs."""
         value = _Reading(self.graph).value(let.value)
         return value.node, Named(let.name, value.sign, "", 0)
 
@@ -97,10 +97,10 @@ class _Reading:
     graph: Graph
     names: dict[Node, Named] = field(default_factory=dict)
     _bound: dict[sp.Basic, Value] = field(default_factory=dict)
-    """What has been read: names, and expressions of them."""
+    """The values of the names and expressions that have been read."""
 
     def items(self, statement: Statement, order: int) -> Iterator[Item]:
-        """What a statement is in a draft: nothing but a name for a binding."""
+        """The items of a statement in a draft; a binding gives none, because it only names a value."""
         if isinstance(statement, Let):
             self._bind(statement, order)
         elif isinstance(statement, Iterate):
@@ -109,7 +109,7 @@ class _Reading:
             yield self._effect(statement)
 
     def _bind(self, let: Let, order: int) -> Node | None:
-        """Name a value; None where it has a name, or needs none."""
+        """Name a value and return its node; None where the value has a name already, or needs none."""
         value = self.value(let.value)
         self._bound[let.name] = value
         if value.node.is_leaf or value.node in self.names:
@@ -118,7 +118,9 @@ class _Reading:
         return value.node
 
     def _effect(self, statement: Statement) -> Effect:
-        read, refused = (tuple((e, self.value(e)) for e in found(statement)) for found in (expressions, told))
+        read, refused = (
+            tuple((e, self.value(e)) for e in found(statement)) for found in (expressions, reason_expressions)
+        )
         return Effect(statement, read, refused)
 
     def _loop(self, loop: Iterate, order: int) -> Loop:
@@ -155,7 +157,7 @@ class _Reading:
 
 
 def changed(draft: Draft, change: Callable[[Value], Value]) -> Draft:
-    """The draft with every value changed. Two names of what becomes one value become one."""
+    """The draft with every value changed. Where two values become one, so do their names."""
     names: dict[Node, Named] = {}
     for node, named in draft.names.items():
         value = change(Value(node, 1))
@@ -179,14 +181,14 @@ def _changed(item: Item, change: Callable[[Value], Value]) -> Item:
 
 
 class Rewriting:
-    """A change of values from the leaves up: `rewritten` says what becomes of a node whose parts have been changed."""
+    """A change of values from the leaves up: `rewritten` returns the new value of a node whose parts are changed."""
 
     def __init__(self, graph: Graph) -> None:
         self.graph = graph
         self._done: dict[Node, Value] = {}
 
     def __call__(self, value: Value) -> Value:
-        """What becomes of a value."""
+        """The new value in place of a value."""
         done, pending = self._done, [] if value.node in self._done else [value.node]
         while pending:
             node = pending[-1]
@@ -201,7 +203,7 @@ class Rewriting:
         return self._read(value)
 
     def known(self, node: Node) -> Value | None:
-        """What becomes of a node, where that is known without its parts."""
+        """The new value in place of a node, where it is known without those of its parts."""
         return None
 
     def _read(self, value: Value) -> Value:
@@ -213,7 +215,7 @@ class Rewriting:
         return [self._done[d] for d in node.divisors]
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
-        """What becomes of a node, given its changed parts."""
+        """The new value in place of a node, given its changed parts."""
         if parts == node.parts and all(self._done[n] == (n, 1) for n in node.divisors):
             return Value(node, 1)
         if node.head is sp.Add:

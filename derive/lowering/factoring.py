@@ -1,9 +1,9 @@
-"""Factoring: a factor or a divisor that terms of a sum have in common is multiplied or divided once.
+"""Factoring: where terms of a sum have a factor or a divisor in common, the sum is multiplied or divided by it once.
 
 a * c / d + b * s / d    →  (a * c + b * s) / d
 s * x - s * y + x        →  s * (x - y) + x
 
-What divides three values or more is inverted, and they are multiplied by its inverse.
+A divisor of three values or more is inverted, and the values are multiplied by its inverse.
 
 along_x = span_x / length,  along_y = span_y / length,  along_z = span_z / length   →   inverse = 1 / length, …
 """
@@ -21,20 +21,21 @@ from derive.lowering.draft import Rewriting
 
 _ONE = sp.Integer(1)
 WORTHWHILE = 3
-"""A division takes as long as several multiplications, but a quotient of two is one rounding."""
+"""The least number of quotients for which a divisor is inverted: a division takes as long as several
+multiplications, but is rounded only once."""
 
 Part = tuple[Node, bool]
 """A factor, or a divisor where the flag is set."""
 
 
 class Factoring(Rewriting):
-    """Takes what most terms have in common in front of them, then looks at the rest. What has a name is one factor."""
+    """Takes the most common factor or divisor of the terms out of a sum, then repeats. A named value is one factor."""
 
     def __init__(self, graph: Graph, named: Collection[Node], is_constant: Callable[[Node], bool]) -> None:
         super().__init__(graph)
         self._named, self._is_constant = named, is_constant
         self._whole: set[Node] = set()
-        """What has a name, changed."""
+        """The nodes with a name, after the change."""
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
         """A sum with common factors in front."""
@@ -66,7 +67,7 @@ class Factoring(Rewriting):
         return Value(value.node, value.sign * term.sign)
 
     def _times(self, inner: Value, common: Value, *, is_divisor: bool) -> Value:
-        """A sum times or over what its terms had in common: its own factors stay beside that."""
+        """A sum multiplied or divided by the common part of its terms, next to the factors that the sum itself has."""
         node = inner.node
         is_open = node.head is PRODUCT and node not in self._whole
         factors = [Value(f.node, 1) for f in node.parts] if is_open else [Value(node, 1)]
@@ -83,7 +84,7 @@ class Factoring(Rewriting):
 
 
 class Dividing(Rewriting):
-    """Multiplies by the inverse of what divides several values."""
+    """Multiplies by the inverse of a divisor that several values have."""
 
     def __init__(self, graph: Graph, nodes: Iterable[Node], is_constant: Callable[[Node], bool]) -> None:
         super().__init__(graph)
@@ -93,7 +94,7 @@ class Dividing(Rewriting):
         self._is_constant = is_constant
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
-        """A product with such divisors as factors."""
+        """A product in which the inverses of such divisors are factors."""
         if node.head is not PRODUCT or self.inverted.isdisjoint(node.divisors) or self._is_constant(node):
             return super().rewritten(node, parts)
         one = self.graph.leaf(_ONE)

@@ -1,4 +1,4 @@
-"""Hoisting: what depends on parameters alone is computed once, by the setup, under a name that says what it is.
+"""Hoisting: a value that depends on parameters alone is computed once, by the setup, and its name says what it is.
 
 x = l1 * cos_q + l2 - l3         →  setup: l2_minus_l3 = l2 - l3;   x = l1 * cos_q + l2_minus_l3
 """
@@ -21,18 +21,18 @@ from derive.lowering.writing import is_condition, written
 
 
 class Constant:
-    """Whether a node depends on the constants of a machine alone, and on one of them."""
+    """Whether a node depends on constants of a machine, and on nothing else."""
 
     def __init__(self, constants: Iterable[str]) -> None:
         self._names = frozenset(constants)
         self._known: dict[Node, tuple[bool, bool]] = {}
 
     def __call__(self, node: Node) -> bool:
-        """Whether it is a constant, but no number."""
+        """Whether a node is a constant, but no number."""
         return self._look(node) == (True, True)
 
     def allows(self, node: Node) -> bool:
-        """Whether it is a constant or a number."""
+        """Whether a node is a constant or a number."""
         return self._look(node)[0]
 
     def _look(self, node: Node) -> tuple[bool, bool]:
@@ -49,7 +49,7 @@ class Constant:
 
 
 class Gathering(Rewriting):
-    """Puts the constants of a sum, and those of a product, together."""
+    """Gathers the constants of a sum in one term, and those of a product in one factor."""
 
     def __init__(self, graph: Graph, constant: Constant) -> None:
         super().__init__(graph)
@@ -77,7 +77,7 @@ class Gathering(Rewriting):
         return super().rewritten(node, parts)
 
     def _apart(self, values: Iterable[Value]) -> tuple[list[Value], list[Value]]:
-        """The constants and numbers, and the others."""
+        """The constants and numbers, and the other values."""
         fixed, others = list[Value](), list[Value]()
         for value in values:
             (fixed if self.constant.allows(value.node) else others).append(value)
@@ -118,7 +118,7 @@ def hoisted(
 
 
 def _constants_read(draft: Draft, constant: Constant) -> Iterator[Node]:
-    """The largest constants and roots of numbers that something else in a draft reads, or a statement."""
+    """The constants, and roots of numbers, that a statement or a value that is no constant reads."""
 
     def is_largest(node: Node) -> bool:
         is_root_of_number = node.head is Root and constant.allows(node)
@@ -128,7 +128,7 @@ def _constants_read(draft: Draft, constant: Constant) -> Iterator[Node]:
 
 
 def _readers(drafts: Sequence[Draft]) -> dict[Node, str]:
-    """By what is read: the name of the value that reads it first."""
+    """For each node that is read: the name of the value that reads it first."""
     found: dict[Node, str] = {}
     for draft in drafts:
         for reader, named in draft.names.items():

@@ -29,18 +29,18 @@ def lowered(
     branches: Mapping[str, Sequence[Sign]] | None = None,
     known: Iterable[Let] = (),
 ) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
-    """The programs, and what they read of constants alone. A program that others call comes before them.
+    """The programs, and the bindings of their constants. A program that others call comes before them.
 
-    modulo_turns: whether an angle may be a turn more or less, unless its value is taken; inverts: whether a division
-    takes longer than several multiplications; branches: by name of a program, the signs whose branches are unrolled;
-    known: constants that are computed from others.
+    modulo_turns: whether an angle may be a turn more or less, unless something takes its value as a real number;
+    inverts: whether a division takes longer than several multiplications; branches: for the name of a program, the
+    signs whose branches are unrolled; known: the bindings of constants that are computed from others.
     """
     reader = Reader()
     graph, constant = reader.graph, Constant(constants)
     drafts = [reader.draft(p) for p in programs]
     signs, gathering = branches or {}, Gathering(graph, constant)
     for place, draft in enumerate(drafts):
-        if draft.program.name in signs:  # first what a branch shares with itself, then what branches share
+        if draft.program.name in signs:  # first the sharing within a branch, then that between branches
             drafts[place] = unrolled(_shorter(draft, gathering), graph, signs[draft.program.name])
     if modulo_turns:
         drafts = [changed(draft, Mirrored(graph, _nodes(draft))) for draft in drafts]
@@ -61,7 +61,7 @@ def lowered(
 
 
 def _shorter(draft: Draft, gathering: Gathering) -> Draft:
-    """gathering: of all programs, which share values."""
+    """The draft with fewer operations. gathering: one object for all programs, because they share values."""
     graph, constant = gathering.graph, gathering.constant
     draft = changed(draft, gathering)
     draft = changed(draft, Factoring(graph, draft.names, constant))

@@ -1,10 +1,10 @@
-"""Opening: a sum that one other sum alone reads is a part of it, where terms of both then make a pair that is known
-already.
+"""Opening: a sum that only one other sum reads is merged into it, where terms of both then make a pair that is already
+computed.
 
     first = x - a,   second = b + a,   third = x - second     →  third = first - b
 
-One addition less, for `second` is not computed. No other sum is taken apart: terms keep the company in which they were
-written.
+This saves one addition, because `second` is not computed. No other sum is changed: terms stay in the sums in which they
+were written.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _Pair: TypeAlias = frozenset[Value]
 
 
 def opened(draft: Draft, graph: Graph, constant: Constant) -> Draft:
-    """The draft with such sums as parts of those that read them."""
+    """The draft with such sums merged into those that read them."""
     return changed(draft, _Opening(graph, constant, readers_of(draft)))
 
 
@@ -33,7 +33,7 @@ class _Opening(Rewriting):
         self._pairs = {p for node in readers if self._is_sum(node) for p in _pairs(node.parts)}
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
-        """A sum with its parts that are sums opened."""
+        """A sum into which such parts are merged."""
         if not self._is_sum(node):
             return super().rewritten(node, parts)
         terms: list[Value] = []
@@ -42,8 +42,8 @@ class _Opening(Rewriting):
         return self.graph.sum(terms)
 
     def _opened(self, term: Value, reader: Node) -> list[Value]:
-        """The terms of a part, with the sign that it has; none where it stays a part."""
-        if not self._is_sum(term.node) or len(self._readers.get(term.node, ())) != 1:  # a name may be read no more
+        """The terms of a part, with the sign of the part; none where the part stays."""
+        if not self._is_sum(term.node) or len(self._readers.get(term.node, ())) != 1:  # a named part may be unread
             return []
         inner = [Value(t.node, t.sign * term.sign) for t in term.node.parts]
         others = [t for t in reader.parts if t is not term]

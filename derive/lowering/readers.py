@@ -1,4 +1,4 @@
-"""Who reads a value in a draft: other values, and statements."""
+"""The readers of every value in a draft: other values, and statements."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from derive.ir.graph import Node
 from derive.lowering.draft import Draft, Effect, values_of
 
 Readers: TypeAlias = Mapping[Node, tuple[Node | None, ...]]
-"""By node: the nodes that read it, and None for each statement and output that does."""
+"""For each node: the nodes that read it, and None for each statement or output that reads it."""
 
 
 def readers_of(draft: Draft) -> Readers:
-    """The readers of all nodes of a draft, those of the amount of a reason among them."""
+    """The readers of all nodes of a draft; the amount of a reason is a reader, too."""
     found: dict[Node, list[Node | None]] = {}
     pending: list[Node] = []
 
@@ -23,8 +23,8 @@ def readers_of(draft: Draft) -> Readers:
             pending.append(node)
         found[node].append(reader)
 
-    told = (value for item in draft.items if isinstance(item, Effect) for _, value in item.told)
-    for value in (*values_of(draft), *told):
+    refused = (value for item in draft.items if isinstance(item, Effect) for _, value in item.refused)
+    for value in (*values_of(draft), *refused):
         read(value.node, None)
     while pending:
         reader = pending.pop()

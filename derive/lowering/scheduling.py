@@ -1,4 +1,4 @@
-"""Scheduling: what only one side of a choice needs is computed there only.
+"""Scheduling: a value that only one side of a choice needs is computed on that side only.
 
     length = select(radius > tolerance, radius, 1)            if radius > tolerance:
     cos_q4 = select(radius > tolerance, x/length, cos(free))      cos_q4 = x/radius
@@ -7,8 +7,8 @@
                                                                   cos_q4 = cos(free)
                                                                   sin_q4 = sin(free)
 
-A language that evaluates one side of a choice alone prints the result; the values are the same. A program is total, so
-that a statement may move to where it is needed.
+A language that evaluates only one side of a choice prints the result; the values are the same. A statement may move to
+where it is needed, because a program is total.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.ir.passes import told_in
+from derive.ir.passes import with_bound_reason
 from derive.ir.primitives import (
     Select,
 )
@@ -40,16 +40,15 @@ from derive.lowering.stretches import gathered
 
 @kept_by_identity(400)
 def structured(program: Program) -> tuple[Item, ...]:
-    """A program for a language that returns at the first refusal, and runs one side of a choice alone."""
+    """A program for a language that returns at the first refusal, and executes only one side of a choice."""
     program = decided(replace(program, body=_together(program.body)))
-    return told_on_sides(scheduled(program.body, [o.value for o in program.outputs]), program)
+    return with_reasons_on_sides(scheduled(program.body, [o.value for o in program.outputs]), program)
 
 
 def _together(body: Sequence[Statement]) -> tuple[Statement, ...]:
-    """Choices by one condition, in the stretch between refusals where the first of them stands, with what they need.
+    """The statements with choices by the same condition, and the values that they need, moved to the first such choice.
 
-    Nothing that is bound needs a refusal before it: a program is total. What waits for a statement of another kind
-    stays.
+    They move across refusals, because a program is total. A value that needs a statement of another kind stays.
     """
     stretches: list[list[Let]] = [[]]
     others: list[Statement] = []
@@ -69,7 +68,7 @@ def _together(body: Sequence[Statement]) -> tuple[Statement, ...]:
 
 
 def _advance(let: Let, place: int, target: int, stretches: list[list[Let]], others: Sequence[Statement]) -> None:
-    """Move a statement to the end of an earlier stretch, after what it needs, if all of that can be computed there."""
+    """Move a statement and all that it needs to the end of an earlier stretch, if everything can be computed there."""
     between = [s for lets in stretches[target + 1 : place + 1] for s in lets]
     needed = set(reads(let)) | {let.name}
     for other in reversed(between):
@@ -82,23 +81,25 @@ def _advance(let: Let, place: int, target: int, stretches: list[list[Let]], othe
 
 
 def scheduled(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
-    """The statements of a program, choices that share a condition gathered with what they alone need."""
+    """The statements of a program, in which choices that share a condition are gathered with the values that only they
+    need.
+    """
     return _sunk(_in_arms(body, wanted), {s for value in wanted for s in names_in(value)})
 
 
-def told_on_sides(items: Sequence[Item], program: Program) -> tuple[Item, ...]:
-    """The statements, with what reasons read and a choice keeps to one of its sides written out in them."""
+def with_reasons_on_sides(items: Sequence[Item], program: Program) -> tuple[Item, ...]:
+    """The statements; a value that a choice binds on one side only is written out in the reasons that read it."""
     values = {let.name: let.value for let in program.lets()}
     bound: set[sp.Symbol] = set()
     found: list[Item] = []
     for item in items:
-        found.append(item if isinstance(item, If) else told_in(item, bound, values))
+        found.append(item if isinstance(item, If) else with_bound_reason(item, bound, values))
         bound |= bound_behind(item)
     return tuple(found)
 
 
 def _sunk(items: Sequence[Item], later: set[sp.Symbol]) -> tuple[Item, ...]:
-    """What is read on the second sides of several choices only, the singular ones, is bound on each of them."""
+    """A value that only second sides (the singular ones) of several choices read is bound on each of these sides."""
     found: list[Item] = []
     needed = set(later)
     for item in reversed(items):
@@ -111,7 +112,7 @@ def _sunk(items: Sequence[Item], later: set[sp.Symbol]) -> tuple[Item, ...]:
 
 
 def _reads_always(item: Item) -> set[sp.Symbol]:
-    """What a statement reads, or a choice to decide and on its first side."""
+    """The names that a statement reads; those that a choice reads in its condition and on its first side."""
     return read_in(item.holds) | names_in(item.condition) if isinstance(item, If) else read_in((item,))
 
 

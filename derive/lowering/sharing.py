@@ -1,5 +1,5 @@
-"""Sharing: two terms that several sums have in common are added once, two factors that several products have,
-multiplied once.
+"""Sharing: two terms that several sums have in common are added once; two factors that several products have in common
+are multiplied once.
 
     first = x + y - a,       second = x + y + b        →  x_plus_y = x + y, once
     first = a * b / c,       second = b * d / c        →  b_by_c = b / c, once
@@ -19,9 +19,7 @@ from derive.lowering.draft import Rewriting
 
 @dataclass(frozen=True)
 class Pair:
-    """Two terms, the second with the sign that it has where the first has none; or two factors, the second above or
-    below.
-    """
+    """Two terms, the second with its sign relative to the first; or two factors, the second possibly a divisor."""
 
     first: Part
     second: Part
@@ -31,7 +29,7 @@ class Pair:
 
 Part = Node | Pair
 Entry = tuple[Part, int]
-"""A term with its sign; a factor with +1, a divisor with -1."""
+"""A term with its sign; or a factor with +1, or a divisor with -1."""
 
 
 class Sharing(Rewriting):
@@ -113,7 +111,7 @@ def _replaced(
     kept = list(row)
     kept.remove((key[0], sign))
     kept.remove((key[1], sign * key[2]))
-    if isinstance(part, Node):  # a row that is this pair alone: what it is itself may have the other sign
+    if isinstance(part, Node):  # a row that is this pair alone: the row may be the negative of the pair
         own = next(s for k, s in _pairs(rows[part], is_sum) if k == key)
         sign *= own
     return [(part, sign), *kept]

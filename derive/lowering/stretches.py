@@ -1,5 +1,5 @@
-"""Stretches: bindings without a refusal between them, choices by one condition gathered with what their sides alone
-need."""
+"""Stretches: bindings without a refusal between them. In a stretch, choices with the same condition are gathered, with
+the values that only one of their sides needs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def _conditions(expression: sp.Basic) -> frozenset[sp.Basic]:
 
 
 def gathered(lets: Sequence[Let], later: frozenset[sp.Symbol]) -> list[Item]:
-    """A stretch without conditions: `later` is what is read behind it. First the first choice that is in no other."""
+    """The items of a stretch, with its choices gathered; `later` are the names that are read after the stretch."""
     conditions = dict.fromkeys(let.value.args[0] for let in lets if isinstance(let.value, Select))
     if not conditions:
         return list(lets)
@@ -39,7 +39,7 @@ def gathered(lets: Sequence[Let], later: frozenset[sp.Symbol]) -> list[Item]:
 
 
 class _Stretch:
-    """Statements without conditions between them, and who reads what."""
+    """Statements without refusals between them, and the readers of each."""
 
     def __init__(self, lets: Sequence[Let], later: frozenset[sp.Symbol]) -> None:
         self.lets, self.later = tuple(lets), later
@@ -54,11 +54,11 @@ class _Stretch:
                 self.deciding.setdefault(condition, []).append(place)
 
     def upstream(self, places: Iterable[int]) -> set[int]:
-        """What these statements need, with them."""
+        """These statements and all statements that they need."""
         return _closure(places, self.sources)
 
     def downstream(self, places: Iterable[int]) -> set[int]:
-        """What needs these statements, with them."""
+        """These statements and all statements that need them."""
         return _closure(places, self.readers)
 
 
@@ -74,7 +74,7 @@ def _closure(places: Iterable[int], neighbours: Sequence[Sequence[int]]) -> set[
 
 
 class _Choice:
-    """The statements that one condition decides, and those that one of its sides alone needs."""
+    """The choices with one condition, and the statements that only one of their sides needs."""
 
     def __init__(self, condition: sp.Basic, stretch: _Stretch) -> None:
         self.condition, self.stretch = condition, stretch
@@ -89,20 +89,20 @@ class _Choice:
 
     @property
     def is_worthwhile(self) -> bool:
-        """Whether more than one choice, or more than a choice, is gathered."""
+        """Whether at least two choices, or a choice and another statement, are gathered."""
         return len(self.members) > 1 or len(self.members) + len(self.inside) > 2
 
     @property
     def places(self) -> set[int]:
-        """All of them."""
+        """The places of all these statements."""
         return self.members | set(self.inside)
 
     def value(self, place: int, side: int) -> sp.Expr:
-        """What a statement binds on a side."""
+        """The value that a statement binds on a side."""
         return self.sides[side].get(place, self.stretch.lets[place].value)
 
     def _assumed(self, truth: sp.Basic) -> dict[int, sp.Expr]:
-        """The values that change where the condition is known; a number that this gives is known, too."""
+        """The values that change where the condition is known; a value that becomes a number is known to later ones."""
         stretch = self.stretch
         known: dict[sp.Basic, sp.Basic] = {self.condition: truth}
         known |= {other: truth for other in stretch.deciding if follows(other, self.condition, truth)}
@@ -120,7 +120,7 @@ class _Choice:
         """Whether the condition decides the choice on at least one side."""
         value = self.stretch.lets[place].value
         if not isinstance(value, Select) or self.condition in value.args[0].args:
-            return False  # a part of a condition decides little, and what it decides may be needed on one side alone
+            return False  # a part of a condition decides little, and may be needed on one side alone
         sides = (self.value(place, side) for side in (0, 1))
         return any(not isinstance(v, Select) or v.args[0] != value.args[0] for v in sides)
 
@@ -128,7 +128,7 @@ class _Choice:
         return names_in(self.value(place, side))
 
     def _inside(self, members: set[int]) -> dict[int, int]:
-        """The other statements that one side alone reads: 0 where the condition holds, 1 where it does not."""
+        """The other statements that only one side reads: side 0 where the condition holds, 1 where it does not."""
         stretch, inside = self.stretch, dict[int, int]()
         outside = stretch.later | names_in(self.condition)
         for place in sorted(stretch.upstream(members) - members, reverse=True):
@@ -146,7 +146,7 @@ class _Choice:
         return inside
 
     def _misplaced(self) -> int | None:
-        """A member that needs something outside which needs a member: the two cannot be gathered."""
+        """A member that needs a statement outside which in turn needs a member: the two members cannot be gathered."""
         inside = self.places
         behind = self.stretch.downstream(self.members) - inside
         torn = [place for place in sorted(inside) if behind & set(self.stretch.sources[place])]
@@ -155,8 +155,8 @@ class _Choice:
         return max(self.stretch.downstream(torn[:1]) & self.members)
 
     def items(self, elsewhere: set[int]) -> list[Item]:
-        """The stretch with the choice in it, and what is left gathered in turn. elsewhere: what
-        other choices gather.
+        """The stretch with this choice in it; the other choices are gathered in turn. elsewhere: the places that other
+        choices gather.
         """
         lets, later = self.stretch.lets, self.stretch.later
         inside = self.places
@@ -167,7 +167,7 @@ class _Choice:
         arms = If(self.condition, self._arm(0, results), self._arm(1, results), results)
         first = self.stretch.upstream(inside | self._deciders()) - inside
         behind = self.stretch.downstream(inside | (elsewhere - first))
-        first |= set(range(min(self.members))) - behind  # what was first stays first
+        first |= set(range(min(self.members))) - behind  # a statement that came first stays first
         after = [let for place, let in enumerate(lets) if place not in inside and place not in first]
         read_after = later.union(*(names_in(let.value) for let in after))
         read_inside = names_in(self.condition).union(*(names_in(lets[place].value) for place in inside))
@@ -188,7 +188,7 @@ class _Choice:
 
 
 def _simplified(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:
-    """Without names for names, and without what nothing reads; a negative is taken from what has been computed."""
+    """The bindings without aliases and unused ones; where the negative of a value is computed already, it is used."""
     aliases: dict[sp.Basic, sp.Basic] = {}
     known: dict[sp.Basic, sp.Symbol] = {}
     kept: list[Let] = []
@@ -211,7 +211,7 @@ def _simplified(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:
 
 
 def _without_copies(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:
-    """What a result is a copy of has the name of the result, unless it is one itself."""
+    """The bindings without copies: a value of which a result is a copy gets the name of the result."""
     own = {let.name for let in lets} - results
     names: dict[sp.Basic, sp.Symbol] = {}
     for let in lets:

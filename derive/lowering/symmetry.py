@@ -1,4 +1,4 @@
-"""Symmetry: a value that another one gives by a change of sign or by half a turn is not computed again.
+"""Symmetry: a value that follows from another one by a change of sign or by half a turn is not computed again.
 
     c_up = select(r > tolerance, -x/r, cos(free))     where r > tolerance, c_up is -c_down
     m_up = a * c_up + b * s_up                     →  m_up = select(r > tolerance, -m_down, a * c_up + b * s_up)
@@ -6,9 +6,9 @@
 
     angle_up = atan2(-s, c)                        →  angle_up = -angle_down    where angle_down = atan2(s, c)
 
-The condition of a choice is assumed; then a node is compared with those before it. A direction is taken in its first
-quadrant, so that a mirrored or an opposite one has the same angle but for its sign and half a turn. It serves a
-language that computes one side of a choice alone.
+The condition of a choice is assumed to hold; then each node is compared with those before it. A direction is first
+mirrored into one quadrant, so that mirrored and opposite directions have the same angle but for a sign and half a turn.
+The rule serves a language that computes only one side of a choice.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _NONE = sp.Integer(0)
 
 
 class Mirrored(Rewriting):
-    """Takes the minus sign of a sine in front of the angle, unless something takes the value of the angle."""
+    """Moves the minus sign of a sine in front of the angle, unless something takes the value of the angle."""
 
     def __init__(self, graph: Graph, nodes: Iterable[Node]) -> None:
         super().__init__(graph)
@@ -44,8 +44,8 @@ class Mirrored(Rewriting):
 
 
 class Symmetry(Rewriting):
-    """Values with a name, and angles whose turn is chosen, by those of mirrored branches: everywhere, or on the first
-    side of a choice.
+    """Replaces named values, and angles whose turn is chosen, by those of mirrored branches: everywhere, or on the
+    first side of a choice.
     """
 
     def __init__(self, graph: Graph, starts: Sequence[Node], named: Iterable[Node]) -> None:
@@ -66,7 +66,7 @@ class Symmetry(Rewriting):
         self._equals = {node: equal for part in (*found, everywhere) for node, equal in part.items()}
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
-        """The choice between what another node gives and the node."""
+        """The choice between the value that another node gives, and the node itself."""
         own = super().rewritten(node, parts)
         equal = self._equals.get(node)
         if equal is None:
@@ -81,7 +81,7 @@ class Symmetry(Rewriting):
 
 @dataclass(frozen=True)
 class _Equal:
-    """Where a condition holds, or everywhere, a node is another one, with a sign, and half a turn or none."""
+    """Where a condition holds, or everywhere, a node equals another one but for a sign and perhaps half a turn."""
 
     condition: Node | None
     other: Value
@@ -89,7 +89,7 @@ class _Equal:
 
 
 class Assumed(Rewriting):
-    """Values where a condition holds; what has angles is a value and a shift, a number of half turns."""
+    """Values under the assumption of a condition; an angle is a value plus a shift, which is a number of half turns."""
 
     def __init__(
         self,
@@ -98,15 +98,15 @@ class Assumed(Rewriting):
         counted: Iterable[Node],
         elsewhere: tuple[Assumed, Mapping[Node, frozenset[Node]]] | None = None,
     ) -> None:
-        """counted: what takes the value of an angle, and may not be a turn more or less; elsewhere: the values where
-        nothing is assumed, and by node the conditions of the choices in it.
+        """counted: the nodes that take the value of an angle, which may not be a turn more or less; elsewhere: the
+        values where nothing is assumed, and for each node the conditions of the choices in it.
         """
         super().__init__(graph)
         self.condition, self._counted, self._elsewhere = condition, frozenset(counted), elsewhere
         self._shifts: dict[Node, sp.Expr] = {}
 
     def known(self, node: Node) -> Value | None:
-        """The value elsewhere of what the condition does not decide."""
+        """The value without the assumption, of a node that the condition does not affect."""
         if self._elsewhere is None or self.condition in self._elsewhere[1][node]:
             return None
         value, shift = self._elsewhere[0](Value(node, 1)), self._elsewhere[0].shift(Value(node, 1))
@@ -115,7 +115,7 @@ class Assumed(Rewriting):
         return value
 
     def shift(self, value: Value) -> sp.Expr:
-        """What has to be added to the assumed value."""
+        """The shift that has to be added to the assumed value."""
         found = self._shifts.get(value.node)
         return _NONE if found is None else value.sign * found
 
@@ -157,7 +157,7 @@ class Assumed(Rewriting):
 
 
 def _deciding(starts: Iterable[Node]) -> dict[Node, frozenset[Node]]:
-    """By everything that is read: the conditions of the choices in it."""
+    """For every node that is read: the conditions of the choices in it."""
     found: dict[Node, frozenset[Node]] = {}
     for node in sorted(reached(starts), key=lambda n: n.place):
         own = (node.parts[0].node,) if node.head is Select else ()
@@ -166,7 +166,7 @@ def _deciding(starts: Iterable[Node]) -> dict[Node, frozenset[Node]]:
 
 
 def _equals(candidates: Iterable[Node], assumed: Assumed) -> dict[Node, _Equal]:
-    """The nodes that one before them gives under an assumption."""
+    """The nodes that follow from an earlier node under an assumption."""
     found: dict[Node, _Equal] = {}
     first: dict[Node, tuple[Node, int, sp.Expr]] = {}
     condition = assumed.condition
@@ -183,10 +183,10 @@ def _equals(candidates: Iterable[Node], assumed: Assumed) -> dict[Node, _Equal]:
 
 
 def _first_readers(starts: Iterable[Node]) -> dict[Node, int]:
-    """Of everything that is read: the place of the first start that needs it.
+    """For every node that is read: the place of the first start that needs it.
 
-    What a node reads has no later one. So a node may be given by another with an earlier one, or by one of the same
-    start that was made before it.
+    The nodes that a node reads have no later place. So a node may follow from another with an earlier place, or from
+    one with the same place that was made before it.
     """
     found: dict[Node, int] = {}
     for place, start in enumerate(starts):
@@ -196,7 +196,7 @@ def _first_readers(starts: Iterable[Node]) -> dict[Node, int]:
 
 
 def _always_needed(starts: Iterable[Node]) -> set[Node]:
-    """What is read without a choice: what one side of a choice alone reads is not computed for the sake of others."""
+    """The nodes that are read outside of choices: a node that only one side of a choice reads gives no other node."""
     found: set[Node] = set()
     pending = list(starts)
     while pending:

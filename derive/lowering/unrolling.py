@@ -5,9 +5,9 @@
     b = s + y                               b_right = y + a, b_left = y - a
     require(b > 0, UNREACHABLE)             refusal_right = 0, or the number of the status; likewise refusal_left
 
-Nodes are hash-consed: what two branches have in common is one node, the negative of a value, too. A condition that no
-sign influences stays a condition: it refuses all branches alike. Programs are total, so that a branch that is refused
-disturbs no other.
+Nodes are hash-consed: a value that two branches have in common is one node, and so are a value and its negative. A
+condition that depends on no sign stays a condition: it refuses all branches alike. Programs are total, so that a
+refused branch disturbs no other.
 """
 
 from __future__ import annotations
@@ -42,15 +42,15 @@ _ZERO = sp.Integer(0)
 
 
 def is_straight(program: Program) -> bool:
-    """Whether a program can be unrolled: one that iterates takes longer on some branches, and a shared one has its
-    names.
+    """Whether a program can be unrolled: one with an iteration cannot, which takes longer on some branches; nor can a
+    program with a call, whose names belong to the shared program.
     """
     return not any(isinstance(s, Iterate | Call | FindRoot) for s in program.body)
 
 
 def unroll(program: Program, signs: Sequence[Sign]) -> Program:
-    """All branches at once; outputs are those of every slot, and its `REFUSAL`, with the words of the slot behind the
-    name.
+    """All branches at once. The outputs are those of every slot, with its `REFUSAL`; each name ends in the words of its
+    slot.
     """
     reader = Reader()
     return written(unrolled(reader.draft(program), reader.graph, signs), {})
@@ -64,21 +64,21 @@ def unrolled(draft: Draft, graph: Graph, signs: Sequence[Sign]) -> Draft:
 
 
 class Substituted(Rewriting):
-    """Values with other values instead of some names."""
+    """Replaces some names by other values."""
 
     def __init__(self, graph: Graph, values: Mapping[sp.Basic, Value]) -> None:
         super().__init__(graph)
         self.values = dict(values)
 
     def rewritten(self, node: Node, parts: tuple[Value, ...]) -> Value:
-        """What stands for a name, or the value of its changed parts."""
+        """The value in place of a name, or the node made of its changed parts."""
         return self.values.get(node.head, Value(node, 1)) if node.is_leaf else super().rewritten(node, parts)
 
 
 @dataclass(frozen=True)
 class _Refusal:
-    """The refusal so far: of every slot, and the signs that it depends on. `status`: the one there is, OK where there
-    are several.
+    """The refusal so far: that of every slot, and the signs on which it depends. `status`: the only status that occurs,
+    OK where several occur.
     """
 
     support: tuple[int, ...]
@@ -95,7 +95,7 @@ class _Unrolling:
     items: list[Effect] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.slots = sorted(choices(len(self.signs)), reverse=True)  # what two of them share is nearest to both
+        self.slots = sorted(choices(len(self.signs)), reverse=True)  # keeps slots that share values together
         self.free = Names(s.name for s in self.source.program.inputs)
         self.at: dict[Choice, Substituted] = {}
         for slot in self.slots:
@@ -136,7 +136,7 @@ class _Unrolling:
         return self._supports[node]
 
     def _slots_of(self, support: Sequence[int]) -> Iterator[tuple[int, Choice, Choice]]:
-        """Each assignment of these signs, with the first slot that has it, and the number of that."""
+        """Each assignment of these signs, with the first slot that has it and the number of this slot."""
         seen: set[Choice] = set()
         for number, slot in enumerate(self.slots):
             choice = tuple(slot[i] for i in support)
@@ -150,7 +150,7 @@ class _Unrolling:
     # --- statements
 
     def _solve(self, effect: Effect) -> None:
-        """Linear equations, once for every assignment of their signs; what they bind gets names of its own."""
+        """Linear equations, once for every assignment of their signs, with names of their own for the solutions."""
         support = self._support(effect.values)
         for _, slot, choice in self._slots_of(support):
             names = {name: self._called(name, support, choice) for name in binds(effect.statement)}
@@ -162,7 +162,7 @@ class _Unrolling:
         self._of_names |= dict.fromkeys(binds(effect.statement), frozenset(support))
 
     def _name_values(self) -> None:
-        """Names of what has a name in the source; of a value and its negative, that of the one without a minus."""
+        """Name the values that have a name in the source; of a value and its negative, name the one without a minus."""
         for node, named in self.source.names.items():
             support = self._support([Value(node, named.sign)])
             variants: dict[Node, list[tuple[int, Choice, int]]] = {}
@@ -178,7 +178,7 @@ class _Unrolling:
                     )
 
     def _order(self, slot: int, place: int) -> int:
-        """Slot after slot: what a slot is the first to need stands among its statements."""
+        """The order of a value, slot after slot: it stands among the statements of the first slot that needs it."""
         return slot * (len(self.source.program.body) + 1) + place
 
     # --- refusals
@@ -187,7 +187,7 @@ class _Unrolling:
         """The refusal of every slot: the first condition that does not hold there."""
         refusal = _Refusal((), dict.fromkeys(self.slots, self.graph.leaf(_ZERO)), None)
         for status, group in groupby(effects, key=lambda e: _status(e[1])):
-            if status is Status.OK:  # no answer: then of no slot, whatever the others say
+            if status is Status.OK:  # no answer for one slot: then for no slot, whatever the other conditions say
                 self.items += [e.changed(self.at[slot]) for _, e in group for slot in self._different(e)]
                 continue
             by_support: dict[tuple[int, ...], list[tuple[int, Effect]]] = {}

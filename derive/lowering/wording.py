@@ -1,4 +1,4 @@
-"""What a value without a name is called: `a2_plus_a3`, `x_by_reach`, `product_in_axis_a1`."""
+"""Names for values without a name: `a2_plus_a3`, `x_by_reach`, `product_in_axis_a1`."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ _READABLE = re.compile(r"(?=.{1,40}$)[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _FUNCTIONS = {sp.sin: "sin", sp.cos: "cos", sp.Abs: "size", Root: "root", Atan2: "angle", ToReal: "real"}
 _OPERATIONS = {**_FUNCTIONS, SUM: "sum", PRODUCT: "product"}
 _OPERATION_IN = re.compile(r"\A(sin|cos|size|root|angle|real|sum|product|quotient|value)_in_")
-"""What a name begins with that was made of an operation: it is not repeated."""
+"""The beginning of a name that was made from an operation; it is not repeated in further names."""
 
 Called = Callable[[Node], sp.Expr | None]
 """The name of a node, with a minus sign where it is that of the negative."""
 
 
 def said(value: Value, called: Called, reader: str) -> str:
-    """A value in words; where they would be too many, its operation and the name of the first value that reads it.
+    """A value in words; where there would be too many, its operation and the name of the first value that reads it.
 
     called: the names of nodes; reader: the name of the value that reads it, "" where none has a name.
     """
@@ -46,7 +46,7 @@ def said(value: Value, called: Called, reader: str) -> str:
 
 
 def _operation(node: Node) -> str:
-    """What computes a value: a sum, a product, a quotient, a function that has a name; else it is a value."""
+    """The word for the operation that computes a value: a sum, a product, a quotient, a function; else "value"."""
     if node.head is PRODUCT and node.divisors:
         return "quotient"
     return _OPERATIONS.get(node.head, "value")
@@ -68,7 +68,7 @@ def _words(value: Value, called: Called) -> str | None:
 
 
 def _sign(node: Node, called: Called) -> int:
-    """The sign of a term, where names are those of negatives."""
+    """The sign of a term; the name in it may be that of the negative."""
     own = called(node)
     if own is not None:
         return 1 if own.is_Symbol else -1
@@ -76,7 +76,7 @@ def _sign(node: Node, called: Called) -> int:
 
 
 def _factor(node: Node, called: Called) -> str | None:
-    """What can stand in a sum."""
+    """The words of a term."""
     atom = _atom(node, called)
     if node.head is not PRODUCT or atom is not None:
         return atom
@@ -91,13 +91,13 @@ def _factor(node: Node, called: Called) -> str | None:
 
 
 def _power(node: Node, times: int, called: Called) -> str | None:
-    """A factor and how often it is one."""
+    """The words of a factor that occurs some number of times."""
     word = _atom(node, called)
     return word if word is None or times == 1 else f"{word}_squared" if times == 2 else None
 
 
 def _atom(node: Node, called: Called) -> str | None:
-    """What can stand in a product."""
+    """The words of a factor."""
     own = called(node)
     if own is not None:
         return str(own if own.is_Symbol else -own)

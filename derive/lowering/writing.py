@@ -1,4 +1,4 @@
-"""A draft as a program: a value that has a name is bound before it is first read, and so is one that is read twice.
+"""A draft as a program: a named value is bound before it is first read, and so is a value that is read twice.
 
 Statements keep their order; a binding stands just before the first statement that reads it.
 """
@@ -24,15 +24,13 @@ from derive.lowering.draft import Draft, Effect, Item, Named, read_values
 from derive.lowering.wording import said
 
 _WHOLE = count("whole")
-"""Some whole number: what is computed of such has the type of it."""
+"""A representative of all integers, from which the type of a computed value is found."""
 
 
 def written(
     draft: Draft, constants: Mapping[Node, Named], taken: Iterable[str] = (), *, modulo_turns: bool = False
 ) -> Program:
-    """The program of a draft. constants: what is bound elsewhere; taken: names that are not free; modulo_turns: see
-    `lowered`.
-    """
+    """The program of a draft. constants: values bound elsewhere; taken: names in use; modulo_turns: see `lowered`."""
     elsewhere = {named.name.name for named in constants.values()}
     writer = _Writer(draft, dict(constants), Names({*taken, *elsewhere, *_names_in(draft)}), modulo_turns)
     body = tuple(writer.statements())
@@ -53,7 +51,7 @@ class _Writer:
     free: Names
     modulo_turns: bool
     last: list[Statement] = field(default_factory=list)
-    """What the outputs alone need."""
+    """The statements that only the outputs need."""
 
     def __post_init__(self) -> None:
         self.names = {n: named for n, named in self.draft.names.items() if n not in self.constants}
@@ -90,7 +88,7 @@ class _Writer:
                 self.names[node] = self._new_name(node, first[node])
 
     def _new_name(self, node: Node, reader: Node | None) -> Named:
-        """A name for a value that has none, with the sign that gives it fewer minus signs."""
+        """A new name for a value, or for its negative where that has fewer minus signs."""
         known = None if reader is None else self.names.get(reader) or self.constants.get(reader)
         value = Value(node, self._better_sign(node))
         proposal = said(value, self._called, "" if known is None else known.name.name)
@@ -101,7 +99,7 @@ class _Writer:
         )
 
     def _called(self, node: Node) -> sp.Expr | None:
-        """The name of a value; of one that stays away from zero by a choice, the name of what it is elsewhere."""
+        """The name of a value; for a divisor that a choice keeps from zero, the name of the value in this choice."""
         for value in (_guarded(node), node):
             if isinstance(value.head, sp.Symbol):
                 return value.head
@@ -113,7 +111,7 @@ class _Writer:
     # --- statements
 
     def statements(self) -> Iterator[Statement]:
-        """The statements, then in `last` what the outputs alone need."""
+        """The statements; those that only the outputs need are put in `last`."""
         for item in self.draft.items:
             yield from self._item(item)
         self.last = list(self._bindings(self.draft.outputs))
@@ -144,11 +142,11 @@ class _Writer:
 
     def _effect(self, effect: Effect) -> Iterator[Statement]:
         yield from self._bindings(effect.values)
-        texts = {expression: self.text(value) for expression, value in (*effect.read, *effect.told)}
+        texts = {expression: self.text(value) for expression, value in (*effect.read, *effect.refused)}
         yield rewritten(effect.statement, texts.__getitem__)
 
     def _bindings(self, values: Iterable[Value]) -> Iterator[Statement]:
-        """Bind what the values need, and is not bound yet."""
+        """Bind all that the values need and that is not bound yet."""
         yield from self._let(self._needed(values))
 
     def _let(self, nodes: Iterable[Node]) -> Iterator[Statement]:
@@ -159,7 +157,7 @@ class _Writer:
             self._texts[node] = named.sign * named.name
 
     def _needed(self, values: Iterable[Value]) -> list[Node]:
-        """The nodes with names that the values need, those that others need first, else in the order of the program."""
+        """The named nodes that the values need, in the order of the program, but each after those that it needs."""
         found: list[Node] = []
         begun: set[Node] = set()
 
@@ -181,7 +179,7 @@ class _Writer:
         return self.names[node].order, node.place
 
     def _named_below(self, nodes: Iterable[Node]) -> set[Node]:
-        """The nearest nodes with names that are read, and not bound yet."""
+        """The nearest named nodes that are read and not bound yet."""
         found = reached(nodes, lambda node: node in self.bound or node in self.names)
         return {node for node in found if node in self.names and node not in self.bound}
 
@@ -193,7 +191,7 @@ class _Writer:
         return self._spelled(*value) if known is None else -known if value.sign < 0 else known
 
     def _spelled(self, node: Node, sign: int) -> sp.Basic:
-        """What a node is, or its negative."""
+        """The expression of a node, or of its negative."""
         if node.is_leaf:
             return sign * node.head if sign < 0 else node.head
         if node.head is SUM:
@@ -211,7 +209,7 @@ class _Writer:
         ):
             return Atan2(self.text(-node.parts[0]), self.text(node.parts[1]))
         if issubclass(node.head, Relational):
-            return node.head(*map(self.text, node.parts), evaluate=False)  # nothing is left to be decided: see `Graph`
+            return node.head(*map(self.text, node.parts), evaluate=False)  # nothing is left to simplify: see `Graph`
         whole = node.head(*map(self.text, node.parts))
         return -whole if sign < 0 else whole
 
@@ -220,7 +218,7 @@ class _Writer:
         above, below = [Value(f.node, self._better_sign(f.node)) for f in node.parts], list(node.divisors)
         for value in above:
             sign *= value.sign
-        if sign < 0:  # as many signs as terms leave it open whose sign it is
+        if sign < 0:  # a sum with as many minus signs as plus signs takes the minus
             place = next((k for k, v in enumerate(above) if self._is_open(v.node) and not self._surplus(v.node)), 0)
             above[place : place + 1] = [-above[place]] if above else []
         factors = [self.text(f) for f in above] + [1 / self.text(Value(d, 1)) for d in below]
@@ -232,7 +230,7 @@ class _Writer:
         return sp.Mul(*factors)
 
     def _is_open(self, node: Node) -> bool:
-        """Whether it is a sum that is written out."""
+        """Whether a node is a sum that is written out and not named."""
         return node.head is SUM and node not in self.names and node not in self.constants
 
     def _better_sign(self, node: Node) -> int:
@@ -245,7 +243,7 @@ class _Writer:
         return -1 if surplus < 0 or (surplus == 0 and self._shown_sign(node.parts[0]) < 0) else 1
 
     def _surplus(self, node: Node) -> int:
-        """How many terms of a sum have no minus sign, less those that have one."""
+        """The number of terms of a sum without a minus sign, less the number of terms with one."""
         return sum(map(self._shown_sign, node.parts))
 
     def _shown_sign(self, value: Value) -> int:
@@ -258,13 +256,13 @@ class _Writer:
         return sign * math.prod(map(self._better_sign, (*(f.node for f in node.parts), *node.divisors)))
 
     def _sign_of_name(self, node: Node) -> int:
-        """A name may stand for the negative of its node."""
+        """-1 where the name of a node stands for its negative, else +1."""
         named = self.names.get(node) or self.constants.get(node)
         return 1 if named is None else named.sign
 
 
 def _guarded(node: Node) -> Node:
-    """What a divisor is where it is not the number one instead: select(length > tolerance, length, 1)."""
+    """The value that a guarded divisor stands for: `length` in select(length > tolerance, length, 1)."""
     if node.head is not Select:
         return node
     _, first, second = node.parts
@@ -277,9 +275,7 @@ def is_condition(node: Node) -> bool:
 
 
 def _is_slight(node: Node, names: Container[Node]) -> bool:
-    """Whether a value is written as easily as a name: the size of a name, a multiple of a name that
-    the program reads.
-    """
+    """Whether a value is as short as a name: the absolute value of a name, or a multiple of a name in the program."""
     sources = node.read
     if node.head is sp.Abs and sources[0] in names:
         return True

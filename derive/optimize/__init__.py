@@ -4,12 +4,12 @@ It may import the folders from `ir` to `solver`.
 
 angle_addition: angles added before their sines are taken, where a sine costs no more than a few products
 coalesce: names that no later statement reads, given to the next branch
-directions: the angle of a direction, without a sine and a cosine that nothing else reads
-guards: a condition that holds where a root is positive, asked only where it is not
-joining: a choice that an earlier choice decides, brought into that one
-inline: what is read once and is short, written where it is read
-regular: the program of poses where nothing is singular
-rotation_identities: a cross product of two columns of a rotation, as its third column
-simplify: what a derivation does twice or undoes again, done once
-without_periods: angles and axes that may be a turn more or less
+directions: the angle of a direction is computed without a sine and a cosine that nothing else reads
+guards: a condition that holds where a root is positive is tested only where the root is not positive
+inline: a short value that is read once is written where it is read
+joining: a later choice that an earlier choice decides is moved into the earlier one
+regular: the program for poses where nothing is singular
+rotation_identities: the cross product of two columns of a rotation is its third column
+simplify: steps of a derivation that repeat or undo each other are removed
+without_periods: angles and axes that may be a turn more or less keep their first value
 """

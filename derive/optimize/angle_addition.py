@@ -1,4 +1,4 @@
-"""Angles first: for a language in which a sine costs no more than a few products.
+"""Angles are added before their sines are taken, for a language in which a sine costs no more than a few products.
 
     along  = x * u + y * v                  (x, y) turned back by the direction (u, v) of the arm
     across = y * u - x * v
@@ -6,8 +6,9 @@
     c23 = c2 * c3 - s2 * s3           →     c23 = cos(angle_q2 + angle_q3)
     s23 = s2 * c3 + c2 * s3                 s23 = sin(angle_q2 + angle_q3)
 
-Two branches share these angles, or have them with opposite signs. Nothing is lost: an arc tangent is as exact as its
-arguments. What is called the cosine and sine of one angle is that; of a mere direction the angle alone is taken.
+Two branches share these angles, or have them with opposite signs. No digits are lost: an arc tangent is as exact as its
+arguments. Two names `cos_…` and `sin_…` of one angle have length one; any other pair is a direction, of which only the
+angle is taken.
 """
 
 from __future__ import annotations
@@ -47,11 +48,11 @@ from derive.optimize.without_periods import angles_modulo_turns
 
 _Values = Mapping[sp.Symbol, sp.Expr]
 _Signs = Mapping[sp.Symbol, frozenset[sp.Symbol]]
-"""By name: the branch signs that it depends on."""
+"""For each name: the branch signs on which it depends."""
 
 
 def with_added_angles(program: Program, constants: frozenset[str]) -> Program:
-    """The program with sums of angles before their sines and cosines, where nothing else reads those of the angles."""
+    """The program with angles added before their sines and cosines are taken, where nothing else reads the latter."""
     values = {let.name: let.value for let in program.lets()}
     context = _Known(values, constants, _signs(program), lengths_of(program))
     names = _directions_modulo_turns(program)
@@ -69,7 +70,7 @@ def with_added_angles(program: Program, constants: frozenset[str]) -> Program:
 
 @dataclass(frozen=True)
 class _Known:
-    """What is known of the names of a program."""
+    """Known properties of the names of a program."""
 
     values: _Values
     constants: frozenset[str]
@@ -79,7 +80,7 @@ class _Known:
 
 @dataclass(frozen=True)
 class _Sum:
-    """Sine and cosine of a signed sum of two angles, or of what is half a turn from it."""
+    """Sine and cosine of a signed sum of two angles, or of that sum plus half a turn."""
 
     pair: Pair
     parts: tuple[Pair, Pair]
@@ -100,7 +101,7 @@ def _directions_modulo_turns(program: Program) -> dict[Pair, sp.Symbol]:
 
 
 def _read_by_name(program: Program, names: Mapping[sp.Basic, sp.Basic]) -> tuple[Statement, ...]:
-    """The statements with angles under names, which are bound first."""
+    """The statements with names in place of angles, which are bound first."""
     bound = [s for s in program.body if not (isinstance(s, Let) and names.get(s.value) == s.name)]
     lets = [Let(real(str(name)), angle) for angle, name in names.items() if isinstance(angle, Atan2)]
     return (*lets, *(rewritten(s, lambda e: e.xreplace(dict(names))) for s in bound))
@@ -112,7 +113,7 @@ def _name_of(pair: Pair) -> str:
 
 
 def _angle(pair: Pair, known: _Known) -> sp.Expr | None:
-    """The angle of a direction that is another one turned: where a condition holds, or always."""
+    """The angle of a direction that is another direction turned: where a condition holds, or always."""
     sine, cosine = (known.values.get(name, name) for name in pair)
     if not (isinstance(sine, Select) and isinstance(cosine, Select)):
         return _turned(sine, cosine, known)
@@ -123,7 +124,7 @@ def _angle(pair: Pair, known: _Known) -> sp.Expr | None:
         across, along = (
             across * length,
             along * length,
-        )  # a divisor that one of the two has alone stays, and nothing fits
+        )  # a divisor of only one of the two would be left
     first = _turned(known.values.get(across, across), known.values.get(along, along), known)
     return None if first is None else Select(condition, first, sine_else.args[0])
 
@@ -175,7 +176,7 @@ def _are_of_one_angle(pair: Pair) -> bool:
 
 
 def _readers(program: Program, pair: Pair) -> set[sp.Symbol | None]:
-    """Who reads a direction other than for its angle: names that are bound, None for anything else."""
+    """The readers of a direction that need more than its angle: the names that they bind, None for other statements."""
     found: set[sp.Symbol | None] = set()
     for statement in program.body:
         plain = rewritten(statement, lambda e: e.xreplace({Atan2(*pair): sp.Integer(0)}))
@@ -187,7 +188,7 @@ def _readers(program: Program, pair: Pair) -> set[sp.Symbol | None]:
 def _with_angles(
     program: Program, angles: Mapping[Pair, sp.Expr], names: Mapping[Pair, sp.Symbol], sums: Sequence[_Sum]
 ) -> Program:
-    """The program with these angles under names, and the sines of their sums."""
+    """The program with names for these angles, and with the sines and cosines of their sums."""
     taken = Names(s.name for s in (*program.inputs, *program.bound(), *names.values()))
     parts: dict[sp.Basic, sp.Symbol] = {}
     for part in (p for angle in angles.values() for p in sorted(angle.atoms(Atan2), key=str)):

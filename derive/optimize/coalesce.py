@@ -1,10 +1,11 @@
-"""Reused names: in a straight line for all branches, what no later statement reads gives its name to the next branch.
+"""Reused names: in a straight line for all branches, a name that no later statement reads is used again by the next
+branch.
 
     cos_q1_front = …; axis_a1_front = f(cos_q1_front)         cos_q1 = …; axis_a1_front = f(cos_q1)
     cos_q1_back = …;  axis_a1_back = f(cos_q1_back)      →    cos_q1 = …; axis_a1_back = f(cos_q1)
 
-It reads like one branch after the other, and holds fewer numbers at a time: a language reuses the memory of those that
-it drops.
+The result reads like one branch after the other, and holds fewer numbers at a time: a language reuses the memory of
+numbers that are overwritten.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ from derive.ir.tree import If, Item, bindings_in, read_in
 def coalesced(
     items: Sequence[Item], wanted: Sequence[sp.Basic], signs: Sequence[Sign]
 ) -> tuple[tuple[Item, ...], Mapping[sp.Symbol, sp.Symbol]]:
-    """The statements with shorter names, and what every name that is wanted behind them is called now."""
+    """The statements with shorter names, and the new name of every name that is wanted after them."""
     lives = _lives(items, wanted)
     fixed = {s.name for s in read_in(items)} - {name.name for name in lives}
     by_stem: dict[str, list[sp.Symbol]] = {}
@@ -45,7 +46,7 @@ def coalesced(
 
 
 def _lives(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> dict[sp.Symbol, tuple[int, int]]:
-    """Of every name that is bound: the places of the first statement and of the last that it is in."""
+    """For every bound name: the places of the first and of the last statement that contains it."""
     last = {s: place for place, item in enumerate(items) for s in read_in((item,))}
     last |= {s: len(items) for value in wanted for s in symbols_of(value)}
     first = {name: place for place, item in reversed(list(enumerate(items))) for name in bindings_in((item,))}
@@ -57,8 +58,8 @@ def _lives(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> dict[sp.Symbol,
 def _shortest(
     variants: Sequence[sp.Symbol], signs: Sequence[Sign], lives: Mapping[sp.Symbol, tuple[int, int]], taken: set[str]
 ) -> dict[sp.Symbol, sp.Symbol]:
-    """The variants of a name with as few words as tell those apart that are needed at a time: the
-    first words go first.
+    """The variants of a name with as few words as distinguish those that are needed at the same time; the first words
+    are dropped first.
     """
     own = set(variants)
     others = taken | {name.name for name in lives if name not in own}

@@ -1,11 +1,11 @@
-"""Directions: the angle of a direction is taken of what is at hand, without the sine and the cosine that nothing else
-reads.
+"""Directions: the angle of a direction is computed from known angles and vectors, without a sine and a cosine that
+nothing else reads.
 
     added      atan2(s1 c2 + c1 s2, c1 c2 - s1 s2)    →  atan2(s1, c1) + atan2(s2, c2), up to a turn, which is chosen
                afterwards
     unscaled   atan2(y/r, x/r)                        →  atan2(y, x)
 
-Both also hold for what is made of a direction: a direction that it turns, or that it is multiplied with.
+Both also apply to values made of a direction: to a direction turned by it, or multiplied with it.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ from derive.ir.program import (
     Output,
     Program,
     reads,
+    reason_expressions,
     rewritten,
-    told,
 )
 from derive.ir.symbols import (
     angle_of,
@@ -44,11 +44,11 @@ from derive.ir.symbols import (
 
 _AXES = {"cos": "x", "sin": "y"}
 Pair = tuple[sp.Symbol, sp.Symbol]
-"""What sine and cosine of an angle are, or are proportional to."""
+"""Two names that are the sine and the cosine of an angle, or are proportional to them."""
 
 
 def plain_directions(program: Program) -> Program:
-    """The program with its axes taken from plain directions."""
+    """The program in which the angles of axes are computed from such directions."""
     return _unscaled(_added(program))
 
 
@@ -64,7 +64,7 @@ class _Amount:
         return replace(self, terms=tuple((sense * s, p) for s, p in self.terms))
 
     def plus(self, other: _Amount) -> _Amount:
-        """The sum of two."""
+        """The sum of two angles."""
         return _Amount((*self.terms, *other.terms), self.is_opposite != other.is_opposite)
 
 
@@ -75,7 +75,7 @@ def _added(program: Program) -> Program:
     sums: dict[Pair, _Amount] = {}
     for name, pair in axes.items():
         if any(_readers(program, symbol) != [name] for symbol in pair):
-            continue  # what else reads them needs them anyway
+            continue  # another reader needs them anyway
         others = [other for other in axes.values() if other != pair]
         amount = min(_amounts(pair, values, others), key=lambda a: _strangers(a, others), default=None)
         if amount is not None and _strangers(amount, others) <= 1:
@@ -104,13 +104,13 @@ def _with_sums(program: Program, sums: Mapping[Pair, _Amount]) -> Program:
 
 
 def _angle_name(pair: Pair, whole: Pair) -> str:
-    """`angle_q2` of `sin_q2`, `cos_q2`; what has no angle's name is called after the angle that it leads to."""
+    """`angle_q2` for `sin_q2`, `cos_q2`; a pair without the name of an angle is named after the angle that it gives."""
     own = angle_of(pair[1])
     return f"angle_with_{angle_word(whole[1])}" if own is None else f"angle_{own}"
 
 
 def direction_of(let: Let) -> Pair | None:
-    """What the angle of an axis is taken of, its turn chosen afterwards."""
+    """The pair from which the angle of an axis is computed, if its period is chosen afterwards; else None."""
     if not isinstance(let.value, NearestPeriod):
         return None
     found = [term * DEGREE for term in sp.Add.make_args(let.value.args[0]) if isinstance(term * DEGREE, Atan2)]
@@ -121,18 +121,18 @@ def direction_of(let: Let) -> Pair | None:
 
 
 def _readers(program: Program, symbol: sp.Symbol) -> list[sp.Symbol | None]:
-    """Who reads a name: the names that are bound so, None for anything else."""
+    """The readers of a name: the names that they bind, None for other statements."""
     lets = [s.name if isinstance(s, Let) else None for s in program.body if symbol in reads(s)]
     return lets + [None for o in program.outputs if symbol in symbols_of(o.value)]
 
 
 def _strangers(amount: _Amount, known: Sequence[Pair]) -> int:
-    """The angles of a sum that no axis has."""
+    """The number of angles in a sum that belong to no axis."""
     return sum(pair not in known for _, pair in amount.terms)
 
 
 def _amounts(pair: Pair, values: Mapping[sp.Symbol, sp.Expr], known: Sequence[Pair]) -> Iterator[_Amount]:
-    """The sums that the angle of a direction is."""
+    """The sums of angles that the angle of a direction equals."""
     sine, cosine = (values.get(name) for name in pair)
     if sine is None or cosine is None:
         return
@@ -158,7 +158,7 @@ def products(sine: sp.Expr, cosine: sp.Expr) -> Iterator[tuple[bool, tuple[int, 
 
 
 def _unscaled(program: Program) -> Program:
-    """The program without divisions by a length, where only the direction of what was divided is asked for."""
+    """The program without divisions by a length, where only the direction of the quotients is needed."""
     for names, length in _divided(program):
         graded = _graded(program, names)
         if graded is not None:
@@ -167,7 +167,7 @@ def _unscaled(program: Program) -> Program:
 
 
 def _divided(program: Program) -> tuple[tuple[frozenset[sp.Symbol], sp.Symbol], ...]:
-    """The names that are quotients by one length, on the first side of a choice or always."""
+    """The names that are quotients by one length, on the first side of a choice or always, with this length."""
     found: dict[tuple[sp.Basic, sp.Symbol], list[sp.Symbol]] = {}
     lengths = lengths_of(program)
     for let in (let for let in program.lets() if not is_condition(let.value)):
@@ -181,21 +181,19 @@ def _divided(program: Program) -> tuple[tuple[frozenset[sp.Symbol], sp.Symbol], 
 
 
 def lengths_of(program: Program) -> frozenset[sp.Symbol]:
-    """The names that are the length of something, or 1 where that is none: never negative, and no
-    divisor that is zero.
-    """
+    """The names of lengths that are 1 where they would be zero: they are never negative, and may divide."""
     roots = {let.name for let in program.lets() if isinstance(let.value, Root)}
     choices = [let for let in program.lets() if isinstance(let.value, Select) and let.value.args[2] == 1]
     return frozenset(c.name for c in choices if isinstance(c.value.args[1], Root) or c.value.args[1] in roots)
 
 
 def _graded(program: Program, names: frozenset[sp.Symbol]) -> frozenset[sp.Symbol] | None:
-    """All names that grow with these in proportion; None where something else is made of them, or a reason tells of
+    """All names that are proportional to the given ones; None where any other value depends on them, or a reason reads
     them.
     """
     graded = set(names)
     for statement in program.body:
-        if any(symbols_of(value) & graded for value in told(statement)):
+        if any(symbols_of(value) & graded for value in reason_expressions(statement)):
             return None
         if not reads(statement) & graded:
             continue
@@ -210,7 +208,7 @@ def _graded(program: Program, names: frozenset[sp.Symbol]) -> frozenset[sp.Symbo
 
 
 def _degree(value: sp.Expr, graded: set[sp.Symbol]) -> int | None:
-    """1 where a value grows in proportion, 0 where it does not change."""
+    """1 where a value is proportional to the graded names, 0 where it does not depend on them; else None."""
     plain = value.replace(lambda e: isinstance(e, Atan2) and _is_proportional(e.args, graded), lambda _: sp.Dummy())
     if not plain.free_symbols & graded:
         return 0
@@ -219,7 +217,7 @@ def _degree(value: sp.Expr, graded: set[sp.Symbol]) -> int | None:
 
 
 def _is_proportional(values: Sequence[sp.Expr], graded: set[sp.Symbol]) -> bool:
-    """Whether every term of these has one graded factor."""
+    """Whether every term of the values has exactly one graded factor."""
     terms = [t for v in values for t in sp.Add.make_args(v)]
     return all([f in graded for f in sp.Mul.make_args(t) if f.free_symbols & graded] == [True] for t in terms)
 
@@ -227,7 +225,7 @@ def _is_proportional(values: Sequence[sp.Expr], graded: set[sp.Symbol]) -> bool:
 def _without_division(
     program: Program, names: frozenset[sp.Symbol], length: sp.Symbol, graded: frozenset[sp.Symbol]
 ) -> Program:
-    """The program with the names, called what they then are, in proportion to what they were."""
+    """The program in which the names are not divided, and have new names that say so."""
     taken = Names.of(program)
     called = {name: _called(name, taken) for name in sorted(graded, key=str)}
     body = []
@@ -241,7 +239,9 @@ def _without_division(
 
 
 def _with_parts(program: Program, names: set[sp.Symbol]) -> Program:
-    """The names bound to what they are on the first side of a choice, where that had a name for this alone."""
+    """The program with these names bound to the value on the first side of a choice, written out where only the choice
+    reads it.
+    """
     sources = {let.name: let for let in program.lets()}
     body = []
     for s in program.body:
@@ -254,7 +254,7 @@ def _with_parts(program: Program, names: set[sp.Symbol]) -> Program:
 
 
 def _joined(*notes: str) -> str:
-    """Notes as one."""
+    """Several notes in one."""
     return "; ".join(note for note in notes if note)
 
 

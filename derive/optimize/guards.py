@@ -1,4 +1,4 @@
-"""Guards: a condition that holds where a root is positive is asked only where it is not.
+"""Guards: a condition that holds where a radicand is positive is tested only where the radicand is not positive.
 
 if not square >= -tolerance:                          if square > 0:
     return                                                x = sqrt(square)*sigma
@@ -31,14 +31,16 @@ from derive.ir.tree import If, Item
 
 
 class PositiveRoot(sp.Function):
-    """The root of what is known to be positive."""
+    """The root of a radicand that is known to be positive."""
 
     nargs = 1
     is_nonnegative = True
 
 
 def guarded(body: Sequence[Statement], constants: Iterable[Let] = ()) -> tuple[Item, ...]:
-    """The statements with such conditions where they can fail. constants: what is known of what they read."""
+    """The statements with such conditions moved to where they can fail. constants: the bindings of constants that they
+    read.
+    """
     known = {let.name: let.value for let in constants}
     found: list[Item] = []
     done: set[Statement] = set()
@@ -53,7 +55,7 @@ def guarded(body: Sequence[Statement], constants: Iterable[Let] = ()) -> tuple[I
 
 
 def _root_of(require: Require, later: Sequence[Statement], known: Mapping[sp.Basic, sp.Expr]) -> Let | None:
-    """The statement that takes the root, if it can be computed as early as the condition is asked."""
+    """The statement that takes the root, if it can be computed where the condition is tested."""
     condition = require.condition
     if not isinstance(condition, sp.GreaterThan) or not condition.lhs.is_Symbol:
         return None
@@ -77,7 +79,7 @@ def _choice(require: Require, root: Let) -> If:
 
 
 def _is_never_positive(value: sp.Expr) -> bool:
-    """Whether it is a sum of squares with negative factors."""
+    """Whether a value is a sum of squares with negative factors."""
     terms = [term.as_coeff_Mul() for term in sp.Add.make_args(value)]
     return all(
         factor <= 0 and all(part == 1 or (part.is_Pow and part.exp % 2 == 0) for part in sp.Mul.make_args(rest))

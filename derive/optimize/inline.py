@@ -1,4 +1,4 @@
-"""Read once: what is read once, and is short, is written where it is read.
+"""Inlining: a short value that is read once is written where it is read.
 
     y = a * s                                     angle = atan2(a * s, b + a * c) - atan2(u, v)
     x = b + a * c
@@ -6,9 +6,9 @@
     angle_of_v = atan2(u, v)
     angle = angle_of_x - angle_of_v
 
-It serves a language in which a name costs time. A choice reads on one of its sides, so that what is read once on each
-is written on each. Products are not regrouped; terms of a sum may be added in another order. What has a note keeps its
-name, and so does a choice.
+It serves a language in which a name costs time. Only one side of a choice is executed, so a value that each side reads
+once is written on both. Products are not regrouped; terms of a sum may be added in another order. A value with a note
+keeps its name, and so does a choice.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ LONGEST = 5
 
 
 class Grouped(sp.Function):
-    """What stands where a name was: a value that is computed by itself."""
+    """A value in place of a name: it is computed as a unit."""
 
     nargs = 1
     is_real = True
 
 
 def squares_where_read(program: Program) -> Program:
-    """The program with the squares of names as products: it costs no more, and a root of them is known to be one of
-    squares.
+    """The program with the names of squares replaced by products: this costs no more, and shows that a root of them is
+    a root of squares.
     """
     own = {let.name: let.value for let in program.lets() if isinstance(let.value, sp.Pow) and let.value.base.is_Symbol}
     squares = {name: value for name, value in own.items() if value.exp == 2}
@@ -61,7 +61,7 @@ def squares_where_read(program: Program) -> Program:
 
 
 def inlined(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[tuple[Item, ...], Mapping[sp.Basic, sp.Basic]]:
-    """The statements without such names, and what stands for them in what is wanted."""
+    """The statements without such names, and the values in place of these names in `wanted`."""
     on_a_path, everywhere, bound = _read(items), Counter[sp.Basic](), Counter(bindings_in(items))
     for value in wanted:
         on_a_path += _written(value)
@@ -93,7 +93,7 @@ def _is_short(value: sp.Expr) -> bool:
 
 
 def _read(items: Sequence[Item]) -> Counter[sp.Basic]:
-    """How often names are written on the way through a program on which they are most."""
+    """The number of times that each name is written, on the path through a program on which it is written most."""
     found = Counter[sp.Basic]()
     for item in items:
         if isinstance(item, If):
@@ -105,7 +105,9 @@ def _read(items: Sequence[Item]) -> Counter[sp.Basic]:
 
 
 def _written(value: sp.Basic) -> Counter[sp.Basic]:
-    """How often names are written in a value: a power is a product, and a condition, a root or a turn may ask twice."""
+    """The number of times that each name is written in a value: a power is a product; conditions, roots and turns may
+    write an argument twice.
+    """
     if value.is_Symbol:
         return Counter({value: 1})
     found = Counter[sp.Basic]()

@@ -1,11 +1,12 @@
-"""The program for poses where nothing is singular: of each choice by amounts the first side, and where that is wrong.
+"""The program for poses where nothing is singular: it takes the first side of each choice by a comparison, and refuses
+where that is wrong.
 
     length = select(radius > 1e-11, radius, 1)                 require(radius > 1e-11)
     cos_c = select(radius > 1e-11, x/length, cos(free))    →   cos_c = x/radius
 
-The first side of a choice by amounts is the regular one. A choice by a flag of the machine stays, and so does that of a
-status: a branch that is refused is not singular. What refuses in the result is not known to refuse: the whole program
-has to be asked. So it serves where many poses are computed by the same instructions, of which a few are asked again.
+The first side of a choice by a comparison of numbers is the regular one. A choice by a flag of the machine stays, and
+so does the choice of a status: a refused branch is not singular. Where the result refuses, the whole program decides.
+So it serves where many poses are computed by the same instructions, and a few of them once more.
 """
 
 from __future__ import annotations
@@ -21,12 +22,14 @@ from derive.ir.program import Let, Program, Require, Statement, Status
 from derive.ir.symbols import is_count, names_in
 
 _HALF_A_TURN = 180 + 2 * EDGE
-"""Degrees: on its turn an axis is not farther from the centre."""
+"""The largest distance, in degrees, of an axis value on its chosen period from the centre."""
 _PLAIN = (Root, Atan2, Select, ToReal, NearestPeriod, sp.Abs)
 
 
 def regular(program: Program, constants: Collection[str]) -> Program | None:
-    """The program; None where it has more than arithmetic, roots and angles. constants: names of the machine's own."""
+    """The program for regular poses; None where it has more than arithmetic, roots and angles. constants: the names of
+    constants of the machine.
+    """
     if not all(isinstance(s, Let | Require) for s in program.body):
         return None
     own = frozenset(constants)
@@ -44,7 +47,7 @@ def regular(program: Program, constants: Collection[str]) -> Program | None:
 def _needed(
     lets: dict[sp.Symbol, Let], wanted: set[sp.Symbol], constants: frozenset[str]
 ) -> dict[sp.Symbol, tuple[Statement, ...]]:
-    """What stands for each statement that something needs, where only first sides are computed."""
+    """The statements in place of each needed one, where only first sides are computed."""
     found: dict[sp.Symbol, tuple[Statement, ...]] = {}
     pending = [lets[name] for name in wanted & lets.keys()]
     while pending:
@@ -63,20 +66,20 @@ def _needed(
 
 
 def _on_its_turn(name: sp.Symbol, value: sp.Basic) -> tuple[Require, ...]:
-    """The condition that a value is a number, and was put on its turn."""
+    """The condition that a value is no NaN, and lies on its chosen period."""
     if not isinstance(value, NearestPeriod):
         return ()
     return (Require(sp.Le(sp.Abs(name - value.args[1]), _HALF_A_TURN), Status.OK),)
 
 
 def _is_plain(let: Let) -> bool:
-    """Whether a value has arithmetic, roots and angles alone."""
+    """Whether a value consists of arithmetic, roots and angles alone."""
     calls = let.value.atoms(sp.Function)
     return all(isinstance(call, _PLAIN) for call in calls) and not let.value.atoms(NearestPeriod) - {let.value}
 
 
 def _first_sides(value: sp.Basic, constants: frozenset[str]) -> tuple[sp.Basic, tuple[sp.Basic, ...]]:
-    """A value with first sides alone, and the conditions that this takes to hold."""
+    """A value in which choices are replaced by their first sides, and the conditions under which that is right."""
     conditions: list[sp.Basic] = []
     while choices := [c for c in value.atoms(Select) if not _is_of_machine(c.args[0], constants)]:
         outermost = max(choices, key=lambda c: (sp.count_ops(c), str(c)))

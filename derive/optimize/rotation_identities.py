@@ -1,10 +1,10 @@
-"""Columns: a cross product of two columns of a rotation is the third.
+"""Rotation identities: the cross product of two columns of a rotation is the third column.
 
     dx = -r33', dy = r23   (or a free direction)          y = select(radius > known, r12' * …, dx * r21 + dy * r31')
     y = dx * r21 + dy * r31'                         →    with r12' = cos * r12 + sin * r32, of the same rotation
 
-The direction (dx, dy) is of a column, as long as its distance from the axis. Where that is far from zero, what the
-direction turns is as well known without it, and shorter.
+(dx, dy) is the part of a column at right angles to the axis, divided by its length. Where this length is far from zero,
+the turned value equals an entry of the third column times a factor, which is as exact and shorter.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ from derive.ir.symbols import cosine as cosine_of
 from derive.ir.symbols import sine as sine_of
 
 _Entries = tuple[tuple[sp.Expr, ...], ...]
-"""By rows: what the entries of a rotation are called, or what they are."""
+"""The entries of a rotation by rows: names or expressions."""
 
 
 def with_rotation_identities(program: Program) -> Program:
-    """The program with such products as what they are, where the direction is well known."""
+    """The program in which such products are replaced by entries, where the direction is well known."""
     values = {let.name: let.value for let in program.lets()}
     rotations = list(_rotations(values))
     body = list(program.body)
@@ -51,7 +51,7 @@ def with_rotation_identities(program: Program) -> Program:
 
 
 def _rotations(values: Mapping[sp.Symbol, sp.Expr]) -> Iterator[_Entries]:
-    """The commanded rotation, and what is left of it behind every turn of two rows that has names."""
+    """The commanded rotation, and the remaining rotation after every turn of two rows whose entries have names."""
     names = {value: name for name, value in values.items()}
     pending: list[_Entries] = [tuple(tuple(ROTATION_ENTRIES[3 * i : 3 * i + 3]) for i in range(3))]
     while pending:
@@ -78,7 +78,7 @@ class _Product:
     """A term of the cross product: a coordinate of the direction times an entry of another column."""
 
     condition: sp.Basic
-    """Where the direction is that of `first`, an entry of a column, times `factor`."""
+    """The condition under which the coordinate of the direction is `first`, an entry of a column, times `factor`."""
     factor: sp.Expr
     first: sp.Symbol
     second: sp.Symbol

@@ -1,4 +1,4 @@
-"""Shorter: what a derivation step by step does twice and undoes again is done once.
+"""Simplify: steps of a derivation that repeat or undo each other are removed.
 
 turned back    c = a/e cos s - b/e sin s,  s = …,  e² = a² + b²:   b c - a s   →  -e sin s
 signs          Let(r23, -x - y), Let(cos_q5, -r23)                            →  Let(cos_q5, x + y)
@@ -41,10 +41,10 @@ class _Turned:
     before: tuple[sp.Symbol, sp.Symbol]
     length: sp.Symbol
     square: sp.Expr
-    """Of the length."""
+    """The square of the length."""
 
     def undone_in(self, statement: Statement) -> Statement:
-        """A statement with its value in terms of what was turned, where that is shorter."""
+        """A statement with its value in the names before the turn, where that is shorter."""
         if isinstance(statement, Let) and statement.name not in self.names:
             return replace(statement, value=self._undone(statement.value))
         return statement
@@ -60,7 +60,7 @@ class _Turned:
         return found if sp.count_ops(found) < sp.count_ops(value) else value
 
     def _tidy(self, coefficient: sp.Expr) -> sp.Expr:
-        """A coefficient with the square of the length by its name."""
+        """A coefficient with the name of the length in place of its square."""
         share = sp.cancel(coefficient * self.length / self.square)
         return share * self.length if share.is_number else sp.cancel(coefficient)
 
@@ -89,7 +89,7 @@ def _turns(lets: Iterable[Let]) -> Iterable[_Turned]:
 
 
 def _without_signs(program: Program) -> Program:
-    """Names that are read only as their negatives are bound as these."""
+    """The program in which a name that is read only with a minus sign is bound to its negative."""
     values = {let.name: let for let in program.lets()}
     for let in program.lets():
         source = values.get(-let.value) if not is_condition(let.value) and (-let.value).is_Symbol else None

@@ -1,8 +1,8 @@
 """The cones of a rod's joints: the largest angle between a rod and its direction at the home pose.
 
 Let u be the unit vector along the rod in the frame of the base, and R^T u the same in the frame of the plate. At the
-home pose these are u0 and R0^T u0, the axes of the two cones. A joint leans by the angle between the rod and the axis
-of its cone. What is compared is the span along that axis and the length of the rod times the least cosine: no unit
+home pose these are u0 and R0^T u0, the axes of the two cones. A joint swings by the angle between the rod and the axis
+of its cone. The span along that axis is compared with the length of the rod times the least cosine, so that no unit
 vector is needed.
 """
 
@@ -38,7 +38,7 @@ from derive.ir.symbols import (
 from derive.plate.legs import names, of, rotation_of, turned, vector_word
 
 _HOME, _SEEN, _TURNED = "home_along", "plate_axis", "cone_axis"
-"""The rod's direction at home; the same in the frame of the plate; the same as the plate has turned it."""
+"""Words for the rod's direction at home: in the frame of the base, in that of the plate, and turned with the plate."""
 _BEYOND = {"base": Why.BEYOND_BASE_CONE, "plate": Why.BEYOND_PLATE_CONE}
 
 
@@ -70,7 +70,7 @@ def cone_checks(mechanism: Mechanism) -> tuple[Statement, ...]:
 def _inside(
     side: str, cones: Sequence[tuple[Rod, sp.Expr]], vectors: Mapping[str, Sequence[sp.Symbol]], axis: str
 ) -> Iterator[Statement]:
-    """Every rod inside its cone. The boundary belongs to the cone; a cone of 180 degrees sets no bound."""
+    """The conditions that every rod is inside its cone. The boundary belongs to the cone; 180 degrees are no bound."""
     widths = list(dict.fromkeys(cone for _, cone in cones))
     least = {cone: real(f"least_cos_{side}" + (f"_{k}" if len(widths) > 1 else "")) for k, cone in enumerate(widths, 1)}
     for cone, name in least.items():

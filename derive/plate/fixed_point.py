@@ -1,8 +1,8 @@
-"""A platform that only turns: about the origin, where a point of it is fixed.
+"""A platform that only turns about the origin, where one of its points is fixed.
 
-Its equations hold the rotation alone, and its task no position. It is described as a platform whose point at the origin
-stays in three planes, which its bearing holds. Two directions that enclose a fixed angle, w of a joint and R v of the
-platform, are the ends of a rod: w . R v = c says that |w - R v|^2 = |w|^2 + |v|^2 - 2 c.
+Its equations contain the rotation alone, and its task commands no position. It is described as a platform whose point
+at the origin stays in three planes: this is its bearing. Two directions that enclose a fixed angle, w of a joint and
+R v of the platform, are the ends of a rod: w . R v = c says that |w - R v|^2 = |w|^2 + |v|^2 - 2 c.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ def with_fixed_point(mechanism: Mechanism) -> Mechanism:
 
 
 def _held(leg: End) -> End:
-    """The same with its point of the platform seen from the origin."""
+    """A copy of the leg in which its point of the platform has its coordinates from the origin."""
     if len(leg.plate) != len(_ORIGIN):
         return leg
     return replace(leg, plate=tuple(p + c for p, c in zip(leg.plate, _ORIGIN, strict=True)))
 
 
 def _leg(mechanism: Mechanism, number: int, equation: sp.Expr, taken: set[str]) -> Rod | None:
-    """The rod between two directions that the equation says enclose a fixed angle; None where it says more."""
+    """The rod between two directions, where the equation says that they enclose a fixed angle; else None."""
     try:
         form = sp.Poly(sp.expand(equation), *ROTATION_ENTRIES)
     except sp.PolynomialError:

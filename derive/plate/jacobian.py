@@ -53,7 +53,7 @@ def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[St
 
 
 def _of_the_task(mechanism: Mechanism, twists: list[sp.Expr]) -> list[sp.Expr]:
-    """The rows of the task among those of the platform: commanded coordinates, and tilts about the axes of the tool."""
+    """The rows of the task, made from those of the platform: commanded coordinates, and tilts about the tool's axes."""
     if not mechanism.passive:
         return twists
     width, position = len(mechanism.joints), mechanism.motion.position
@@ -66,8 +66,8 @@ def _of_the_task(mechanism: Mechanism, twists: list[sp.Expr]) -> list[sp.Expr]:
 
 
 def _driven(mechanism: Mechanism, leg: Leg) -> sp.Matrix:
-    """The negative of a leg's residual as a function of the joints, at a constant direction: along . base + length; of
-    a plane its offset.
+    """The negative of a leg's residual as a function of the joints, at a constant direction: along . base + length; for
+    a plane, its offset.
     """
     if isinstance(leg, Plane):
         return sp.Matrix([with_fixed_names(mechanism, leg.offset)])

@@ -1,9 +1,9 @@
 """The legs of a platform at a pose: names, vectors, and the rows of the matrix A in A (v, w) = -e.
 
 The length error of rod i is e = |span| - length. Let a be the arm from the origin of the plate to the rod's joint, and
-u the unit vector along the rod. Then e' = [u, a x u] (v, w): a row of A is the rod as a line, in Pluecker coordinates,
-of which it has those that the task commands: in a plane the components x and y of u, and z of its moment.
-Moments are divided by the platform's radius, so that det A has no unit.
+u the unit vector along the rod. Then e' = [u, a x u] (v, w): a row of A is the line of the rod in Pluecker coordinates.
+It has only those in which the platform moves: in a plane the components x and y of u, and z of its moment. Moments are
+divided by the platform's radius, so that det A has no unit.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ ANGLES = ("roll", "pitch", "yaw")
 
 Vector = tuple[sp.Expr, ...]
 Leg = Rod | Plane
-"""What holds the platform: a rod, or a plane, which is a rod of no end."""
+"""A leg holds the platform: a rod, or a plane, which acts like a rod of infinite length."""
 NORMAL = "normal"
 """The word for the vector of a plane."""
 
@@ -59,12 +59,12 @@ def spins(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def angles(mechanism: Mechanism) -> tuple[str, ...]:
-    """The angles of its rotation from the start of an iteration."""
+    """The angles of the platform's rotation from the start of an iteration."""
     return ANGLES if mechanism.motion.turning is Turning.FULL else ("yaw",)
 
 
 def home_angles(mechanism: Mechanism) -> tuple[str, ...]:
-    """The angles of its home pose."""
+    """The angles of the platform's home pose."""
     words = ANGLES if mechanism.motion.turning is Turning.FULL else (HEADING.name,)
     return tuple(f"home_{word}" for word in words)
 
@@ -87,7 +87,7 @@ def about_z(cos_value: sp.Expr, sin_value: sp.Expr) -> sp.Matrix:
 
 
 def legs_of(mechanism: Mechanism) -> tuple[Leg, ...]:
-    """All that holds the platform: the rods, then the planes."""
+    """All legs of the platform: the rods, then the planes."""
     return (*mechanism.rods, *mechanism.guides)
 
 
@@ -102,7 +102,9 @@ def of(word: str, leg: Leg) -> sp.Symbol:
 
 
 def vector_word(mechanism: Mechanism, rod: Rod) -> str:
-    """The word for a rod's vector: "span"; where joints move its base end, that is the word for the known part."""
+    """The word in the names of a rod's vector: "span"; where joints move the base end, "rod", for "span" is then the
+    known part of the vector.
+    """
     return "rod" if is_driven(mechanism, rod.base) else "span"
 
 
@@ -168,7 +170,7 @@ def row(
 
 
 def span_moment(mechanism: Mechanism, rod: Rod, arm: Sequence[sp.Expr], word: str = "span") -> tuple[Let, ...]:
-    """The moment in a row of A, times the length of the leg: nothing is divided."""
+    """The moment in a row of A, times the length of the leg, so that no division is needed."""
     return with_note(
         _moment(mechanism, rod, arm, names(word, rod)),
         f"leg {rod.name}: the moment of its span about the platform's origin",
@@ -178,9 +180,9 @@ def span_moment(mechanism: Mechanism, rod: Rod, arm: Sequence[sp.Expr], word: st
 def plane_row(
     mechanism: Mechanism, plane: Plane, arm: Sequence[sp.Expr], values: Sequence[sp.Expr] | None = None
 ) -> tuple[Let, ...]:
-    """A row of A for a plane: its normal, and the moment of this about the origin of the plate.
+    """A row of A for a plane: its normal, and the normal's moment about the origin of the plate.
 
-    values: the normal; None where angles and roots of the machine have names.
+    values: the normal with names for angles and roots of the machine; None: these names are made here.
     """
     normal = names(NORMAL, plane)
     values = values or tuple(with_fixed_names(mechanism, v) for v in plane.normal)

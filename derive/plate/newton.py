@@ -1,7 +1,7 @@
 """Forward kinematics of a platform that a loop turns: Newton's method on the lengths of its rods, from a start pose.
 
 The state is the position, and the rotation from the start in roll, pitch and yaw: R = Rz(yaw) Ry(pitch) Rx(roll)
-R_start; of a platform that turns about z alone it is yaw. A step solves A (v, w) = -e for the twist; w = E (roll',
+R_start; for a platform that turns about z alone it is yaw. A step solves A (v, w) = -e for the twist; w = E (roll',
 pitch', yaw') gives the rates of the angles. A step is at most half the size of the machine and half a radian, so that
 nothing overflows, and a far start does not lead into another assembly mode. The iteration ends when the rods fit for
 the second time: the step between leaves rounding errors only, however small det A is.
@@ -87,7 +87,7 @@ from derive.plate.legs import (
 SEARCH = "find_platform"
 """The name of the program."""
 LIMIT = 20
-"""Iterations, at most: from a neighbouring pose it takes four."""
+"""The largest number of iterations; from a neighbouring pose four suffice."""
 _TURN = sp.Matrix(3, 3, [real(f"turned_{r.name[1:]}") for r in ROTATION_ENTRIES])
 """The rotation from the start."""
 _START_HEADING = (real("start_cos_heading"), real("start_sin_heading"))
@@ -110,8 +110,8 @@ def at_home(mechanism: Mechanism) -> Start:
 
 
 def at_given(mechanism: Mechanism) -> Start:
-    """Start at a given pose, which is an input of the program: of its rotation the nearest one about z where the
-    platform turns about z alone.
+    """Start at a given pose, which is an input of the program. Where the platform turns about z alone, the start is the
+    nearest rotation about z.
     """
     position = START_POSITION[: len(mechanism.motion.position)]
     if _is_free(mechanism):
@@ -154,7 +154,7 @@ def _position(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
 
 
 def _rotation_names(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
-    """The rotation that it finds: all entries, or cosine and sine of the heading."""
+    """The names of the rotation that the iteration finds: all entries, or cosine and sine of the heading."""
     return ROTATION_ENTRIES if _is_free(mechanism) else (cosine(HEADING), sine(HEADING))
 
 
@@ -231,7 +231,7 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 
 def _orientation(mechanism: Mechanism) -> Iterator[Let]:
-    """The rotation that was found: the one from the start, times that of the start."""
+    """The rotation that was found: the rotation from the start, times the rotation of the start."""
     rotation = _turn(mechanism) * _start_rotation(mechanism)
     entries = rotation if _is_free(mechanism) else rotation[:2, 0]
     yield from (Let(n, v) for n, v in zip(_rotation_names(mechanism), entries, strict=True))
@@ -252,7 +252,7 @@ def _turn(mechanism: Mechanism) -> sp.Matrix:
 
 
 def _bases(mechanism: Mechanism) -> tuple[tuple[Let, ...], list[sp.Expr]]:
-    """The base joints of the rods and their lengths, every sine and cosine by its name."""
+    """The base joints of the rods and their lengths, with names for every sine and cosine."""
     ends = (v for rod in mechanism.rods for v in (*rod.base, rod.length))
     values = [with_fixed_names(mechanism, v) for v in (*ends, *(plane.offset for plane in mechanism.guides))]
     lets, named = named_trigonometry(mechanism, values)
@@ -309,7 +309,7 @@ def _step(mechanism: Mechanism) -> tuple[Let | Solve, ...]:
 
 
 def _rates(spin: Sequence[sp.Expr]) -> tuple[Let, ...]:
-    """The rates of the angles: of yaw alone it is w.
+    """The rates of the angles: for yaw alone, w.
 
     Else w = E (roll', pitch', yaw') with E = [[cp cy, -sy, 0], [cp sy, cy, 0], [-sp, 0, 1]].
     """

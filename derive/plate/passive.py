@@ -1,4 +1,4 @@
-"""The coordinates that a loop moves and the task does not command, from the commanded ones: planes hold them.
+"""The coordinates that a loop moves but the task does not command: planes determine them from the commanded ones.
 
 The platform has the tool direction of the commanded rotation C, and is turned about it: R = C Rz(twist). A point t of
 the plate stays in the plane n . (x + R t) = d: that is linear in the passive coordinates of x, and in the cosine and
@@ -29,13 +29,13 @@ from derive.solver.solve import Derivation, Unsolved, solve
 TWIST = real("twist")
 """The turn about the tool, from the commanded rotation to that of the platform."""
 GUIDES = "guides_dependent"
-"""The name of the margin: zero where the planes leave open what the task does not command."""
+"""The name of the margin that is zero where the planes do not determine the passive coordinates."""
 _COMMANDED = tuple(real(f"commanded_{r.name}") for r in ROTATION_ENTRIES)
 
 
 @cache
 def solve_passive(mechanism: Mechanism) -> Derivation:
-    """The passive coordinates, from the commanded ones. Raises `DescriptionError` where the planes leave them open."""
+    """The passive coordinates, from the commanded ones. Raises `DescriptionError` if the planes leave them free."""
     turns = "twist" in mechanism.passive
     problem = Problem(
         angles=(TWIST,) if turns else (),
@@ -73,7 +73,7 @@ def _turned() -> list[sp.Expr]:
 
 
 def passive_statements(mechanism: Mechanism) -> tuple[Statement, ...]:
-    """The statements that bind the passive coordinates by their own names, from commanded ones that have others."""
+    """The statements that bind the passive coordinates to their own names, from commanded ones under other names."""
     if not mechanism.passive:
         return ()
     derivation = solve_passive(mechanism)
@@ -88,7 +88,7 @@ def passive_statements(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 
 def _about_the_plate(statement: Statement) -> Statement:
-    """The statement; where it refuses planes that leave the twist open, it says so."""
+    """The statement; where it refuses because planes do not determine the twist, its reason says so."""
     if isinstance(statement, Require) and statement.reason is not None and statement.reason.why is Why.TOO_SHORT:
         return replace(statement, reason=about_machine(Why.UNCONTROLLED))
     return statement
@@ -119,8 +119,8 @@ def at_the_pose(mechanism: Mechanism) -> tuple[Let, ...]:
 
 @cache
 def guides_determinant(mechanism: Mechanism) -> sp.Expr:
-    """The determinant of the planes by what the task does not command, moments divided by the platform's radius: in the
-    names of their rows, at a pose.
+    """The determinant of the planes by the passive coordinates, at a pose and in the names of the rows of A. Moments
+    are divided by the platform's radius.
     """
     tool = rotation_of(mechanism)[:, 2]
     about = dict(zip(spins(mechanism), tool[-len(spins(mechanism)) :, 0], strict=True))
@@ -166,7 +166,9 @@ def mode_constants(mechanism: Mechanism) -> tuple[Output, ...]:
 
 
 def commanded(mechanism: Mechanism) -> dict[sp.Symbol, sp.Symbol]:
-    """How a program of the inverse spells what is commanded and what the platform has: only the former is an input."""
+    """The names in a program of the inverse for the commanded pose and for that of the platform: only the commanded one
+    is an input.
+    """
     if not mechanism.passive:
         return {}
     own = [real(c) for c in mechanism.passive if c != "twist"]
@@ -176,7 +178,7 @@ def commanded(mechanism: Mechanism) -> dict[sp.Symbol, sp.Symbol]:
 
 
 def spelled(statements: Iterable[Statement], table: Mapping[sp.Symbol, sp.Symbol]) -> tuple[Statement, ...]:
-    """The statements with other names, those that they bind as well."""
+    """The statements in which names are replaced, also those that they bind."""
     if not table:
         return tuple(statements)
     return tuple(

@@ -119,7 +119,7 @@ def platform_size(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 
 def home_flag(branch: Branch) -> str:
-    """The parameter that tells that the machine is in the second way of a branch at its home pose."""
+    """The parameter that is true where the machine is on the second side of a branch at its home pose."""
     return f"home_{branch.name}_{branch.names[1]}"
 
 
@@ -180,7 +180,7 @@ def _but(words: Sequence[str]) -> str:
 
 
 def _no_rods(mechanism: Mechanism) -> str:
-    """What to do about equations that are no rods."""
+    """The advice on equations that are no rods."""
     if not mechanism.closure:
         return ""
     if not mechanism.task.position:
@@ -200,7 +200,7 @@ def _no_rods(mechanism: Mechanism) -> str:
 
 
 def home_rotation(mechanism: Mechanism) -> sp.Matrix:
-    """The rotation of the home pose, in names that the setup binds."""
+    """The rotation of the home pose, by names that the setup binds."""
     words = home_angles(mechanism)
     return by_angles(words) if len(words) == 1 else sp.Matrix(3, 3, HOME_ROTATION)
 
@@ -279,7 +279,7 @@ def _mode_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 
 def _guided_at_home(mechanism: Mechanism) -> tuple[Require, ...]:
-    """The condition that planes hold what the task does not command at the home pose."""
+    """The condition that the planes determine the passive coordinates at the home pose."""
     if not mechanism.passive:
         return ()
     pose = pose_at_home(mechanism)

@@ -1,10 +1,10 @@
-"""Equations of a turning loop that are rods, or planes: each says that two points keep their distance, or that a point
-stays in a plane, however it is written.
+"""Equations of a turning loop that describe rods or planes: however an equation is written, it may say that two points
+keep their distance, or that a point stays in a plane.
 
 Let p = x + R t be a point of the platform and b one that joints move. |p - b|^2 - L^2, times a constant, has as
 coefficients: of x^2 that constant c, of x_i alone -2 c b_i, and of x_1 times the first row of R, 2 c t. What is left at
 R = 1, x = 0 is the square of L. In n . p - d the coefficients of x are n, and those of a column of R are n times a
-coordinate of t. What is read in this way must have the equation that was stated: that is compared at random poses.
+coordinate of t. The rod or plane that is found must have the stated equation: both are compared at random poses.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _LONG = 10**6
 
 
 def with_stated_rods(mechanism: Mechanism) -> Mechanism:
-    """The mechanism with every closure equation of a turning platform that is a rod among its rods."""
+    """The mechanism, with rods and planes in place of those closure equations of a turning platform that are such."""
     if not mechanism.is_platform:
         return mechanism
     taken = {rod.key for rod in mechanism.rods} | {plane.key for plane in mechanism.guides}
@@ -48,7 +48,7 @@ def with_stated_rods(mechanism: Mechanism) -> Mechanism:
 
 
 def _plane_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Plane | None:
-    """The plane whose equation this is; None where there is none."""
+    """The plane that has this equation; None where there is none."""
     size = 2 if _is_flat(mechanism, equation) else 3
     coordinates = [real(c) for c in COORDINATE_NAMES[:size]]
     entries = sp.Matrix(3, 3, ROTATION_ENTRIES)[:size, :size]
@@ -76,12 +76,12 @@ def _plane_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Plane | Non
 
 
 def _is_flat(mechanism: Mechanism, equation: sp.Expr) -> bool:
-    """Whether an equation is one in the plane."""
+    """Whether an equation holds in a plane: no z occurs in it."""
     return mechanism.task.turning is Turning.ABOUT_Z and real("z") not in equation.free_symbols
 
 
 def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
-    """The rod whose equation this is, but for a constant factor; None where there is none."""
+    """The rod that has this equation but for a constant factor; None where there is none."""
     size = 2 if _is_flat(mechanism, equation) else 3
     coordinates = [real(c) for c in COORDINATE_NAMES[:size]]
     names = [real(f"r{i + 1}{j + 1}") for i in range(size) for j in range(size)]
@@ -110,7 +110,7 @@ def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
 
 
 def _without_rounding(one: sp.Expr, other: sp.Expr) -> sp.Expr:
-    """The difference, without the terms that rounding alone left."""
+    """The difference, without terms that are only rounding."""
     first, second = (sp.expand(e).as_coefficients_dict() for e in (one, other))
     terms = [(m, first[m] - second[m], abs(first[m]) + abs(second[m])) for m in dict.fromkeys((*first, *second))]
     return sp.Add(*[m * left for m, left, size in terms if abs(left) > _ROUNDING * size])
@@ -122,17 +122,17 @@ def _plain(value: sp.Expr) -> sp.Expr:
 
 
 def _about_z() -> dict[sp.Symbol, sp.Expr]:
-    """The entries of a rotation about z by two of them."""
+    """The entries of a rotation about z, expressed by two of them."""
     return dict(zip(ROTATION_ENTRIES, about_z(real("r11"), real("r21")), strict=True))
 
 
 def _arm(form: sp.Poly, coordinates: Sequence[sp.Symbol], size: int, *, is_about_z: bool) -> list[sp.Expr]:
-    """The point of the platform, times twice the factor."""
+    """The point of the platform, times twice the constant factor of the equation."""
     first, second = coordinates[:2]
     if not is_about_z:
         return [form.coeff_monomial(first * real(f"r1{j + 1}")) for j in range(size)]
     flat = [form.coeff_monomial(c * real("r11")) for c in (first, second)]
-    return flat if size == 2 else [*flat, sp.Integer(0)]  # a height is not told from one of the base
+    return flat if size == 2 else [*flat, sp.Integer(0)]  # its height may equally belong to the base point
 
 
 def _is_same(mechanism: Mechanism, one: sp.Expr, other: sp.Expr) -> bool:

@@ -1,8 +1,8 @@
 """A loop that turns its platform: forward kinematics by iteration, its joints at the home pose, and sampled poses.
 
 Forward kinematics starts at the home pose, and the assembly mode is the one of that pose: the sign of det A there. It
-depends on the branches as well, so parameters tell the branches at home: `home_elbow_1_left` is a flag, and the
-derivation of the inverse is run at the home pose with these signs.
+depends on the branches as well, so parameters state the branches at home: `home_elbow_1_left` is a flag, and the
+derivation of the inverse is evaluated at the home pose with these signs.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ def forward_from_home(mechanism: Mechanism) -> Forward:
 
 
 def forward_from_given(mechanism: Mechanism) -> Forward:
-    """The same from a pose that is given."""
+    """The pose at axis values, by iteration from a given pose."""
     return found_from(mechanism, at_given(mechanism), search_program(mechanism))
 
 
 def given_pose(mechanism: Mechanism) -> Forward:
-    """A pose that is known with the axis values: nothing is searched."""
+    """A pose that is known together with the axis values: no iteration is needed."""
     return Forward(joint_lets(mechanism), position_of(mechanism), tuple(rotation_of(mechanism)))
 
 
@@ -88,10 +88,9 @@ def _at_home(statement: Statement, table: dict[sp.Symbol, sp.Expr]) -> Statement
 def samples_near_home(
     mechanism: Mechanism, derivation: Sequence[Statement], signs: Sequence[sp.Symbol], machine: Samples, seed: int
 ) -> Samples:
-    """Poses near the home of a machine, and the axes there: in every branch, by the derivation of the inverse in the
-    signs of its steps.
+    """Poses near the home of a machine, and the axes there in every branch, from the derivation of the inverse.
 
-    signs: those of its steps. Raises `NoPoseAtHome` where none of the poses is possible.
+    signs: the signs of its steps. Raises `NoPoseAtHome` where none of the poses is possible.
     """
     known = (*platform_size(mechanism), *modes_at_home(mechanism, pose_at_home(mechanism)))
     told = [Output(SCALE.name, SCALE), *mode_constants(mechanism)]
@@ -136,5 +135,5 @@ def _poses(mechanism: Mechanism, machine: Samples, rng: np.random.Generator) -> 
 
 
 def _nothing(symbol: sp.Symbol) -> np.ndarray:
-    """No limits, no commanded turns, a reference at zero."""
+    """The zero that every limit, commanded turn and reference gets."""
     return np.asarray(False if isinstance(symbol, Flag) else 0 if is_count(symbol) else 0.0)

@@ -2,16 +2,16 @@
 
 It may import the folders from `ir` to `kinematics`.
 
-branch_meanings: what derived branches and assembly modes mean, in words and at one pose
+branch_meanings: the meanings of derived branches and assembly modes, in words and at one pose
 branch_stretches: parts of a branch that other branches share
 cost: the operations of a call in the worst case
-derived: the derivation again, as it is told to a reader
+derived: the derivation, repeated for a reader
 effort: the operations of one call of the self-test
 reasons: the reasons of refusals in words
 reference_calls: the answers of the methods of a block, by the reference interpreter
 self_test: the calls of the self-test, with their answers
 singular_poses: poses in which one margin vanishes
-used: which equations a step was made of
+used: the equations from which a step was made
 workspace_map: slices through the workspace: solutions and margins at each point
-zero_directions: how each axis points in the zero pose, in words
+zero_directions: the direction of each axis in the zero pose, in words
 """

@@ -1,4 +1,4 @@
-"""What the branches and the assembly choice mean that no description names: in words, and at one frame of the nominal
+"""The meanings of branches and assembly modes that no description names: in words, and at one frame of the nominal
 machine, or at one set of axis values.
 """
 
@@ -37,7 +37,7 @@ def with_meanings(kinematics: Kinematics) -> Kinematics:
 
 
 def _assembly(kinematics: Kinematics) -> Iterator[str]:
-    """What both positions of a loop are that the description does not name."""
+    """The notes on the two positions of a loop, where the description does not name them."""
     way = kinematics.mechanism.assembly
     if way is None or not way.meanings[0]:
         return

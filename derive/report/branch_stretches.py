@@ -1,8 +1,8 @@
-"""Stretches of a branch: what depends on some signs alone is the same in all branches that share these signs.
+"""Stretches of a branch: values that depend on some signs alone are equal in all branches that share these signs.
 
 A language that solves one branch after the other keeps the values of a stretch for the next branch: a delta then solves
-each leg twice, not eight times. Statements keep their order, but one that divides nothing moves up to the first stretch
-with the same signs that has what it reads: a program is total.
+each leg twice, not eight times. Statements keep their order, except that one without a division moves up to the first
+stretch with the same signs behind the values that it reads, which is allowed because a program is total.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import ToReal
-from derive.ir.program import Let, Program, Require, told
+from derive.ir.program import Let, Program, Require, reason_expressions
 from derive.ir.symbols import is_branch_sign, names_in
 from derive.ir.tree import If, Item, bound_in, expressions_in, given_to, read_in
 from derive.ir.types import Type, type_of
@@ -22,7 +22,7 @@ from derive.kept import kept_by_identity
 from derive.lowering.scheduling import structured
 
 MOST_SIDES, MOST_KEPT = 16, 80
-"""What branches can share at most: stretches, one for every side of their signs, and values."""
+"""The most that branches can share: stretches, one for every side of their signs, and values."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def stretches_of(program: Program) -> tuple[Stretch, ...]:
 
 
 def _with_room(stretches: Iterable[Stretch]) -> Iterator[Stretch]:
-    """The stretches, of which those are shared for whose values there is room."""
+    """The stretches; a stretch is shared only while there is room for its values."""
     sides = kept = 0
     for stretch in stretches:
         more = sides + stretch.sides, kept + stretch.sides * len(stretch.kept)
@@ -98,8 +98,8 @@ def _groups(items: Sequence[Item], signs: Sequence[sp.Symbol]) -> list[tuple[fro
 
 
 def _told(item: Item) -> set[sp.Symbol]:
-    """What the reason of a refusal reads."""
-    return {s for value in told(item) for s in names_in(value)} if isinstance(item, Require) else set()
+    """The names that the reason of a refusal reads."""
+    return {s for value in reason_expressions(item) for s in names_in(value)} if isinstance(item, Require) else set()
 
 
 def _must_stay(item: Item) -> bool:

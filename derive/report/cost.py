@@ -1,9 +1,9 @@
 """The cost of a program: the operations of one call in the worst case, counted in the statements that every language
 prints.
 
-A subtraction counts as an addition, changes of sign and comparisons are free, a power counts as multiplications. Of a
-choice between statements the more expensive side counts, of a choice between values both values, and all passes of an
-iteration. Values that `Initialize` has computed count nothing.
+A subtraction counts as an addition, changes of sign and comparisons are free, a power counts as multiplications. For a
+choice between statements the more expensive side counts; for a choice between values both values count. All passes of
+an iteration count. Values that `Initialize` has computed do not count.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def _most(*costs: Cost) -> Cost:
 
 
 def _regular(holds: Cost, _: Cost) -> Cost:
-    """Rules put first what holds away from singular poses."""
+    """The cost of the first side, which the rules take away from singular poses."""
     return holds
 
 
@@ -101,19 +101,19 @@ class Costs:
 
     forward: Cost
     inverse: Cost
-    """With a configuration that names every branch, away from singular poses."""
+    """The inverse with a configuration that names every branch, away from singular poses."""
     tried: Cost
-    """A branch of an open configuration, with its distance from the reference."""
+    """One branch of a configuration with automatic bytes, with the distance of its solution from the reference."""
     limits: Cost
     """The test of the limits."""
     automatic: Cost
-    """With a configuration that leaves every branch open; equal to `inverse` where there are no branches."""
+    """The inverse with a configuration whose branch bytes are all automatic; without branches, equal to `inverse`."""
     exact: Cost
-    """The check of a commanded rotation that is exact, once a call; nothing where the rotation is not read."""
+    """The check of an exact commanded rotation, once a call; zero where the rotation is not read."""
     repair: Cost
-    """Check and repair of any other commanded rotation, once a call; nothing likewise."""
+    """Check and repair of any other commanded rotation, once a call; zero where the rotation is not read."""
     corners: Cost
-    """What a branch costs more at a singular pose: the second sides of choices."""
+    """The additional cost of a branch at a singular pose: the second sides of choices."""
     bounds: tuple[Bound, ...]
 
 
@@ -127,7 +127,7 @@ _PRIMITIVES: dict[type[sp.Basic], Cost] = {
 }
 """The cost of the shared functions of Structured Text."""
 _OF_A_TRIAL = Cost(additions=24, multiplications=24, divisions=3, roots=1)
-"""What the search itself does for a trial, at most: the place of the trial, the cells on either side of it."""
+"""The largest cost of the scan itself for one trial: the place of the trial, the cells on either side of it."""
 _PERIOD_BYTE = Cost(additions=3, multiplications=1)
 """The number of the turn in which an axis value lies."""
 
@@ -162,7 +162,7 @@ def _all_branches(kinematics: Kinematics, tried: Cost) -> Cost:
 
 
 def _with_refusals(program: Program, of_sides: _OfSides = _most) -> Cost:
-    """The cost with a refusal that computes how much is missing: nothing behind it is then computed."""
+    """The cost including a refusal that computes the missing amount, after which no further statement runs."""
     worst, before = cost_of(program, of_sides), Cost()
     for item in (item for stretch in stretches_of(program) for item in stretch.items):
         before += _item(item, of_sides)
@@ -177,8 +177,8 @@ def _amounts(require: Require) -> tuple[sp.Expr, ...]:
 
 
 def cost_of(program: Program, of_sides: _OfSides = _most, repeats: Repeats | None = None) -> Cost:
-    """The cost of one run of a program in the worst case. of_sides: what counts of the costs of
-    both sides of a choice; repeats: how often the bodies of loops run, else as often as they may.
+    """The cost of one run of a program in the worst case. of_sides: combines the costs of both sides of a choice;
+    repeats: how often the bodies of loops run; without it they run as often as they may.
     """
     if of_sides is _most and repeats is None:
         return _at_most(program)
@@ -243,7 +243,7 @@ def _statement(statement: Statement, repeats: Repeats | None = None) -> Cost:
 
 
 def _most_of(search: FindRoot) -> tuple[int, int]:
-    """How many trials are made at most, and how many roots are looked at."""
+    """The largest numbers of trials and of roots that are examined."""
     return (1, len(search.sides)) if search.is_listed else (TRIALS, FINISHED)
 
 

@@ -1,8 +1,7 @@
-"""The derivation of a mechanism as it is told to a reader: its closure, its steps with the equations that they use,
-the branches that they make, and the margins.
+"""The derivation of a mechanism for a reader: its closure, its steps with the equations that they use, the branches
+that they decide, and the margins.
 
-It is made again from the description, by the functions that the build calls in the same order: they keep what they have
-solved.
+It is repeated from the description, by the functions that the build calls, in the same order; they cache their results.
 """
 
 from __future__ import annotations
@@ -35,14 +34,14 @@ from derive.solver.positive_steps import known_signs
 from derive.solver.solve import Derivation, Step
 
 _WORTH_A_NAME = 3
-"""Operations of a value that is put by its name into an equation of many operations."""
+"""The least number of operations of a value that stands under its name in an equation of many operations."""
 MANY = 40
 """An equation with more operations is written in the names that its step binds."""
 
 
 @dataclass(frozen=True)
 class ToldStep:
-    """One step: unknowns ← rule ← equations, and what it binds."""
+    """One step: unknowns ← rule ← equations, and the names that it binds."""
 
     number: int
     unknowns: tuple[sp.Symbol, ...]
@@ -52,10 +51,10 @@ class ToldStep:
     statements: tuple[Statement, ...]
     determinant: StepDeterminant | None
     assignments: tuple[Assignment, ...]
-    """The branches that its sign makes."""
+    """The branches that its sign decides."""
     conditioning: Conditioning | None
     conditions: tuple[sp.Expr, ...]
-    """What Initialize refuses where it is zero."""
+    """The values that Initialize refuses at zero."""
     total: Sum | None = None
     """The sum of angles that it takes apart."""
     only: int = 0
@@ -70,11 +69,11 @@ class Route:
     equations: tuple[Equation, ...]
     """The closure, in the names of the derivation."""
     known: tuple[Statement, ...]
-    """What is bound before the first step."""
+    """The statements before the first step."""
     steps: tuple[ToldStep, ...]
     frozen: tuple[Joint, ...] = ()
     residuals: tuple[sp.Expr, ...] = ()
-    """What is left of a trial: zero at a root."""
+    """The residuals of a trial, which are zero at a root."""
     assignments: tuple[Assignment, ...] = ()
 
 
@@ -83,15 +82,15 @@ class Derived:
     """The derivation of a mechanism."""
 
     mechanism: Mechanism
-    """As it is derived: its numbers named, its gears at the joints."""
+    """The mechanism as it is derived: its numbers have names, its gears are moved to the joints."""
     inverse: tuple[Route, ...]
     forward: Route | None
-    """Of a closed loop whose forward kinematics has a closed form."""
+    """The forward kinematics of a closed loop, where it has a closed form."""
     factors: tuple[Factor, ...]
-    """What the margins are."""
+    """The formulas of the margins."""
     searched: Joint | None = None
     where: Parameter | None = None
-    """The parameter without which nothing is searched."""
+    """The parameter at whose zero no root scan is needed."""
 
 
 def derived_of(mechanism: Mechanism) -> Derived:
@@ -133,7 +132,7 @@ def _route(title: str, mechanism: Mechanism, inverse: Inverse, assignments: Sequ
 
 
 def _recorded(equation: Equation, derivation: Derivation) -> Equation:
-    """An equation in the names under which its values are recorded: values that are equal have one name."""
+    """An equation in the recorded names, in which equal values have one name."""
     names = {s.value: s.name for s in reversed(derivation.plain) if isinstance(s, Let)}
     table: dict[sp.Symbol, sp.Symbol] = {}
     for let in equation.lets:
@@ -166,7 +165,7 @@ class _Told:
         return value.xreplace(self._signs)
 
     def steps(self) -> tuple[ToldStep, ...]:
-        """All of them, in their order."""
+        """All steps, in their order."""
         return tuple(self._step(number, step) for number, step in enumerate(self._derivation.steps, 1))
 
     def _step(self, number: int, step: Step) -> ToldStep:
@@ -202,7 +201,7 @@ def _in_names(value: sp.Expr, statements: Sequence[Statement], problem: Problem,
 
 
 def _named(value: sp.Expr, lets: Sequence[Let], problem: Problem) -> sp.Expr:
-    """A coefficient as a multiple of a value that has a name, or as the square of a root that has one, and the rest."""
+    """A coefficient as a multiple of a named value, or as the square of a named root, plus the rest."""
     best = value
     for let in lets:
         if isinstance(let.value, Root):

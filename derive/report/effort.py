@@ -1,7 +1,7 @@
-"""The effort of a call of the self-test: its floating operations, at most.
+"""The effort of a call of the self-test: the largest number of its floating operations.
 
 Without a loop these are the bounds in the header of the block. A loop is counted as often as the reference interpreter
-ran it for this call, and a fifth more often: the block looks for roots in another order.
+ran it for this call, plus a fifth, because the block examines roots in another order.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from derive.report.cost import Cost, cost_of, costs_of
 from derive.report.reference_calls import Machine, forward_counted, inverse_counted
 
 _OF_THE_TEST = 120
-"""What the self-test itself does in a cycle: it finds the order of a matrix, and compares numbers."""
+"""The operations of the self-test itself in a cycle: it finds the order of a matrix, and compares numbers."""
 _MORE = 1.2
-"""How many times as many trials or passes as the reference needed a block may need."""
+"""A block may need this many times the trials or passes of the reference."""
 _OPEN = (0, 3)
 
 
@@ -42,7 +42,7 @@ def _cost(case: Case, machine: Machine) -> Cost:
 
 
 def _loops(case: Case, machine: Machine) -> tuple[Cost, Cost]:
-    """What the loops of a call repeat: at most, and as the reference interpreter runs them for it, and a fifth more."""
+    """The cost of the loops of a call: the largest possible one, and that of the reference interpreter plus a fifth."""
     is_forward = case.called is Called.FORWARD
     program = machine.kinematics.forward if is_forward else machine.kinematics.branch
     if is_forward:

@@ -35,7 +35,7 @@ class Check:
     status: Status
     reason: str
     missing: sp.Expr | None
-    """By how much one side is short of the other; None where this has no meaning."""
+    """The amount by which one side is short of the other; None where this has no meaning."""
     turns: tuple[tuple[OtherTurn, str], ...] = ()
     """The axes that may be inside on another turn, each with its reason; the first one that is gives reason and
     number."""
@@ -64,7 +64,7 @@ class Reasons:
         return Check(conditions, require.otherwise, self.text(reason), reason.amount, turns)
 
     def loop(self, loop: Iterate) -> str:
-        """The reason of a loop that never ends."""
+        """The reason of a loop that does not end."""
         return self.text(_given(loop))
 
     def text(self, reason: Reason) -> str:

@@ -41,7 +41,7 @@ _SMALL, _MILLIMETRES = 10.0, 100.0
 
 
 _KEPT = 1000
-"""So many answers are kept: the self-test asks for an answer, and then what it took."""
+"""The number of cached answers: the self-test asks for an answer, and then for its effort."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ class Machine:
 
     @cached_property
     def finer(self) -> int:
-        """How many decimals more lengths need than those of a machine in millimetres: it may be given in metres."""
+        """The number of decimals that lengths need more than in millimetres, where the machine is given in metres."""
         mechanism = self.kinematics.mechanism
         if self.status is not Status.OK or not has_length(mechanism):
             return 0
@@ -63,12 +63,12 @@ class Machine:
         return math.ceil(math.log10(_MILLIMETRES / size)) if 0.0 < size < _SMALL else 0
 
     def rounded(self, values: Sequence[float], decimals: int = _DECIMALS) -> Reals:
-        """Lengths as they are told: far coarser than rounding, without a negative zero."""
+        """Lengths as they are written: far coarser than rounding, without a negative zero."""
         return _rounded(values, decimals + self.finer)
 
     @property
     def home(self) -> Reals:
-        """Axis values of a platform at its home pose, in the branches that the parameters tell for it."""
+        """Axis values of a platform at its home pose, in the branches that the parameters state."""
         mechanism = self.kinematics.mechanism
         position = (float(evaluate(v, self.values)) for v in home_position(mechanism))
         frame = (*position, *(float(evaluate(entry, self.values)) for entry in home_rotation(mechanism)))
@@ -92,7 +92,7 @@ def forward(machine: Machine, axes: Reals) -> tuple[Status, Reals, Bytes]:
 
 @lru_cache(_KEPT)
 def forward_counted(machine: Machine, axes: Reals) -> tuple[tuple[Status, Reals, Bytes], Repeats]:
-    """The same, and how often loops ran for it."""
+    """`forward`, and how often loops ran for it."""
     with repeats_counted() as repeats:
         return _forward(machine, axes), repeats
 
@@ -120,7 +120,7 @@ def inverse(machine: Machine, frame: Reals, configuration: Bytes, reference: Rea
 def inverse_counted(
     machine: Machine, frame: Reals, configuration: Bytes, reference: Reals
 ) -> tuple[tuple[Status, Reals], Repeats]:
-    """The same, and how often loops ran for it."""
+    """`inverse`, and how often loops ran for it."""
     with repeats_counted() as repeats:
         return _inverse(machine, frame, configuration, reference), repeats
 

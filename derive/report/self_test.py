@@ -33,7 +33,7 @@ _CANDIDATES, _LOOP_CANDIDATES = 300, 3000
 _TRIED = 8
 """Regular poses, among which the one with the most solutions is tested on every branch."""
 _NEAR = 0.1
-"""The share of the ranges in which poses are sought where none is possible in the whole."""
+"""The share of the ranges in which poses are sought where none was found in the whole ranges."""
 _REGULAR = 0.05
 """Margins at a regular pose are at least this."""
 _SINGULAR = 1e-5
@@ -117,7 +117,7 @@ class _Vectors:
         self.machine = machine
         self._mechanism = machine.kinematics.mechanism
         self._candidates = _candidates(machine)
-        if np.isnan(np.min(margins(machine, self._candidates), axis=0)).all():  # few poses close: those near nominal
+        if np.isnan(np.min(margins(machine, self._candidates), axis=0)).all():  # few poses close: draw near nominal
             self._candidates = _candidates(machine, _NEAR)
 
     @cached_property
@@ -134,7 +134,7 @@ class _Vectors:
 
     @cached_property
     def frames(self) -> tuple[Reals, ...]:
-        """The frames of these poses."""
+        """The frames of the regular poses."""
         return tuple(forward(self.machine, axes)[1] for axes in self.poses)
 
     @cached_property
@@ -196,7 +196,7 @@ class _Vectors:
                 yield Case(Called.INVERSE, 0, status, found, reference, frame, self._open(slot))
 
     def _open(self, slot: Bytes) -> Bytes:
-        """The bytes of a branch, without commanded turns."""
+        """The bytes of a branch, with automatic turns."""
         return slot + (0,) * len(self._mechanism.period_joints)
 
     def _aside(self, axes: Reals) -> Reals:
@@ -249,7 +249,7 @@ class _Vectors:
                     yield axes
 
     def _halved(self, row: int, low: Array, high: Array) -> Iterator[Reals]:
-        """The poses between such pairs of poses where a margin vanishes."""
+        """The poses at which a margin vanishes, between pairs of poses with opposite signs of it."""
         for _ in range(60):
             middle = (low + high) / 2.0
             is_above = (margins(self.machine, [tuple(m) for m in middle.tolist()])[row] > 0.0)[:, None]

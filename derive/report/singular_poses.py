@@ -1,10 +1,10 @@
 """Poses in which one margin of the nominal machine vanishes: found by Newton's method from regular poses.
 
-A margin is a function of the axis values; of a loop that turns its platform, whose forward kinematics iterates and ends
-where its margin does, it is taken at the pose instead, and the inverse has the axis values. A step goes along the
-gradient, as far as the margin would be zero there if it were linear; it is halved until the machine has that pose, and
-its margin is smaller. So it also ends on the boundary of what a loop can reach, where the margin falls as a root.
-Where every such way ends at the boundary of another leg, a cloud of poses goes around it.
+A margin is a function of the axis values. For a loop that turns its platform it is a function of the pose instead, and
+the inverse gives the axis values, because the iteration of forward kinematics fails where the margin vanishes. A step
+goes along the gradient, to where the margin would be zero if it were linear; it is halved until the machine reaches
+that pose and the margin there is smaller. So the search also ends on the boundary of what a loop can reach, where the
+margin falls as a root. Where every such path ends at the boundary of another leg, a cloud of random poses is used.
 """
 
 from __future__ import annotations
@@ -31,23 +31,23 @@ from derive.report.derived import Derived
 from derive.report.reference_calls import FRAME, Machine
 
 SINGULAR = 1e-6
-"""A margin of at most this is zero to the eye."""
+"""A margin of at most this size cannot be distinguished from zero in a picture."""
 _PASSES, _HALVES, _STEP = 80, 24, 1e-6
 _SAMPLES, _STARTS, _ENOUGH = 600, 60, 3
 _DEGREES = 90.0
-"""A turn by so much counts as a motion by the length of the machine."""
+"""A turn by this many degrees counts as a motion by the length of the machine."""
 _TURNS = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0)
 _STUCK = 0.95
-"""A step after which more than this share of the margin is left leads nowhere."""
+"""The search stops where a step leaves more than this share of the margin."""
 _CLOUD, _NARROWER, _CLOUDS, _TRIALS = 0.2, 0.95, 60, 20
 """The width of the first cloud of poses over the scales, how each is narrower than the one before, and their sizes."""
 _BESIDE = 1e-6
 _CLEAR = 0.05
-"""Another margin that is larger than this is no singularity of the same pose."""
+"""Another margin larger than this does not vanish in the same pose."""
 
 Array = NDArray[np.float64]
 Measure = Callable[[Array], Array]
-"""From rows of coordinates to the margins, a column for every row; NaN where the machine has no pose."""
+"""A function from rows of coordinates to the margins, a column for every row; NaN where the machine has no pose."""
 
 
 @dataclass(frozen=True)
@@ -59,9 +59,9 @@ class SingularPose:
     value: float
     """The margin there."""
     beside: Reals
-    """Axis values so near that no eye tells them apart, for what has no direction in the pose itself."""
+    """Axis values that look the same in a picture, for bars that have no direction in the pose itself."""
     frame: Reals | None = None
-    """The frame, of a loop that turns its platform."""
+    """The frame, for a loop that turns its platform."""
 
 
 def singular_pose(machine: Machine, derived: Derived, name: str, start: Reals) -> SingularPose | None:
@@ -85,7 +85,7 @@ def singular_pose(machine: Machine, derived: Derived, name: str, start: Reals) -
 
 
 def _clearest(measure: Measure, place: int, starts: Iterable[Array], scales: Array) -> tuple[Array, Array] | None:
-    """Of a few poses in which the margin vanishes one in which no other does, if there is one, and its start."""
+    """Among a few poses in which the margin vanishes, one in which no other does, if there is one; and its start."""
     found: list[tuple[float, Array, Array]] = []
     for start in starts:
         at = _descended(measure, place, start, scales)
@@ -107,10 +107,10 @@ def _smallest_first(rows: Array, measured: Array, place: int) -> Iterator[Array]
 
 
 def _gathered(measure: Measure, place: int, rows: Array, scales: Array) -> Array:
-    """Poses near to where a margin vanishes: the best of a cloud, around which the next cloud is drawn, a bit narrower.
+    """Poses near a zero of a margin: around the best of a cloud the next, slightly narrower cloud is drawn.
 
-    Shape (n, coordinates), like the rows. Other than a step along the gradient it goes around what the machine cannot
-    reach.
+    Shape (n, coordinates), like the rows. Unlike steps along the gradient, clouds get around poses that the machine
+    cannot reach.
     """
     random, best, width = np.random.default_rng(5), rows, _CLOUD
     for _ in range(_CLOUDS):
@@ -123,7 +123,7 @@ def _gathered(measure: Measure, place: int, rows: Array, scales: Array) -> Array
 
 
 def _measured(machine: Machine, rows: Array) -> Array:
-    """The sizes of all margins at axis values; of one that has a unit, its length in lengths of the machine."""
+    """The sizes of all margins at axis values; a margin with a unit is given in lengths of the machine."""
     kinematics = machine.kinematics
     size = size_of(kinematics.mechanism, machine.values)
     axes = {j.axis.name: rows[:, k] for k, j in enumerate(kinematics.mechanism.joints)}
@@ -134,14 +134,14 @@ def _measured(machine: Machine, rows: Array) -> Array:
 
 
 def _scales(machine: Machine) -> Array:
-    """How far each axis moves in a step of one."""
+    """The motion of each axis in a step of one."""
     mechanism = machine.kinematics.mechanism
     size = size_of(mechanism, machine.values)
     return np.array([_DEGREES if j.in_degrees else size for j in mechanism.joints])
 
 
 def _starts(machine: Machine, start: Array, measure: Measure, place: int) -> Iterator[Array]:
-    """Where the search begins: the start, near it, and sampled poses, those with small margins first."""
+    """The starts of the search: the given one, poses near it, and sampled poses, those with small margins first."""
     mechanism = machine.kinematics.mechanism
     turned = np.array([_TURNS[k % 6] if j.is_angle else 0.0 for k, j in enumerate(mechanism.joints)])
     near = [start + part * turned for part in (0.4, 1.0, -0.4, 0.0)]
@@ -153,7 +153,7 @@ def _starts(machine: Machine, start: Array, measure: Measure, place: int) -> Ite
 
 
 def _descended(measure: Measure, place: int, start: Array, scales: Array) -> Array | None:
-    """Where the margin vanishes, from a start; None where it does not."""
+    """A pose where the margin vanishes, found from a start; None where none is found."""
     at = start.copy()
     value = float(measure(at[None])[place, 0])
     for _ in range(_PASSES):
@@ -188,7 +188,7 @@ def _gradient(measure: Measure, place: int, at: Array, scales: Array) -> Array:
 
 
 def _of_platform(machine: Machine, derived: Derived, name: str) -> SingularPose | None:
-    """The same by the pose of the platform, in the branches of the home pose."""
+    """`singular_pose` for a platform, by its pose, in the branches of the home pose."""
     mechanism = derived.mechanism
     program, width = _program_at_pose(derived), len(mechanism.motion.position)
     home = np.array([float(evaluate(v, machine.values)) for v in mechanism.home])
@@ -227,7 +227,9 @@ def _of_platform(machine: Machine, derived: Derived, name: str) -> SingularPose 
 
 
 def _program_at_pose(derived: Derived) -> Program:
-    """The margins of a platform whose pose is known, by the inverse and the lines of the legs, and its axis values."""
+    """The program of the margins of a platform at a known pose, by the inverse and the lines of the legs, and of its
+    axis values.
+    """
     mechanism, route = derived.mechanism, derived.inverse[-1]
     statements = (*route.known, *(s for step in route.steps for s in step.statements))
     lets = [let for factor in derived.factors for let in factor.lets]
@@ -240,7 +242,7 @@ def _program_at_pose(derived: Derived) -> Program:
 
 
 def _is_far_from_type_2(statement: Statement) -> bool:
-    """Whether it refuses a pose that is close to a type 2 singularity, which is what is looked for."""
+    """Whether a statement refuses poses close to a type 2 singularity, which are sought here."""
     return isinstance(statement, Require) and statement.reason is not None and statement.reason.why is Why.NEAR_TYPE_2
 
 

@@ -1,4 +1,4 @@
-"""Which equations a step was made of: those from which its rule finds the same again."""
+"""The equations from which a step was made: those from which its rule finds the step again."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from derive.solver.subproblems.affine_system import affine_triple
 from derive.solver.subproblems.one_equation.trigonometric import lateral
 
 _MOST = {1: 80, 2: 24, 3: 9}
-"""How many equations are combined at most: alone, in pairs, by three."""
+"""The largest number of equations that are tried: alone, in pairs, by three."""
 
 
 def equations_of(step: Step) -> tuple[Equation, ...]:
@@ -39,7 +39,7 @@ def _again(step: Step, problem: Problem, equations: tuple[Equation, ...]) -> Ite
 
 
 def _rules(step: Step) -> tuple[Rule, ...]:
-    """The rules that may have found it, those of its name first."""
+    """The rules that may have found the step, those with its name first."""
     every = (*RULES, lateral, affine_triple)
     return tuple(sorted(every, key=lambda rule: rule.__name__ != step.found.rule.replace(" ", "_")))
 

@@ -1,5 +1,5 @@
-"""Slices through the workspace of the nominal machine: at each point, how many solutions there are, and how far from
-singular the best of them is."""
+"""Slices through the workspace of the nominal machine: at each point the number of solutions, and the distance of the
+best of them from a singularity."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from derive.kinematics.sampling import sample_axes, size_of
 from derive.report.reference_calls import FRAME, Machine
 
 _POINTS, _MANY_SLOTS, _SEARCHED = 96, 36, 20
-"""Points along a side: of a machine with few solutions, with more than `_FEW` branches, of a searched one."""
+"""The points along a side: for few solutions, for more than `_FEW` branches, for a machine with a root scan."""
 _FEW = 8
 _SAMPLES, _SEED = 2000, 9
 _SHARE, _ROOM = (2.0, 98.0), 0.15
-"""Of sampled positions, in percent, those that are in the picture, and the room beside them."""
+"""The percentiles of sampled positions between which a slice extends, and the room added beside them."""
 _SAME = 1e-6
 _AROUND = 0.5
-"""How far from home the slice of a loop that turns its platform goes, in lengths of the machine."""
+"""The extent from home of the slice of a loop that turns its platform, in lengths of the machine."""
 
 Array = NDArray[np.float64]
 
@@ -40,11 +40,11 @@ class Slice:
     """The other coordinates."""
     ends: tuple[tuple[float, float], tuple[float, float]]
     solutions: Array
-    """How many: 0 where the machine cannot be."""
+    """The number of solutions: 0 where the machine cannot reach the point."""
     margin: Array
-    """The smallest margin in size, of the solution where it is largest; NaN where there is no solution."""
+    """The smallest margin in size, for the solution with the largest one; NaN where there is no solution."""
     tool: tuple[float, float]
-    """Where the tool is in the drawn pose."""
+    """The position of the tool in the drawn pose."""
 
     @property
     def is_everywhere(self) -> bool:
@@ -53,8 +53,8 @@ class Slice:
 
 
 def slices(machine: Machine, frame: Reals, axes: Reals) -> Iterator[Slice]:
-    """The slices through the position of a frame, with its rotation: in a plane one; in space along x and z, and along
-    x and y. None of a machine that commands fewer than two coordinates.
+    """The slices through the position of a frame, with its rotation: one for a plane; in space along x and z, and along
+    x and y; none for a machine that commands fewer than two coordinates.
 
     axes: the reference.
     """
@@ -116,7 +116,7 @@ def _middles(ends: tuple[float, float], count: int) -> Array:
 def _solved(
     machine: Machine, values: dict[str, Array], axes: Reals, signs: tuple[float, ...]
 ) -> tuple[Array, Array, Array]:
-    """Of one branch: the axis values by rows, where it has a solution inside the limits, and its smallest margin."""
+    """For one branch: the axis values by rows, whether it has a solution inside the limits, and its smallest margin."""
     kinematics = machine.kinematics
     joints, count = kinematics.mechanism.joints, values["x"].size
     given = {**machine.values, **values}
@@ -140,7 +140,7 @@ def _solved(
 
 
 def _different(solutions: list[Array], good: list[Array]) -> Array:
-    """How many solutions differ at each point."""
+    """The number of different solutions at each point."""
     total = np.zeros(good[0].size)
     for k, (own, is_good) in enumerate(zip(solutions, good, strict=True)):
         is_new = is_good.copy()

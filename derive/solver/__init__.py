@@ -4,12 +4,12 @@ It may import the folders from `ir` to `equations`.
 
 corners/: angles and roots near singularities, moved to where later steps have solutions
 derivation_record: the statements of a derivation: equal values under one name, every name bound once
-eliminations: equations made of others, with fewer unknowns, in tiers
+eliminations: equations with fewer unknowns, made from others, in tiers
 meeting_axes: the equation of a joint behind which two axes meet
 parallel_axes: a sum of angles about parallel axes, as one unknown
-positive_steps: two-root steps of which the machine has one root
-probe: what a sum of squares depends on, found by numbers
-residuals: the equation that a trial has too many, where one joint is known
+positive_steps: two-root steps of which only one root belongs to the machine
+probe: the unknowns on which a sum of squares depends, found numerically
+residuals: the surplus equation of a trial, where one joint is known
 solve: the driver, and the error `Unsolved` with the equations that are left
 subproblems/: the rules
 unsolved: why no rule fits what is left, and what would help

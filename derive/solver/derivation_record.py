@@ -32,7 +32,7 @@ class DerivationRecord:
         self._conditionings: list[Conditioning] = []
         self._residuals: list[sp.Expr] = []
         self.renamed: Mapping[sp.Symbol, sp.Symbol] = {}
-        """The names of the last binding that stand under others in the record."""
+        """The names of the last binding that have another name in the record."""
 
     @property
     def statements(self) -> tuple[Statement, ...]:
@@ -80,7 +80,7 @@ class DerivationRecord:
         self._write(statements, keep={s.name for s in statements if isinstance(s, Let)})
 
     def definitions(self, units: Sequence[sp.Symbol]) -> Mapping[sp.Symbol, sp.Expr]:
-        """The polynomials that names stand for, but for the sines and cosines of the units."""
+        """The polynomials that names stand for, except the sines and cosines of `units`."""
         own = {f(a) for a in units for f in (sine, cosine)}
         lets = [s for s in self._statements if isinstance(s, Let)]
         return {s.name: s.value for s in lets if s.name not in own and s.value.is_polynomial()}

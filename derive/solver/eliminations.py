@@ -1,14 +1,14 @@
-"""Eliminations, in tiers: each is tried only when the previous one gives no subproblem.
+"""Eliminations, in tiers: each tier is tried only where no equation of the previous one fits a subproblem.
 
 * difference: an unknown length that is linear in two equations is eliminated between them, where the two coefficients
   never vanish together: there the difference would be 0 = 0, a singularity that the machine does not have. The others
   (`lossy_differences`) are tried last;
 * elimination: an unknown length that is linear in one equation, with a number as its coefficient, is put into the
   others;
-* free of lengths: of more equations than they hold unknown lengths, the sum in which all of these cancel;
+* free of lengths: where equations outnumber their unknown lengths, the weighted sum in which all of these cancel;
 * squares: the sum of the squares of two equations, known parts on the right side, is free of the angle that
-  turns both (this is the law of cosines). After them the squares that hold an unknown length are tried: of a boom
-  beside the axis that turns it. As a last resort three are squared: free of every angle that turns all of them.
+  turns both (this is the law of cosines). Then sums that hold an unknown length are tried, as for a boom beside the
+  axis that turns it. As a last resort three equations are squared: their sum is free of an angle that turns all three.
 """
 
 from __future__ import annotations
@@ -75,8 +75,8 @@ def eliminations(problem: Problem) -> tuple[Equation, ...]:
 
 
 def free_of_lengths(problem: Problem) -> tuple[Equation, ...]:
-    """Of more equations than they hold unknown lengths, the sum that is free of all: the coefficients of the lengths
-    are known, and the factors of the equations are the minors of their matrix.
+    """Where equations outnumber their unknown lengths, the weighted sum without these: the coefficients of the lengths
+    are known, and the weights of the equations are the minors of the matrix of these coefficients.
     """
     found: list[Equation] = []
     for count in (3, 4):
@@ -102,7 +102,7 @@ def _free_of_lengths(problem: Problem, equations: Sequence[Equation]) -> Equatio
     total = sp.Add(*[m * e.expression for m, e in zip(minors, equations, strict=True)])
     label = " and ".join(e.label for e in equations)
     factors = sp.Mul.make_args(sp.factor_terms(reduce_units(total, problem.units, problem.signs)))
-    short = sp.expand(sp.Mul(*[f for f in factors if not f.is_positive]))  # a factor of the machine tells nothing
+    short = sp.expand(sp.Mul(*[f for f in factors if not f.is_positive]))  # a constant factor says nothing of a pose
     return Equation(label, short, tuple(let for e in equations for let in e.lets), is_length=False)
 
 
@@ -112,7 +112,7 @@ def squares(problem: Problem, count: int = 2) -> tuple[Equation, ...]:
 
 
 def squares_with_lengths(problem: Problem) -> tuple[Equation, ...]:
-    """Sums of squares of two equations that hold an unknown length: of a boom beside the axis that turns it."""
+    """Sums of squares of two equations that hold an unknown length, as for a boom beside the axis that turns it."""
     return _sums_of_squares(problem, [e for e in problem.equations if _has_length(problem, e)], 2)
 
 

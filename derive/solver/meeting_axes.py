@@ -1,4 +1,5 @@
-"""The equation of a joint behind which two axes meet: where they meet is at one distance from the commanded point.
+"""The equation of a joint behind which two axes meet: their point of intersection has a known distance from the
+commanded point.
 
 Seen from the first unknown joint, the chain is a circle and a sphere. The joint carries the point in which the next
 two axes meet along a circle (a slide: along a line); the two joints move the commanded point on a sphere about it. The
@@ -23,8 +24,8 @@ from derive.solver.probe import unknowns_of_squares
 
 
 def circles_and_spheres(problem: Problem) -> tuple[Equation, ...]:
-    """The squared distance between the commanded point and the point in which the axes behind the first unknown joint
-    meet; the same seen from the flange.
+    """The equation of the squared distance between the commanded point and the point in which the axes behind the first
+    unknown joint meet, and the same equation for the chain seen from its flange.
     """
     seen = [(problem, Side("from", "base"))]
     if problem.back is not None:
@@ -50,7 +51,7 @@ def _circle_and_sphere(problem: Problem, side: Side) -> tuple[Equation, ...]:
 
 
 def _at_the_meeting(problem: Problem, links: Sequence[Factor]) -> tuple[list[Factor], list[Factor]] | None:
-    """The links up to the axis of the second unknown joint and along it; those behind it, without its turn."""
+    """The links up to the axis of the second unknown joint and along it, and the links behind it, without its turn."""
     second = next((i for i, f in enumerate(links) if i > 0 and is_unknown(problem, f)), None)
     if second is None or links[second].motion is not Motion.TURN:
         return None

@@ -50,7 +50,7 @@ def candidate_sums(problem: Problem, arguments: Sequence[sp.Expr]) -> tuple[Sum,
     differences = [b - a for a, b in combinations(arguments, 2)]
     found: dict[sp.Symbol, Sum] = {}
     for argument in [*arguments, *differences]:
-        unknown, _ = split_known(argument, problem.angles)  # the rest: a held joint, a fixed rotation of the base
+        unknown, _ = split_known(argument, problem.angles)  # known terms: a held joint, a fixed rotation of the base
         terms = terms_of(unknown, problem.angles)
         if terms is not None and len(terms) > 1:
             terms = positive_first(terms)
@@ -61,8 +61,8 @@ def candidate_sums(problem: Problem, arguments: Sequence[sp.Expr]) -> tuple[Sum,
 
 
 def _parallel(problem: Problem, terms: Terms) -> bool:
-    """Whether the axes of some angles are parallel, at random poses; true of equations without a rotation, and of a sum
-    by which one joint turns.
+    """Whether the axes of some angles are parallel, at random poses. It is true for equations without a rotation, and
+    for a sum of angles by which one joint turns.
     """
     together = {angle for angle, _ in terms}
     if not problem.turns or any(together <= turn.amount.free_symbols for turn in problem.turns):

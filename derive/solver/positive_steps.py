@@ -1,8 +1,8 @@
-"""Two-root steps of which the machine has one root: their determinant is a multiple of a positive quantity.
+"""Two-root steps of which only one root belongs to the machine: the determinant is a multiple of a positive quantity.
 
-A description says `positive=(sin(A2),)` of an elbow that cannot bend the other way. The law of cosines still has two
-roots; the sign of the one that the machine has is then known, and no branch needs a name. Where the determinant
-vanishes both roots meet, which stays a singularity.
+A description says `positive=(sin(A2),)` for an elbow that cannot bend the other way. The law of cosines still has two
+roots, but the sign of the machine's root is known, and no branch needs a name. Where the determinant vanishes both
+roots meet: this is still a singularity.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def known_signs(problem: Problem, determinants: Sequence[StepDeterminant]) -> Ma
 
 
 def _sign(problem: Problem, value: sp.Expr) -> int:
-    """The sign of a value that is a multiple of a positive quantity, the factor made of positive parameters; else 0."""
+    """The sign of a value that is a positive quantity times positive parameters or their negative; else 0."""
     reduced = problem.reduce(value)
     for quantity in problem.positive:
         ratio = sp.cancel(reduced / quantity).xreplace({DEGREE: sp.pi / 180})
@@ -35,11 +35,11 @@ def _sign(problem: Problem, value: sp.Expr) -> int:
 
 
 def with_known_signs(statements: Sequence[Statement], signs: Mapping[StepDeterminant, int]) -> tuple[Statement, ...]:
-    """The statements with these signs as numbers."""
+    """The statements with numbers in place of the known signs."""
     table = {step.sigma: sp.Integer(sign) for step, sign in signs.items()}
     return tuple(rewritten(s, lambda e: e.xreplace(table)) for s in statements)
 
 
 def where_roots_meet(signs: Mapping[StepDeterminant, int]) -> tuple[Conditioning, ...]:
-    """The singularities of these steps."""
+    """The singularities of the steps with a known sign."""
     return tuple(Conditioning(step.step, step.value, step.scale, "meet") for step in signs)

@@ -1,7 +1,7 @@
-"""What a sum of squares depends on, found by numbers before it is written out.
+"""The unknowns on which a sum of squares depends, found numerically before the sum is expanded.
 
-To write out the square of an equation with a hundred terms takes seconds, and nearly always shows that no unknown has
-gone. A few random poses of a random machine show it at once: an unknown that is changed alone changes the value.
+To expand the square of an equation with a hundred terms takes seconds, and nearly always no unknown cancels. A few
+random poses of random machines show this at once: where one unknown is changed alone, the value changes.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _SEED = 31
 DRAWS = 8
 """Random poses, each of a random machine."""
 _CHANGED = 1e-9
-"""The least relative change of a value that depends on what was changed: rounding gives less, and chance does not."""
+"""A smaller relative change of a value is rounding: then the value does not depend on the unknown."""
 
 
 def unknowns_of_squares(problem: Problem, parts: Sequence[sp.Expr]) -> tuple[sp.Symbol, ...]:
@@ -38,7 +38,7 @@ def unknowns_of_squares(problem: Problem, parts: Sequence[sp.Expr]) -> tuple[sp.
 
 
 def _sum_of_squares(parts: Sequence[sp.Expr], values: Mapping[str, Array]) -> tuple[Array, Array]:
-    """The sum, and the size of the terms that it is made of: they may cancel each other."""
+    """The sum, and the size of its terms, which may cancel each other."""
     total, size = np.zeros(DRAWS), np.zeros(DRAWS)
     for part in parts:
         terms = [evaluate(term, values) for term in sp.Add.make_args(part)]

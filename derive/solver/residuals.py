@@ -1,4 +1,4 @@
-"""What a trial leaves: with one joint known there is an equation too many, which vanishes at a root."""
+"""The residual of a trial: with one joint known there is one equation too many, which holds at a root alone."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def unknowns_in(problem: Problem) -> set[sp.Symbol]:
 
 
 def left_alone(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
-    """What is left of the equations of a trial that hold none of its unknowns."""
+    """The residuals of the equations of a trial that hold none of its unknowns."""
     alone = [e for e in problem.equations if not problem.unknowns_of(e.expression)]
     bindings = [Binding(e.label, (), e.lets, residual=e.expression / problem.scale_of(e)) for e in alone]
     return [left for b in bindings if (left := record.commit(b).residual) is not None]
@@ -29,5 +29,5 @@ def left_of_rotation(problem: Problem, record: DerivationRecord) -> list[sp.Expr
 
 
 def left_of_positions(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
-    """What is left of the positions where they have an equation too many; it implies those that follow."""
+    """The residual of the positions where they have one equation too many; where it is zero, the others are zero."""
     return [residual / problem.scale**2 for residual in record.residuals[:1]]

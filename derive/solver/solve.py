@@ -51,12 +51,12 @@ from derive.solver.unsolved import undetermined, unsolved
 Rule = Callable[[Problem, tuple[Equation, ...]], Iterator[Binding]]
 RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quadratic, spheres)
 _BETTER: tuple[Rule, ...] = tuple(lateral if rule is trigonometric else rule for rule in RULES)
-"""The same without the steps that give a cosine alone, which rank behind all others."""
+"""The rules without the steps that give a cosine alone, which rank behind all others."""
 
 
 def _stated(problem: Problem) -> tuple[Equation, ...]:
-    """The equations and those of the rotation; with an equation too many the rotation waits until the positions are
-    solved.
+    """The equations of the problem and those of the rotation. With one equation too many the rotation waits until the
+    positions are solved.
     """
     if problem.is_overdetermined and problem.equations:
         return problem.equations
@@ -94,12 +94,12 @@ class Unsolved(Exception):
     """No subproblem fits what is left; the message tells the unknowns, the equations, and what would help."""
 
     steps: tuple[Step, ...] = ()
-    """The steps before."""
+    """The steps that were found before."""
 
 
 @dataclass(frozen=True)
 class Step:
-    """One step: the problem before it, what a rule found, and the same under the names that are recorded."""
+    """One step: the problem before it, the binding that a rule found, and this binding with its recorded names."""
 
     problem: Problem
     found: Binding
@@ -107,7 +107,7 @@ class Step:
     span: tuple[int, int] = (0, 0)
     """Where the statements of the step begin and end among those of the derivation that are `plain`."""
     names: tuple[tuple[sp.Symbol, sp.Symbol], ...] = ()
-    """The names in `found` that stand under others in `recorded`, each with the other."""
+    """The names in `found` that have another name in `recorded`, each with the other name."""
 
 
 class Undetermined(Unsolved):
@@ -158,13 +158,13 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     while problem.angles or problem.lengths or problem.pending:
         if problem.is_overdetermined and not problem.equations and not left:
             left += left_of_rotation(problem, record)
-            if not left and has_spare:  # a wrist takes any rotation: the positions have the equation too many
+            if not left and has_spare:  # a wrist takes any rotation, so the surplus equation is one of the positions
                 left, wrist = left_of_positions(problem, record), problem.angles
                 problem = replace(problem, is_overdetermined=False)
         try:
             problem, binding, sums = _next_after(steps, problem, sums, arguments)
         except Unsolved:
-            if problem.is_overdetermined and not left:  # parallel axes: the rotation tells their sum before a position
+            if problem.is_overdetermined and not left:  # parallel axes: the rotation gives their sum before a position
                 left += left_of_rotation(problem, record)
             if not left or not problem.is_overdetermined:
                 raise
@@ -248,8 +248,8 @@ def _next(
 
 
 def _of_a_trial(problem: Problem) -> Binding | None:
-    """The step of a trial that leaves a residual of the positions without any two-root step: for a point alone, or
-    where the joints of a wrist take any rotation.
+    """A step of a trial without two roots, which leaves a residual of the positions: for a point alone, or where the
+    joints of a wrist take any rotation.
     """
     if not problem.is_overdetermined or (problem.turns and len(unknowns_in(problem)) >= len(problem.equations)):
         return None
@@ -257,8 +257,8 @@ def _of_a_trial(problem: Problem) -> Binding | None:
 
 
 def _with_one_root(problem: Problem, found: Binding) -> Binding:
-    """The step, or one for the same unknowns with a single root, where the point seen from the joints that are known
-    tells which of two roots it is.
+    """The step, or one with a single root for the same unknowns, where the point seen from the known joints determines
+    which of two roots it is.
     """
     if found.determinant is None or problem.is_overdetermined:
         return found
@@ -276,7 +276,7 @@ def _three_lengths(problem: Problem) -> list[Binding]:
 
 
 def _by_condition(problem: Problem) -> list[Binding]:
-    """Lengths that equations determine for every machine but those for which a value of parameters vanishes."""
+    """Steps for lengths that equations determine for every machine, unless a value made of its parameters vanishes."""
     known = replace(problem, fixed=problem.parameters)
     return next((found for tier in TIERS if (found := _lengths(known, tier(known)))), [])
 
@@ -305,8 +305,8 @@ _LAST = (_along_a_direction, _three_lengths, _by_condition, _three_squares, _alo
 
 
 def _candidates(problem: Problem, equations: tuple[Equation, ...], wanted: sp.Symbol | None = None) -> list[Binding]:
-    """What the rules find; with a wanted unknown, for that one. A step that gives a cosine alone is worked out only
-    where there is no other.
+    """The steps that the rules find, all or those for a wanted unknown. A step that gives a cosine alone is computed
+    only where there is no other.
     """
     answers = {rule: tuple(rule(problem, equations)) for rule in _BETTER}
     found = _of(answers.values(), wanted)

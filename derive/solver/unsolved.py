@@ -1,7 +1,7 @@
-"""Why a problem has no solution by subproblems: what is left, in which equations, and what would help.
+"""The message where subproblems do not solve a problem: the unknowns and equations that are left, and what would help.
 
-Whether equations determine their unknowns is asked first, by numbers: at a random pose of a random machine the
-derivatives of all equations tell which unknowns can move although nothing commanded moves.
+First it is tested numerically whether the equations determine their unknowns: at a random pose of a random machine the
+derivatives of all equations show which unknowns can move while the commanded values stay.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ _NOTHING = 1e-6
 """A derivative, or a part of a motion, below this is rounding: columns and rows are scaled to one."""
 _ONE_KNOWN = ", or if one of these joints were known"
 _WRITTEN = 120
-"""Letters of an equation that is written out; of a longer one the number of terms is told."""
+"""The largest number of letters of an equation in a message; of a longer one the number of terms is stated."""
 
 
 def undetermined(problem: Problem) -> str | None:
-    """What to say where unknowns can move while all that is commanded stays; None where the equations hold them all."""
+    """The message where unknowns can move while the commanded values stay; None where the equations determine all."""
     unknowns = (*problem.lengths, *problem.angles)
     free, moving = _free(problem, unknowns) if unknowns else (0, [])
     if not free:
@@ -39,7 +39,7 @@ def undetermined(problem: Problem) -> str | None:
 
 
 def unsolved(problem: Problem) -> str:
-    """What to say where no subproblem fits what is left."""
+    """The message where no subproblem fits the equations that are left."""
     unknowns = (*problem.lengths, *problem.angles, *problem.pending)
     if not problem.equations and not problem.turns:
         return f"the closure does not determine {_list(unknowns)}"
@@ -51,12 +51,12 @@ def unsolved(problem: Problem) -> str:
 
 
 def searched_in_vain(message: str) -> str:
-    """What to say of a chain where every joint was tried as known, too."""
+    """The message about a chain for which a scan along every joint was tried, too."""
     return message.replace(_ONE_KNOWN, "; with any one of these joints known the others are not solved either", 1)
 
 
 def _more(problem: Problem, unknowns: Sequence[sp.Symbol], free: int) -> str:
-    """What would determine all of them."""
+    """The advice on what would determine all unknowns."""
     if any(u in POSITION for u in unknowns):
         return f"state {'one more equation' if free == 1 else f'{free} more equations'}"
     more = "one more quantity" if free == 1 else f"{free} more quantities"
@@ -66,8 +66,8 @@ def _more(problem: Problem, unknowns: Sequence[sp.Symbol], free: int) -> str:
 
 
 def _help(problem: Problem) -> str:
-    """What would make it solvable."""
-    if problem.turns and len(problem.columns) < 3:  # the twist is free: only a point of that line is known before
+    """The advice on what would make the problem solvable."""
+    if problem.turns and len(problem.columns) < 3:  # with a free twist only points on the tool's axis are known
         return "it would help if the line of the tool, through its point, met the axis of the last joint" + _ONE_KNOWN
     if problem.turns:
         return "it would help if the axes of three neighbouring joints met in one point or were parallel" + _ONE_KNOWN
@@ -102,7 +102,7 @@ def _list(unknowns: Sequence[sp.Symbol]) -> str:
 
 
 def _free(problem: Problem, unknowns: tuple[sp.Symbol, ...]) -> tuple[int, list[bool]]:
-    """How many unknowns can be chosen, and which of them then move."""
+    """The number of unknowns that can be chosen, and for each unknown whether it can move."""
     values = drawn(problem, [e.expression for e in problem.equations], np.random.default_rng(_SEED))
     columns = [_derivative(problem, values, unknown) for unknown in unknowns]
     matrices = np.stack(columns, axis=-1)  # draws, conditions, unknowns
@@ -125,7 +125,7 @@ def _motions(matrix: Array) -> Array:
 
 
 def _derivative(problem: Problem, values: Mapping[str, Array], unknown: sp.Symbol) -> Array:
-    """How all conditions change with one unknown: draws, conditions."""
+    """The derivatives of all conditions by one unknown: draws, conditions."""
     above, below = (_at(problem, _moved(values, unknown, step)) for step in (_STEP, -_STEP))
     return np.asarray((above - below) / (2 * _STEP))
 

@@ -1,8 +1,8 @@
 """The viewer: one HTML page with machines in it, made of the modules in JavaScript and of `templates/view`.
 
-It may import the folders from `ir` to `emit`. Each module in `templates/view` says what it holds; `main.js` is where to
-start.
+It may import the folders from `ir` to `emit`. Each module in `templates/view` says what it holds; start reading at
+`main.js`.
 
-node: Node.js with npm, and what npm installs once for the viewer
+node: Node.js with npm, and the packages that npm installs once for the viewer
 page: the page: modules, the viewer's own source, style and licences in one file
 """

@@ -1,4 +1,4 @@
-"""Node.js with npm, from the Python package of that name, and what npm brings for the viewer.
+"""Node.js with npm, from the Python package of that name, and the packages of npm for the viewer.
 
 npm installs once, by its lockfile and without scripts, into a folder of its own; afterwards nothing is fetched.
 """
@@ -15,7 +15,7 @@ from importlib import util
 from pathlib import Path
 
 PACKAGES = ("package.json", "package-lock.json")
-"""What says which packages are installed, and in which versions."""
+"""The files that state which packages are installed, and in which versions."""
 _MARK = ".lockfile-digest"
 
 
@@ -41,7 +41,7 @@ def installed(packages: Path, folder: Path) -> Path:
     """The folder `node_modules` with the packages that a lockfile names, installed where they are not yet.
 
     packages: the folder of `package.json` and its lockfile. Raises `MissingTool` where they cannot be fetched.
-    Several processes may ask at once: each installs beside, and the first moves what it has into its place.
+    Several processes may call this at once: each installs into a temporary folder, and the first moves it into place.
     """
     wanted = sha256(b"\0".join((packages / name).read_bytes() for name in PACKAGES)).hexdigest()
     modules = folder / "node_modules"

@@ -25,10 +25,10 @@ class BrokenPage(Exception):
 
 @dataclass(frozen=True)
 class Model:
-    """A mesh of the user's own in the place of a body."""
+    """A mesh of the user's own that replaces a body."""
 
     body: str
-    """The name of the body, as the viewer calls it: "base", the axes that move it, "plate", "tool"."""
+    """The name of the body in the viewer: "base", the axes that move it, "plate", "tool"."""
     data: bytes
     """The file, binary glTF."""
     scale: float = 1.0
@@ -37,7 +37,7 @@ class Model:
 
 @dataclass(frozen=True)
 class Content:
-    """What stands in a page."""
+    """The content of a page."""
 
     title: str
     modules: Mapping[str, bytes]
@@ -76,7 +76,7 @@ def page(content: Content, packages: Path) -> str:
 
 
 def _program(machines: Mapping[str, bytes], modules: Path) -> str:
-    """One script without imports. What would end its element is spelled another way."""
+    """One script without imports. A text that would end its HTML element is written in another form."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for path in sorted(_SOURCE.glob("*.js")):
@@ -101,7 +101,7 @@ def _binary(modules: Path) -> Path | None:
 
 
 def _licences(modules: Path) -> str:
-    """The licence of what others wrote and the page carries."""
+    """The licences of the code by others in the page."""
     version = json.loads((modules / "three" / "package.json").read_text(encoding="utf-8"))["version"]
     text = (modules / "three" / "LICENSE").read_text(encoding="utf-8").strip()
     return f"This page carries three.js {version}.\n\n{text}"

@@ -50,8 +50,8 @@ X, Y, Z = map(real, "xyz")
 CELLS = tuple(product(range(6), range(6)))
 ALL = tuple(m for _, m in catalogue() if m.joints)
 CORNERED = tuple(m for m in ALL if m.name in ("Kin_Ac6_ThreeParallel", "Kin_ArticulatedRobot_6DOF"))
-EXACT = "Check of an exact frame, more"
-REPAIR, CORNERS = "Repair of a frame, more", "A branch at a singular pose, more"
+EXACT = "In addition: check of an exact frame"
+REPAIR, CORNERS = "In addition: repair of a frame", "In addition: a branch at a singular pose"
 COINCIDE = 3
 """The branch byte that forward kinematics writes where two branches meet: it leaves the branch open."""
 POSES = 16

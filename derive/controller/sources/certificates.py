@@ -1,4 +1,4 @@
-"""How the certificate of a controller is checked, for TLS."""
+"""The check of a controller's certificate, for TLS."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from derive.controller.settings import Security
 
 
 def context(security: Security) -> ssl.SSLContext:
-    """What checks the certificate and the name of the host, unless that is switched off. Raises `Refused`."""
+    """A context that checks the certificate and the name of the host, unless that is switched off. Raises `Refused`."""
     if security.is_unchecked:
         found = ssl.create_default_context()
         found.check_hostname = False

@@ -8,10 +8,10 @@ ctrlx-automation/ctrlx-core, release 4.6):
 * datalayer.v2.1.5, GET /automation/api/v2/nodes/{Path} with the token: 200 and {"type", "value"}; 400, 401, 403, 404
   and 500 with a `Problem` of `title` and `detail`. The types of numbers are those of `_NUMBERS`.
 
-What these files leave open is decided here alone: a number that is not finite has no form in JSON, so that any value
-but a number is bad; a token that has run out is answered by 401, after which a new one is asked for; the separators
-of a path are sent as they are, everything else is escaped; a refused log-in other than 401 or 403 is tried again, for
-a controller that starts, or has too many sessions, answers otherwise.
+These files leave some points open, which are decided here: a number that is not finite has no form in JSON, so that
+any value but a number is bad; an expired token is answered by 401, after which a new one is requested; the separators
+of a path are sent unchanged, everything else is escaped; a refused log-in other than 401 or 403 is tried again, because
+a controller that is starting, or has too many sessions, gives other answers.
 """
 
 from __future__ import annotations
@@ -43,16 +43,16 @@ _CREATED, _OK, _UNAUTHORIZED, _FORBIDDEN = 201, 200, 401, 403
 _PATIENCE = aiohttp.ClientTimeout(total=4.0)
 """Seconds for an answer."""
 _MOST = 65536
-"""Bytes of an answer about one node."""
+"""The largest number of bytes of an answer about one node."""
 
 
 class _Expired(Exception):
-    """The token is taken no longer."""
+    """The token is no longer accepted."""
 
 
 @dataclass(frozen=True)
 class DataLayer:
-    """Nodes of a ctrlX, read so many times a second."""
+    """Nodes of a ctrlX, read at a constant rate."""
 
     address: str
     channels: Sequence[Channel]
@@ -88,7 +88,7 @@ class DataLayer:
             return str(token)
 
     async def _read(self, session: aiohttp.ClientSession, token: str, feed: Feed) -> None:
-        """Read with one token for as long as it is taken; end its session on every other way out."""
+        """Read with one token for as long as it is accepted; on every other exit end its session."""
         headers = {"Authorization": f"Bearer {token}", "Accept": "application/json"}
         pace = Pace(self.rate)
         is_taken = False
@@ -107,7 +107,7 @@ class DataLayer:
             raise
 
     async def _all(self, session: aiohttp.ClientSession, headers: Mapping[str, str]) -> dict[str, object]:
-        """What the nodes hold, all asked for at the same time."""
+        """The values of the nodes, all requested at the same time."""
         asked = [asyncio.ensure_future(self._one(session, headers, channel.node)) for channel in self.channels]
         try:
             values = await asyncio.gather(*asked)
@@ -118,7 +118,7 @@ class DataLayer:
         return dict(zip((channel.axis for channel in self.channels), values, strict=True))
 
     async def _one(self, session: aiohttp.ClientSession, headers: Mapping[str, str], node: str) -> object:
-        """What a node holds, or why it is no number."""
+        """The value of a node, or the reason why it is no number."""
         url = URL(f"{self.address}{NODES_PATH}{quote(node.strip('/'), safe='/')}", encoded=True)
         async with session.get(url, headers=headers, allow_redirects=False) as answer:
             given = await _object(answer)
@@ -144,6 +144,6 @@ async def _object(answer: aiohttp.ClientResponse) -> dict[str, Any]:
 
 
 def _problem(answer: aiohttp.ClientResponse, given: Mapping[str, Any]) -> str:
-    """What an answer says is wrong: its number and the words of its `Problem`."""
+    """The error in an answer: its number and the words of its `Problem`."""
     words = [str(given[name])[:120] for name in ("title", "detail") if given.get(name)]
     return " ".join([str(answer.status), *(words or [answer.reason or ""])]).strip()

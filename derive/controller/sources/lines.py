@@ -15,21 +15,21 @@ from derive.controller.reading import Unusable
 from derive.controller.sources.table import number_of
 
 _LONGEST = 65536
-"""Bytes of a line; a longer one is no line of values, and no end of it is taken for one."""
+"""The largest number of bytes of a line; a longer one is no line of values, and neither is any part of it."""
 _TOO_LONG = "[ of a line that is too long"
-"""What stands for it: no JSON."""
+"""The text in place of such a line, which is no JSON."""
 
 
 @dataclass
 class Reader:
-    """What lines say. A first line of names gives the order of the values of those that follow."""
+    """The values in lines. A first line of names gives the order of the values in the lines that follow."""
 
     channels: Sequence[Channel]
     order: list[str] | None = field(default=None, init=False)
     """The nodes in the order of the values; None until the first line of values: then that of the axes."""
 
     def answers(self, line: str) -> dict[str, object]:
-        """What a line says about axes: by axis, those that it names. A line that cannot be read is bad for all."""
+        """The answers in a line, by the axes that it names. An unreadable line gives a bad answer for all axes."""
         text = line.strip()
         if not text:
             return {}
@@ -64,13 +64,13 @@ class Reader:
 
 @dataclass(frozen=True)
 class Input:
-    """The lines of a file descriptor, read in a thread of their own: not all kinds of input can be waited for."""
+    """The lines of a file descriptor, read in their own thread: an event loop cannot wait for all kinds of input."""
 
     channels: Sequence[Channel]
     descriptor: int
 
     async def run(self, feed: Feed) -> None:
-        """Give what each line says until the input is over."""
+        """Pass the answers of each line to the feed until the input is over."""
         loop = asyncio.get_running_loop()
         over = loop.create_future()
         reader = Reader(self.channels)
@@ -97,7 +97,7 @@ class Input:
 
 
 def _lines(descriptor: int) -> Iterator[str]:
-    """The lines. Read without a buffer of Python's own: a thread that waits in one cannot be left behind."""
+    """The lines, read without Python's own buffer: a thread that waits in it could not be abandoned."""
     kept, is_long = b"", False
     while True:
         try:

@@ -1,6 +1,6 @@
-"""OPC UA: all nodes in one Read request, so many times a second.
+"""OPC UA: all nodes in one Read request, at a constant rate.
 
-They are read, not subscribed to: a subscription says nothing while nothing changes, and sends each axis by itself; an
+They are read, not subscribed to: a subscription sends nothing while nothing changes, and sends each axis by itself. An
 answer to Read confirms all axes at one moment, so that its age is known and the picture is of one moment. `asyncua`
 (LGPL) is imported here and in `opc_ua_trust` alone: it is part of the extra `live`, and is never bundled.
 """
@@ -33,13 +33,13 @@ _FAREWELL = 2.0
 """Seconds for the end of a session."""
 _USER = frozenset({"BadUserAccessDenied", "BadIdentityTokenRejected", "BadIdentityTokenInvalid"})
 _CLIENT = frozenset({"BadSecurityChecksFailed"})
-"""What a controller answers to a wrong user, and, or `BadCertificate…`, to a client that it does not trust."""
+"""The answers of a controller to a wrong user, and (these or `BadCertificate…`) to a client that it does not trust."""
 _NAMESPACE = "nsu="
 
 
 @dataclass(frozen=True)
 class OpcUa:
-    """Nodes of an OPC UA server, read so many times a second."""
+    """Nodes of an OPC UA server, read at a constant rate."""
 
     address: str
     channels: Sequence[Channel]
@@ -49,7 +49,7 @@ class OpcUa:
 
     async def run(self, feed: Feed) -> None:
         """Connect and read until the connection is lost."""
-        for name in ("asyncua", "asyncuagds"):  # which report there what is told to the feed
+        for name in ("asyncua", "asyncuagds"):  # their logs would repeat the messages of the feed
             logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
             async with self._connected() as client:
@@ -68,13 +68,13 @@ class OpcUa:
             if task is None or task.cancelling():
                 raise
             raise Lost(f"{self.address} does not answer: the request was given up") from None
-        except Exception as problem:  # whatever a server answers: what cannot be read is not connected
+        except Exception as problem:  # whatever the server answered, the connection is lost
             words = str(problem) or type(problem).__name__
             raise Lost(f"{self.address} does not answer: {words}") from None
 
     @asynccontextmanager
     async def _connected(self) -> AsyncIterator[Client]:
-        """A session of its own, ended on every way out."""
+        """A session, which is ended on every exit."""
         client = Client(_with_port(self.address), timeout=_PATIENCE)
         client.name = client.description = "softkin live"
         client.application_uri = opc_ua_trust.APPLICATION
@@ -90,7 +90,7 @@ class OpcUa:
             try:
                 async with asyncio.timeout(_FAREWELL):
                     await client.disconnect()
-            except TimeoutError:  # it does not answer any more
+            except TimeoutError:  # the server does not answer any more
                 client.disconnect_socket()
 
     def _lost_or_refused(self, problem: ua.UaStatusCodeError) -> Lost | Refused:
@@ -105,7 +105,7 @@ class OpcUa:
 
 
 def _with_port(address: str) -> str:
-    """The address with a port: asyncua wants one."""
+    """The address with a port, which asyncua requires."""
     url = urlsplit(address)
     return address if url.port else url._replace(netloc=f"{url.netloc.rstrip(':')}:{_PORT}").geturl()
 
@@ -126,7 +126,7 @@ async def _node(client: Client, channel: Channel) -> ua.NodeId:
 
 
 def answer(value: ua.DataValue) -> object:
-    """The number of an answer, or why it is none; only what the server calls good is a number."""
+    """The number in an answer, or the reason why there is none; only a value that the server marks good is a number."""
     status = value.StatusCode
     if status is not None and not status.is_good():
         return Unusable(status.name)

@@ -1,8 +1,8 @@
-"""Encryption of OPC UA: this client's own certificate, and why the server's is trusted.
+"""Encryption of OPC UA: this client's own certificate, and the trust in that of the server.
 
-A server is trusted whose certificate is in the file of `--ca`, or is issued by one that stands there and names the
-host of the address. No authority of the system vouches for controllers. It is checked before a session is opened, and
-the server shows that it holds the key of that certificate.
+A server is trusted if its certificate is in the file of `--ca`, or names the host of the address and is issued by a
+certificate in that file. The authorities that the system trusts do not count. The check comes before a session is
+opened, in which the server proves that it holds the key of that certificate.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ async def encrypt(client: Client, security: Security) -> None:
 
 
 def distrust(server: x509.Certificate, anchors: Sequence[x509.Certificate], host: str) -> str | None:
-    """Why a certificate is not trusted, at this moment; None where it is. anchors: certificates that are trusted."""
+    """The reason why a certificate is not trusted at present; None where it is. anchors: the trusted certificates."""
     now = datetime.datetime.now(datetime.UTC)
     if not server.not_valid_before_utc <= now <= server.not_valid_after_utc:
         return f"it is valid from {server.not_valid_before_utc:%Y-%m-%d} to {server.not_valid_after_utc:%Y-%m-%d}"
@@ -71,7 +71,7 @@ def distrust(server: x509.Certificate, anchors: Sequence[x509.Certificate], host
 
 
 def _issued(server: x509.Certificate, authority: x509.Certificate, now: datetime.datetime) -> bool:
-    """Whether an authority, which is one, and is valid, has signed a certificate."""
+    """Whether a certificate is signed by an authority that is valid, and is allowed to sign."""
     try:
         if not authority.extensions.get_extension_for_class(x509.BasicConstraints).value.ca:
             return False
@@ -107,7 +107,7 @@ def _anchors(path: Path | None) -> tuple[x509.Certificate, ...]:
 
 
 async def _own(client: Client, folder: Path) -> tuple[Path, Path]:
-    """This client's certificate and key, made where there are none; nobody else may read the folder."""
+    """This client's certificate and key, created where there are none; no other user may read the folder."""
     certificate, key = folder / CERTIFICATE, folder / _KEY
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)

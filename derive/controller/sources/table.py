@@ -17,29 +17,29 @@ from derive.controller.reading import Unusable
 from derive.controller.refusal import Refused
 
 TIME_NAMES = ("time", "t")
-"""What the time column is called where nobody says."""
+"""The names of the time column, where none is given."""
 _DELIMITERS = ";\t,"
 
 
 @dataclass(frozen=True)
 class Recording:
-    """What a table holds."""
+    """The content of a table."""
 
     times: tuple[float, ...]
     """Seconds, ascending."""
     rows: tuple[dict[str, object], ...]
-    """What is said about each axis at each of them."""
+    """The answers about each axis at each of these times."""
 
 
 @dataclass(frozen=True)
 class Replay:
-    """A recording, and how fast it runs."""
+    """A recording, and its speed."""
 
     recording: Recording
     speed: float
     is_loop: bool
     rate: float
-    """Rows that follow one another faster than this, in updates a second, are left out."""
+    """Updates a second; rows that follow one another faster are left out."""
 
     async def run(self, feed: Feed) -> None:
         """Give each row at its time, and start again at the end where it is a loop."""
@@ -111,7 +111,7 @@ def _is_number(text: str, delimiter: str) -> bool:
 
 
 def number_of(text: str) -> float | Unusable:
-    """The number that a text is, which may be no finite one."""
+    """The number in a text, which may be NaN or infinite."""
     try:
         return float(text)
     except ValueError:

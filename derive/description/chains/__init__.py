@@ -1,9 +1,9 @@
-"""What stands in a chain: its amounts, checked; its numbers, under names; its gears, moved to the joints.
+"""The contents of a chain: its amounts are checked, its numbers get names, its gears are moved to the joints.
 
 Like `description`, it may import `ir`, `algebra` and `geometry`.
 
-amounts: the amounts of turns and shifts: how they are written, and which are refused
+amounts: the amounts of turns and shifts: how they are written, and which of them are refused
 gears: gears that stand in a chain, moved to the joints
-numbers: numbers that stand in a chain, under names
-turns: angles that stand in a chain as numbers: right angles recognised, all others under names
+numbers: names for the numbers that stand in a chain
+turns: angles that stand in a chain as numbers: right angles are recognised, all others get names
 """

@@ -1,4 +1,4 @@
-"""The amounts of a chain: what a turn or a shift cannot be, told with the factor that has it."""
+"""The amounts of a chain: a message for every amount that no turn or shift can have, quoting its factor."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
 
 
 def written(factor: Factor) -> str:
-    """A factor as a description has it: `Rz(a1 + pi/4)`."""
+    """A factor as a description writes it: `Rz(a1 + pi/4)`."""
     return f"{LETTERS[factor.motion]}{'xyz'[factor.axis]}({sp.sstr(factor.amount, full_prec=False)})"
 
 

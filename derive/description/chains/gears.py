@@ -4,7 +4,7 @@ In the chain of the mechanism that is returned every angle is a sum of joints, e
 independently of each other: a whole turn of one leaves the pose as it is. A joint is `ratio` times its own motor, plus
 its coupling to motors of earlier axes. So the turns of an axis are those of its joint: behind a gear that takes three
 turns down to one the axis repeats after 1080 degrees. On a differential A repeats after 360 degrees, where B follows by
-360 degrees in one sense or the other; while A stays, B repeats after 720.
+360 degrees in one sense or the other; while A does not move, B repeats after 720 degrees.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from derive.geometry.frames import Chain, Motion
 
 Table = dict[sp.Symbol, sp.Expr]
 _LARGEST_DENOMINATOR, _SAME = 10**5, 1e-14
-"""Of a gear that is written as a decimal number, and how near a fraction must be."""
+"""A gear written as a decimal number is taken as a fraction with at most this denominator, if it is this near."""
 _NUMBERS_ALONE = "state every angle by motors of earlier axes and its own, or give the gears as numbers"
 
 
@@ -60,7 +60,7 @@ def with_gears(mechanism: Mechanism) -> Mechanism:
 
 
 def _periods(mechanism: Mechanism, driving: set[sp.Symbol]) -> tuple[str, ...] | None:
-    """The axes with turns: a motor that moves lengths alone has none."""
+    """The axes with periods: a motor that moves lengths alone has none."""
     if mechanism.periods is None:
         return None
     gone = {j.name for j in mechanism.joints if j.symbol in driving}
@@ -68,7 +68,7 @@ def _periods(mechanism: Mechanism, driving: set[sp.Symbol]) -> tuple[str, ...] |
 
 
 def _arguments(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
-    """What the closure turns by."""
+    """The angles by which the closure turns."""
     if mechanism.chain is not None:
         return tuple(f.amount for f in mechanism.chain.factors if f.motion is Motion.TURN)
     functions = {f for e in mechanism.equations for f in sp.sympify(e).atoms(sp.sin, sp.cos)}
@@ -97,7 +97,7 @@ def _fraction(number: float) -> sp.Rational:
 
 
 def _is_plain(mechanism: Mechanism, forms: Sequence[sp.Expr], angles: Sequence[sp.Symbol]) -> bool:
-    """Whether every angle is a sum of joints with signs, and whole turns of the joints are all that changes none."""
+    """Whether every angle is a sum of joints with signs, and only whole turns of the joints leave them unchanged."""
     signs = {p.symbol: p for p in mechanism.parameters if p.role in (Role.SIGN, Role.FLAG)}
     rows = []
     for form in forms:
@@ -107,12 +107,12 @@ def _is_plain(mechanism: Mechanism, forms: Sequence[sp.Expr], angles: Sequence[s
         rows.append([c if c in (0, 1, -1) else sp.Integer(1) for c in row])
     matrix = sp.Matrix(rows)
     if matrix.rank() < len(angles):
-        return True  # another question: fewer angles than joints
+        return True  # fewer angles than joints: this is refused elsewhere
     return bool(abs(sp.Matrix(_triangular(_lattice(matrix.tolist()))).det()) == 1)
 
 
 def _basis(rows: list[list[sp.Expr]], count: int) -> list[list[sp.Expr]]:
-    """As many angles as joints, of which all others are sums with signs; by rows."""
+    """A basis of the angles, by rows: as many as joints, and all other angles are sums of these with signs."""
     if all(c.is_Rational for row in rows for c in row):
         return _lattice(rows)
     chosen: list[list[sp.Expr]] = []
@@ -150,7 +150,7 @@ def _lattice(rows: list[list[sp.Expr]]) -> list[list[sp.Expr]]:
 
 
 def _triangular(basis: list[list[sp.Expr]]) -> list[list[sp.Expr]]:
-    """The rows, so that the k-th ends at the k-th motor. Raises `DescriptionError` where they do not."""
+    """The rows in an order in which row k ends at motor k. Raises `DescriptionError` where there is no such order."""
     count = len(basis[0])
     ends = [max(k for k, c in enumerate(row) if c != 0) for row in basis]
     if sorted(ends) != list(range(count)):
@@ -221,7 +221,7 @@ def _same(joint: Joint, mechanism: Mechanism) -> Joint:
 
 
 def _checked(mechanism: Mechanism) -> Mechanism:
-    """The mechanism, whose gears are never zero."""
+    """The mechanism, checked: its gears are never zero."""
     for joint in mechanism.joints:
         if joint.ratio == 1:
             continue

@@ -1,4 +1,4 @@
-"""Numbers that stand in a chain, under names: machines are written with them as often as with parameters.
+"""Names for the numbers in a chain: many descriptions state their dimensions as numbers, not as parameters.
 
 An angle that is no multiple of 90° and a length become fixed parameters. No user gives them, and the derivation treats
 them like those that users give: their sines and cosines are computed once, and no product holds a long decimal.
@@ -37,7 +37,7 @@ def with_named_numbers(mechanism: Mechanism) -> Mechanism:
 
 
 def almost_right_angles(mechanism: Mechanism) -> str:
-    """What to say of the angles of a chain that are multiples of 90° but for a little; nothing where there is none."""
+    """The message about angles of a chain that are almost multiples of 90°; empty where there are none."""
     factors = mechanism.chain.factors if mechanism.chain is not None else ()
     return "; ".join(dict.fromkeys(told for n in numeric_turns(factors) if (told := almost_right(n)) is not None))
 
@@ -103,14 +103,14 @@ def _one_number_an_axis(shifts: Sequence[Factor]) -> Iterator[Factor]:
 
 
 class _Lengths:
-    """The lengths of a chain, each by its size."""
+    """The lengths of a chain, found by their absolute values."""
 
     def __init__(self, names: Names) -> None:
         self.found: list[Parameter] = []
         self._names = names
 
     def named(self, number: sp.Expr, axis: int) -> sp.Expr:
-        """A number as the length of its size, or as the opposite of it; nothing for zero."""
+        """A number as the length with its absolute value, or as the negative of that length; zero stays zero."""
         size = sp.Abs(_fraction(number))
         if size == 0:
             return sp.Integer(0)
@@ -135,7 +135,7 @@ def _fixed(name: str, role: Role, symbol: sp.Symbol, value: sp.Expr) -> Paramete
 
 
 def fixed_numbers(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
-    """The values of the names that stand for numbers of the chain, and of the sines and cosines of such."""
+    """The values of the names of numbers of the chain, and of the sines and cosines of such angles."""
     found: dict[sp.Symbol, sp.Expr] = {}
     for p in (p for p in mechanism.parameters if p.fixed is not None):
         found[p.symbol] = sp.Float(p.nominal)

@@ -1,6 +1,6 @@
-"""Angles that a chain states as numbers: right angles are recognised, and all others get names.
+"""Angles that stand in a chain as numbers: right angles are recognised, and all others get names.
 
-`1.5708` is a right angle written with four decimals; `1.57` is 0.0008 rad short of one, and stays what it is. Every
+`1.5708` is a right angle written with four decimals; `1.57` is 0.0008 rad short of one, and stays as it is. Every
 other angle is a sum of few named ones, and of right angles: 60° and -60° have one name, and so have 45° and 135°.
 """
 
@@ -17,15 +17,15 @@ from derive.ir.symbols import real
 
 _RIGHT = sp.pi / 2
 _ANY_DECIMALS = 1e-6
-"""An angle as near to a multiple of 90° as this (radians) is one, however it is written."""
+"""An angle as near to a multiple of 90° as this (radians) is that multiple, however many decimals it has."""
 _DECIMALS = 4
-"""With at least as many decimals, a multiple of 90° that is rounded to them is one."""
+"""A decimal with at least this many digits that equals a rounded multiple of 90° is that multiple."""
 _NEARLY = 0.01
-"""An angle as near to a multiple of 90° as this, which is none, was perhaps meant to be one (radians)."""
+"""Any other angle as near to a multiple of 90° as this (radians) was perhaps meant to be that multiple."""
 _SAME = 1e-9
-"""Angles that differ by less (radians) are one."""
+"""Angles that differ by less than this (radians) are equal."""
 _THOUSANDTHS = 1000
-"""Angles are told in degrees where they are whole thousandths of a degree."""
+"""An angle that is a whole number of thousandths of a degree is named by its degrees."""
 _MULTIPLES = (-2, -1, 0, 1, 2)
 
 
@@ -35,7 +35,7 @@ def in_radians(number: sp.Expr) -> float:
 
 
 def as_right_angles(number: sp.Expr) -> sp.Expr | None:
-    """The multiple of 90° that a number is, exactly; None where it is none. A number that is exact stays as it is."""
+    """The exact multiple of 90° that a number stands for; None where it stands for none."""
     exact = sp.nsimplify(number.subs(DEGREE, sp.pi / 180) / _RIGHT) if not number.has(sp.Float) else None
     if exact is not None and exact.is_Integer:
         return number
@@ -48,13 +48,13 @@ def as_right_angles(number: sp.Expr) -> sp.Expr | None:
 
 
 def _is_rounded(number: sp.Expr, value: float, nearest: int) -> bool:
-    """Whether a decimal is the multiple of 90° with as many decimals."""
+    """Whether a decimal is a multiple of 90°, rounded to as many digits as the decimal has."""
     decimals = len(repr(value).partition(".")[2])
     return number.is_Float and decimals >= _DECIMALS and round(nearest * float(_RIGHT), decimals) == value
 
 
 def almost_right(number: sp.Expr) -> str | None:
-    """What to say of an angle that is a multiple of 90° but for a little; None for any other."""
+    """The message about an angle that is almost a multiple of 90°; None for any other angle."""
     value = in_radians(number)
     nearest = round(value / float(_RIGHT))
     off = abs(value) - abs(nearest) * float(_RIGHT)
@@ -69,14 +69,14 @@ def almost_right(number: sp.Expr) -> str | None:
 
 @dataclass(frozen=True)
 class NamedAngle:
-    """An angle under a name, and its value in degrees."""
+    """The name of an angle, and its value in degrees."""
 
     symbol: sp.Symbol
     degrees: sp.Expr
 
 
 class NamedAngles:
-    """The angles of a chain, and how each is written in those that have names."""
+    """The named angles of a chain, and every other angle written as a sum of them."""
 
     def __init__(self, numbers: Sequence[sp.Expr]) -> None:
         """numbers: those that are no multiple of 90°, in radians; in degrees with `DEGREE`."""
@@ -90,7 +90,7 @@ class NamedAngles:
             self._written[number] = found
 
     def written(self, number: sp.Expr) -> sp.Expr:
-        """A number in names and right angles."""
+        """A number as a sum of named angles and right angles."""
         return self._written[number]
 
     def _sums(self, value: float) -> Iterator[sp.Expr]:
@@ -108,7 +108,7 @@ class NamedAngles:
 
 
 def _of(number: sp.Expr) -> NamedAngle:
-    """The angle that a number leaves beside right angles: 45° of 135°; a decimal in radians as it is written."""
+    """The angle that is left of a number without its right angles: 45° of 135°; a decimal in radians stays whole."""
     degrees = abs(in_radians(number)) * 180 / float(sp.pi)
     told = sp.Rational(round(degrees * _THOUSANDTHS), _THOUSANDTHS)
     if abs(degrees - float(told)) * float(sp.pi) / 180 < _SAME:
@@ -122,6 +122,6 @@ def _of(number: sp.Expr) -> NamedAngle:
 
 
 def _digits(number: sp.Expr) -> str:
-    """A number as a part of a name: 22_5 for 22.5."""
+    """A number as it stands in a name: 22_5 for 22.5."""
     text = repr(float(number)).removesuffix(".0")
     return text.replace(".", "_").replace("-", "minus").replace("+", "")

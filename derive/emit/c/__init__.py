@@ -5,7 +5,7 @@ It may import no other folder of `emit`. It writes these files on demand, and th
 arc_tangent: the arc tangent as a polynomial, for several poses at a time
 description: the tables of a machine: axes, parameters, configuration, limits, margins
 every_branch: all branches as one function
-functions: which program becomes which function: what it is given, and where its results go
+functions: the function of each program, with its arguments and the places of its results
 lanes: several poses at a time, for the native core alone
 layout: indents, comments and long statements
 package: the files of a mechanism, and those that all share

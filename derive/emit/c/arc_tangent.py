@@ -1,7 +1,7 @@
-"""The arc tangent as a polynomial, which a compiler takes for several poses at once; that of the C library is a call.
+"""The arc tangent as a polynomial, which a compiler can vectorise, unlike a call of the C library.
 
 atan t = t + t z p(z) with z = t², for t from 0 to tan 22.5°: angles of all octants follow from these by symmetry.
-p interpolates at Chebyshev's nodes, so that with eleven coefficients it is off by less than rounding is.
+p interpolates at Chebyshev's nodes: with eleven coefficients its error is below rounding.
 """
 
 from __future__ import annotations

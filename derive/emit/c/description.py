@@ -1,4 +1,4 @@
-"""What a source states about its machine: axes, parameters, configuration, limits, margins, as tables."""
+"""The tables with which a source describes its machine: axes, parameters, configuration, limits, margins."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _TWO = {Role.FLAG: (0.0, 1.0), Role.SIGN: (-1.0, 1.0)}
 
 @kept_by_identity(10)
 def inputs(kinematics: Kinematics) -> Inputs:
-    """What the parameters are called: they are members of a struct."""
+    """The names of the parameters, which are members of a struct."""
     return inputs_of(kinematics, _C, {})
 
 
@@ -57,7 +57,7 @@ def in_words(p: Parameter) -> str:
 
 
 def tables(kin: Kinematics, prefix: str) -> list[str]:
-    """The constant arrays of a source, but those that would be empty."""
+    """The constant arrays of a source, without empty ones."""
     mechanism, given = kin.mechanism, inputs(kin)
     order = [joint.name for joint in mechanism.joints]
     held = {joint.name for joint in mechanism.held_joints}
@@ -82,7 +82,7 @@ def tables(kin: Kinematics, prefix: str) -> list[str]:
 
 
 def counts(kin: Kinematics) -> dict[str, int]:
-    """How many there are of everything."""
+    """The sizes of all tables."""
     return {
         "axis": len(kin.mechanism.joints),
         "branch": len(kin.branches),

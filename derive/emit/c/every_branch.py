@@ -21,7 +21,7 @@ from derive.report.reasons import Reasons
 
 NAME = "find_every_branch"
 MOST_SLOTS = 16
-"""With more branches a straight line is long, and is no longer what is fast."""
+"""With more branches a straight line is long, and no longer the fastest way."""
 _SUMMARY = (
     "Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an answer."
 )
@@ -32,7 +32,9 @@ _HEAD = (
 
 @kept_by_identity(10)
 def straight_line(kin: Kinematics) -> EveryBranch | None:
-    """The program; None where there is none, and where a turn moves several axes: each branch is solved by itself."""
+    """The program of all branches. None where each branch is solved by itself: without a straight line, or where a turn
+    moves several axes.
+    """
     if not is_unrolled(kin) or 2 ** len(kin.branches) > MOST_SLOTS:
         return None
     if any(joint.coupling != 0 or joint.is_geared for joint in kin.period_joints):
@@ -82,7 +84,7 @@ def every_branch_lines(kin: Kinematics, machine: str, stored: Mapping[str, str],
 
 @dataclass
 class _Body(Body):
-    """Statements of which a refusal is one of all slots."""
+    """The statements of a function in which a refusal refuses all slots."""
 
     slots: int = 1
 
@@ -111,7 +113,7 @@ def _given(kin: Kinematics) -> dict[str, str]:
 
 
 def _near(joint: Joint, printer: C) -> str:
-    """What the turn of an axis is nearest to: where one value is inside the limits, the middle of these."""
+    """The value next to which the turn of an axis is chosen: the reference, or the middle of narrow limits."""
     single, middle = (printer.members[f"{word}_{joint.key}"] for word in ("single", "mid"))
     return f"const double near_{joint.key} = {single} ? {middle} : {joint.reference.name};"
 

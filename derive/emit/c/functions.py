@@ -1,4 +1,4 @@
-"""Which program becomes which function: what it is given, and where its results go."""
+"""The function of each program, with its arguments and the places of its results."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from derive.equations.limits import value_of
 from derive.equations.rotation_repair import rotation_program
 from derive.ir.passes import normalise
-from derive.ir.program import FindRoot, Output, Program, expressions, told
+from derive.ir.program import FindRoot, Output, Program, expressions, reason_expressions
 from derive.ir.symbols import COORDINATE_NAMES, PLACE, branch_sign, symbols_of
 from derive.kinematics.kinematics import Kinematics
 
@@ -25,11 +25,11 @@ class Function:
     summary: str
     program: Program
     parameters: str
-    """Its parameters between the machine and the refusal, as they are declared."""
+    """The declarations of its parameters between the machine and the refusal."""
     given: Mapping[str, str]
-    """What the program reads besides the constants of the machine, and where it stands."""
+    """The values that the program reads besides the constants of the machine, each with its place."""
     results: tuple[tuple[str, str], ...]
-    """The outputs, and where they go."""
+    """The outputs, each with its place."""
     key: str = ""
     """Its name among the programs of the mechanism; empty where only other programs call it."""
     is_of_machine: bool = True
@@ -46,15 +46,17 @@ def function_name(program: Program) -> str:
 
 
 def read_by(program: Program) -> set[str]:
-    """What a program reads by itself: what those read that it calls is their affair."""
-    values = [e for s in program.body for e in (*expressions(s), *told(s))] + [o.value for o in program.outputs]
+    """The names that a program itself reads, without those that only its called programs read."""
+    values = [e for s in program.body for e in (*expressions(s), *reason_expressions(s))] + [
+        o.value for o in program.outputs
+    ]
     given = {g.name for s in program.body if isinstance(s, FindRoot) for p in (s.trial, s.finish) for g in s.given(p)}
     found = {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
     return found - {s.name for s in program.bound()}
 
 
 def rotation_function() -> Function:
-    """The repair of a commanded rotation, which no mechanism changes."""
+    """The repair of a commanded rotation, which is the same for all mechanisms."""
     given, results = (tuple((name, f"{word}->{place}") for name, place in _ROTATION) for word in ("frame", "repaired"))
     parameters = f"{_GIVEN_FRAME}, softkin_frame *repaired"
     return Function("The rotation as it is used.", rotation_program(), parameters, dict(given), results,
@@ -96,7 +98,7 @@ def functions(kin: Kinematics) -> list[Function]:
 def _further(
     kin: Kinematics, axes: Mapping[str, str], asked: Mapping[str, str], near: Mapping[str, str]
 ) -> Iterator[Function]:
-    """Those of machines with limits of other quantities, or with a search."""
+    """The functions of machines that limit other quantities than axes, or have a root scan."""
     if kin.limited:
         quantities = [Output(q.name, value_of(q)) for q in kin.limited]
         program = normalise("quantities", kin.limits.lets(), quantities)

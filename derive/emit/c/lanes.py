@@ -1,7 +1,7 @@
 """Several poses at a time in C: one loop over lanes without a branch, which compilers turn into vector instructions.
 
-It has the answers of poses that are regular, on one branch and on open turns; of any other lane it says that it has
-none, and that pose is solved by itself.
+It solves regular poses, on one branch and with automatic turns. It marks any other lane, and that pose is then solved
+by itself.
 """
 
 from __future__ import annotations
@@ -30,21 +30,21 @@ from derive.optimize.regular import regular
 from derive.optimize.without_periods import specialised, without_chosen_turns
 
 ONE, EVERY = "regular", "regular_all"
-"""What the functions of a machine are called, behind its name: of the branch that the signs say, and of all."""
+"""The ends of the names of the functions: for the branch that the signs choose, and for all branches."""
 _FUNCTIONS = {"root": "softkin_lane_root", "atan2": "softkin_lane_angle", "nearest_period": "softkin_lane_turn"}
 _SUMMARIES = {
     ONE: "The axes of each lane on its branch; where it misses anything, they mean nothing.",
     EVERY: "The status and the axes of every slot of each lane; where it misses anything, they mean nothing.",
 }
 _RESULTS = {ONE: ("axes", "near"), EVERY: ("statuses", "axes", "near")}
-"""The tables that are written, of each number all lanes: axes, and what each axis with turns is nearest to."""
+"""The tables that are written, for each number all lanes: axes, and the value next to which each turn is chosen."""
 _GIVEN = "const softkin_lanes *given"
 _LOOP = "for (int lane = 0; lane < SOFTKIN_LANES; lane += 1)"
 
 
 @dataclass(frozen=True)
 class InLanes:
-    """A program for regular poses, of which an axis may be in any turn, and what it reads of constants alone."""
+    """A program for regular poses, in which an axis may be on any turn, and the bindings of its constants."""
 
     program: Program
     parts: tuple[Let, ...]
@@ -57,8 +57,8 @@ class InLanes:
 
 @kept_by_identity(10)
 def in_lanes(kin: Kinematics) -> tuple[InLanes, ...]:
-    """The programs of a machine: none where they would have more than arithmetic, roots and angles, where a turn moves
-    several axes or a gear, and where nothing moves; that of all branches where these are few.
+    """The programs of a machine. None where they would need more than arithmetic, roots and angles, where a turn moves
+    several axes or a gear, and where nothing moves. That of all branches only where these are few.
     """
     if not kin.mechanism.joints or any(joint.coupling != 0 or joint.is_geared for joint in kin.period_joints):
         return ()
@@ -78,7 +78,7 @@ def _every_branch(kin: Kinematics, one: Program) -> InLanes | None:
         return None
     parts = line.parts
     found = regular(line.program, constants(kin) | {part.name.name for part in parts})
-    if found is None:  # it takes sines of sums of angles: lanes have none, but the program of one branch does without
+    if found is None:  # it takes sines of sums of angles, which lanes lack and one branch does not need
         (found,), parts = lowered(
             [replace(one, name=EVERY)],
             constants(kin),
@@ -121,7 +121,7 @@ def lanes_lines(kin: Kinematics, module: str, found: InLanes) -> list[str]:
 
 
 def rotation_lines() -> list[str]:
-    """Whether each lane has a rotation that is used as it is given; it adds to what misses."""
+    """The lines that test whether each lane has an exact rotation; what is missing is added to the sum."""
     printer = _Lanes()
     places = {r.name: f"given->rotation[{i}][lane]" for i, r in enumerate(ROTATION_ENTRIES)}
     lane = [
@@ -135,7 +135,7 @@ def rotation_lines() -> list[str]:
 
 
 def _places(kin: Kinematics) -> dict[str, str]:
-    """What differs from lane to lane, and where it stands."""
+    """The values that differ from lane to lane, each with its place."""
     position = {name: f"given->position[{i}][lane]" for i, name in enumerate(COORDINATE_NAMES)}
     rotation = {r.name: f"given->rotation[{i}][lane]" for i, r in enumerate(ROTATION_ENTRIES)}
     own = {branch_sign(b.name).name: f"given->signs[{i}][lane]" for i, b in enumerate(kin.branches)}
@@ -160,7 +160,7 @@ def _types(kin: Kinematics, found: InLanes) -> dict[str, str]:
 
 
 def _constants(kin: Kinematics, found: InLanes) -> list[str]:
-    """The constants of the machine in variables: what is written to the lanes cannot change these."""
+    """The constants of the machine in local variables, which writing to the lanes cannot change."""
     own = []
     for name, kind in _types(kin, found).items():
         value = f"k->{member(name)}"
@@ -169,7 +169,7 @@ def _constants(kin: Kinematics, found: InLanes) -> list[str]:
 
 
 def _near(joint: Joint) -> str:
-    """What the turn of an axis is nearest to: where one value is inside the limits, the middle of these."""
+    """The value next to which the turn of an axis is chosen: the reference, or the middle of narrow limits."""
     return f"{spelled(f'single_{joint.key}')} > 0.0 ? {spelled(f'mid_{joint.key}')} : {spelled(joint.reference.name)}"
 
 
@@ -199,7 +199,7 @@ def _let(let: Let, printer: C) -> Sequence[str]:
 
 
 def _results(kin: Kinematics, found: InLanes, printer: C) -> Iterator[str]:
-    """What is written: of every slot its status and its axes."""
+    """The lines that write the status and the axes of every slot."""
     values = {o.name: o.value for o in found.program.outputs}
     joints = kin.mechanism.joints
     if found.name == ONE:
@@ -213,7 +213,7 @@ def _results(kin: Kinematics, found: InLanes, printer: C) -> Iterator[str]:
 
 
 class _Lanes(C):
-    """Expressions without a branch: what a call would decide is computed."""
+    """Expressions without a branch: choices are computed, not decided by calls."""
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
         if isinstance(node, Root):

@@ -8,9 +8,9 @@ from textwrap import wrap
 from derive.emit.braces import broken
 
 WIDTH = 110
-"""The most columns of a line."""
+"""The largest number of columns of a line."""
 _COMMENT = 100
-"""The most columns of a comment that stands above a statement."""
+"""The largest number of columns of a comment that stands above a statement."""
 
 
 def harmless(note: str) -> str:
@@ -19,7 +19,7 @@ def harmless(note: str) -> str:
 
 
 def comment(note: str, begin: str = "/*") -> list[str]:
-    """A note as one comment; no line for an empty one. begin: `/**` where readers of the header are told."""
+    """A note as one comment; no line for an empty one. begin: `/**` for documentation in the header."""
     lines = wrap(harmless(note), _COMMENT, break_on_hyphens=False)
     if not lines:
         return []
@@ -34,12 +34,12 @@ def commented(line: str, note: str) -> list[str]:
 
 
 def laid_out(lines: Sequence[str]) -> list[str]:
-    """Lines of which none that can be broken is too wide."""
+    """The lines, broken where they are too wide and can be broken."""
     return [part for line in lines for part in broken(line, WIDTH)]
 
 
 def page(text: str) -> str:
-    """A whole text of which no line that can be broken is too wide, comments among them."""
+    """A whole text, whose lines and comments are broken where they are too wide and can be broken."""
     lines = (
         part for line in text.split("\n") for part in (_wrapped(line) if _is_comment(line) else broken(line, WIDTH))
     )

@@ -59,11 +59,11 @@ _TAKEN = frozenset(
     "setjmp signal stdalign stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time "
     "uchar wchar wctype".split()
 )
-"""No machine has the name of a file that all share, here or in the core of the Python package, or of a C header."""
+"""Names that no machine may have: those of shared files, here or in the core of the Python package, and of headers."""
 _CELLS, _PLACES, _SOLUTIONS = 64, 128, 128
-"""What a search keeps: cells that are still to be cut, candidates, roots of all branches together."""
+"""The sizes of the arrays of a scan: cells that are still to be cut, candidates, roots of all branches together."""
 _STACK = 36
-"""What a search needs of the stack (kB): its cells and candidates, and little more."""
+"""The stack that a scan needs (kB): its cells and candidates, and little more."""
 _OF_THE_SEARCH = (
     *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
     *("NEXT", "RESERVE", "RIM", "SEAM", "TOUCHED", "TURNED", "VANISHING"),
@@ -85,7 +85,7 @@ def part(kinematics: Kinematics) -> Part | None:
 
 @kept_by_identity(10)
 def _written(kinematics: Kinematics) -> Part:
-    """The same of one that fits: LinuxCNC and the core of the Python package take it as well."""
+    """Header and source of a mechanism that fits; LinuxCNC and the core of the Python package use them as well."""
     module = module_name(kinematics.mechanism.name)
     known = _known(kinematics, module)
     texts = {end: page(_templates().get_template(f"mechanism.{end}.j2").render(known)) for end in ("c", "h")}
@@ -106,7 +106,7 @@ def files(parts: Sequence[Part]) -> dict[str, str]:
 
 @cache
 def shared() -> Mapping[str, str]:
-    """The files that no mechanism changes."""
+    """The files that are the same for all mechanisms."""
     return {path: page(_templates().get_template(f"{path}.j2").render()) for path in _SHARED}
 
 
@@ -159,7 +159,7 @@ def _templates() -> Environment:
 
 
 def _known(kin: Kinematics, module: str) -> dict[str, Any]:
-    """What the templates of header and source arrange."""
+    """The values that the templates of header and source arrange."""
     found = functions(kin)
     read = {name for f in found for name in read_by(f.program) - f.given.keys()} | constants_read(kin)
     read |= constants_of_branches(kin) | constants_of_lanes(kin)
@@ -216,7 +216,7 @@ def _members(constants: dict[str, str] | Any) -> list[str]:
 
 
 def _head(kin: Kinematics) -> list[str]:
-    """What stands at the top of a header."""
+    """The lines at the top of a header."""
     mechanism = kin.mechanism
     lines = [*comment(f"{mechanism.name}: {mechanism.summary}"), ""]
     for joint in mechanism.joints:
@@ -233,7 +233,7 @@ def _head(kin: Kinematics) -> list[str]:
 
 
 def _needed(kin: Kinematics) -> str:
-    """Why an inverse without a reference is refused."""
+    """The reason why an inverse without a reference is refused."""
     held = [joint.name for joint in kin.mechanism.held_joints]
     return text(f"a reference is needed: it holds the value of {' and '.join(held)}") if held else "NULL"
 
@@ -256,7 +256,7 @@ def _further(kin: Kinematics, module: str, stored: dict[str, str]) -> dict[str, 
 
 
 def _every_root(kin: Kinematics, module: str, stored: dict[str, str]) -> list[str]:
-    """The function that finds all roots of a search; it is given what the search itself is."""
+    """The function that finds all roots of a scan; its arguments are those of the scan itself."""
     for program in kin.shared:
         for search in searches(program):
             names = arguments_of(program, kin)

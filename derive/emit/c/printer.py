@@ -1,6 +1,6 @@
 """Expressions in C.
 
-Names of the derivation stay as they are, in small letters; what all machines share has `softkin_` before it.
+Names of the derivation stay as they are, in small letters; names that all machines share begin with `softkin_`.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ WORDS = frozenset(
     "wchar_t xor xor_eq errno stdin stdout stderr EOF NULL NAN INFINITY HUGE_VAL DOMAIN OVERFLOW UNDERFLOW MAXFLOAT "
     "I PI DEG_TO_RAD RAD_TO_DEG HIGH LOW".split()
 )
-"""Words of C and C++, and macros of compilers and libraries, which are no names."""
+"""Words of C and C++, and macros of compilers and libraries, which cannot be names."""
 _RESERVED = re.compile(r"_[A-Z_]|softkin_|SOFTKIN_|(M|FP|HUGE|INT\d*|UINT\d*|SIZE|MATH)_[A-Z0-9_]+$")
-"""How names begin that the compiler, its library or the shared header has."""
+"""The beginnings of names that belong to the compiler, its library or the shared header."""
 _TAKEN = frozenset(
     "arguments axes context cos fabs finish found frame given joints k lane machine made margins missed misses near "
     "otherwise p parameters pass place reference results root rotation rows search signs sin sizes sqrt start status "
     "statuses system take turn turns values wanted why".split()
 )
-"""Names that a printed function needs for its own variables, and for what it calls."""
+"""Names that a printed function needs for its own variables and for the functions that it calls."""
 _TEXT = 80
 """The most columns of a text; a longer one is written as several."""
 
@@ -103,7 +103,7 @@ def number(value: float) -> str:
 
 @dataclass
 class C(ExpressionPrinter):
-    """Writes expressions: a choice evaluates one side alone. members: what is read from a struct, as it is written."""
+    """Writes expressions: a choice evaluates only one side. members: the spelling of values in a struct."""
 
     members: Mapping[str, str] = field(default_factory=dict)
 

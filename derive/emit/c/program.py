@@ -25,7 +25,7 @@ _PLACES = {name.name: f"place->{name.name}" for name in PLACE}
 
 
 def function_lines(function: Function, machine: str, constants: Mapping[str, str], reasons: Reasons) -> list[str]:
-    """The function. machine: the type of the struct of the machine; constants: where its members stand."""
+    """The function. machine: the type of the struct of the machine; constants: the spelling of its members."""
     program, read = function.program, read_by(function.program)
     body = Body(C({name: text for name, text in constants.items() if name not in function.given}), reasons)
     types = {s.name: type_of(s) for s in program.inputs}
@@ -54,7 +54,7 @@ def _reads(name: str, lines: Iterable[str]) -> bool:
 
 
 def taken(own: Sequence[tuple[str, str]], types: Mapping[str, str]) -> list[str]:
-    """Variables of one type a line for what stands in arrays and structs."""
+    """Variables for values in arrays and structs, with those of one type on one line."""
     lines = []
     for kind in ("double", "int", "bool"):
         names = [(spelled(name), place) for name, place in own if types[name] == kind]
@@ -80,11 +80,11 @@ class Body:
     declared: set[sp.Symbol] = field(default_factory=set)
     """The names that are declared before the choice that gives them."""
     numbered: dict[str, int] = field(default_factory=dict)
-    """How many arrays have a name."""
+    """For each word, the number of arrays with a name made of it."""
 
     @property
     def refusals(self) -> Refusals:
-        """How it refuses."""
+        """The refusals of the function."""
         return Refusals(self.reasons, self.printer)
 
     def lines(self, items: Sequence[Item]) -> list[str]:
@@ -98,7 +98,7 @@ class Body:
         return commented(f"{word}{spelled(let.name.name)} = {value};", let.comment)
 
     def solve(self, system: Solve, *, declares: bool = True) -> list[str]:
-        """Linear equations: the matrix with its right-hand sides in one array, where the solution stands then."""
+        """Linear equations: the matrix with its right-hand sides in one array, which then holds the solution."""
         size, columns = system.size, system.columns
         array, word = self.array("system"), "const double " if declares else ""
         rows = [
@@ -213,7 +213,7 @@ class Body:
         ]
 
     def sought(self, search: FindRoot) -> str:
-        """Where the search starts, and whether it is wanted."""
+        """The start of the scan, and whether the scan is wanted."""
         return f"{self.printer.print(search.start)}, {self.printer.print(search.wanted)}"
 
 

@@ -27,7 +27,7 @@ class Refusals:
         """The lines that refuse where conditions about one subject do not all hold."""
         notes = [] if sized(r.condition for r in requires) else comment(requires[0].comment)
         explained = [r for r in requires if r.reason is not None]
-        if len(explained) < len(requires):  # nobody is told why
+        if len(explained) < len(requires):  # callers get no reason
             head = f"if (!({self.condition([r.condition for r in requires])}))"
             return [*notes, *block(head, [f"return {refused(requires[0].otherwise, '')};"])]
         return [*notes, *(line for check in self.reasons.checks(requires) for line in self._check(check))]

@@ -25,7 +25,7 @@ from derive.kinematics.parameters import CHECK_LIMITS, TIE_OF_LENGTHS, WARNING_D
 from derive.report.reasons import Reasons
 
 SEARCHED = "searched"
-"""The constant that says whether the machine is searched, where this depends on a parameter."""
+"""The constant that says whether the machine needs a root scan, where this depends on a parameter."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def setup(kin: Kinematics, prefix: str, read: Collection[str], inputs: Inputs) -
 
 
 def _members(kin: Kinematics, inputs: Inputs) -> dict[str, str]:
-    """Where the parameters stand: real numbers, a flag not 0, a sign -1 or 1."""
+    """The spelling of the parameters: real numbers, a flag that is not 0, a sign that is -1 or 1."""
     forms = {Role.FLAG: "(p->{} != 0.0)", Role.SIGN: "(int)p->{}"}
     return {p.name: forms.get(p.role, "p->{}").format(inputs.names[p.name]) for p in kin.parameters}
 
@@ -87,7 +87,7 @@ def _may_be_searched(kin: Kinematics) -> bool:
 
 
 def _base(kin: Kinematics, values: Mapping[str, tuple[str, str]], inputs: Inputs) -> Iterator[str]:
-    """What all machines hold first."""
+    """The lines for the members that the structs of all machines begin with."""
     yield "0"
     yield f"p->{inputs.names[CHECK_LIMITS]} != 0.0"
     if _may_be_searched(kin):
@@ -99,7 +99,7 @@ def _base(kin: Kinematics, values: Mapping[str, tuple[str, str]], inputs: Inputs
 
 
 def _window(index: int, window: Window, inputs: Inputs, printer: C) -> list[str]:
-    """The range of an axis. Limits that are none refuse, even where no program reads the range."""
+    """The range of an axis. Invalid limits are refused, even where no program reads the range."""
     name, otherwise, lines = f"window_of_{window.key}", "NULL", list[str]()
     if window.fallback:
         condition, low, high = window.fallback[-1]

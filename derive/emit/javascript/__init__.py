@@ -2,8 +2,8 @@
 
 It may import no other folder of `emit`.
 
-description: what a module states about its machine, as plain data
-functions: which program becomes which function
+description: the description of a machine in its module, as plain data
+functions: the function of each program
 layout: indents, comments and long statements
 package: the files of a mechanism, and those of the runtime
 printer: expressions

@@ -1,4 +1,4 @@
-"""What a module states about its machine: axes, parameters, configuration, limits, singularities, as plain data."""
+"""The description of a machine in its module, as plain data: axes, parameters, configuration, limits, margins."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TURN = 360.0
 
 @kept_by_identity(10)
 def inputs(kinematics: Kinematics) -> Inputs:
-    """What the parameters are called: they are members of an object, whose names are free."""
+    """The names of the parameters: they are members of an object, which may have any name."""
     return inputs_of(kinematics, _JAVASCRIPT, {})
 
 
@@ -100,7 +100,7 @@ def _parameter(p: Parameter, name: str) -> dict[str, Any]:
 
 
 def _limits(mechanism: Mechanism, names: Mapping[str, str]) -> list[dict[str, Any]]:
-    """What has limits: the axes, then other quantities; `lower` and `upper` are parameters."""
+    """The axes, then the other quantities that have limits; `lower` and `upper` are parameters."""
     found = [(j.name, j.key, "deg" if j.in_degrees else "u", True) for j in mechanism.joints]
     found += [(q.name, q.name, "deg" if q.is_angle else "u", False) for q in mechanism.limited]
     return [

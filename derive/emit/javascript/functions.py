@@ -1,4 +1,4 @@
-"""Which program becomes which function: the arrays that it takes apart, and the shape of its result."""
+"""The function of each program: the arrays that it takes apart, and the shape of its result."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Function:
 
     @property
     def given(self) -> frozenset[str]:
-        """The names of what it is given, besides the constants of the machine."""
+        """The names of its arguments, besides the constants of the machine."""
         return frozenset(name for _, shape in self.arguments for name in names(shape))
 
 
@@ -58,12 +58,12 @@ def names(shape: Shape) -> Iterator[str]:
 
 
 def rotation_function() -> Function:
-    """The repair of a commanded rotation, which no mechanism changes."""
+    """The repair of a commanded rotation, which is the same for all mechanisms."""
     return Function("The rotation as it is used.", rotation_program(), (("rotation", ROTATION),), ROTATION)
 
 
 def functions(kin: Kinematics, parts: Parts | None) -> list[Function]:
-    """The functions of a module, each before its callers. parts: what is drawn, of a machine that has a drawing."""
+    """The functions of a module, each before its callers. parts: the drawn parts of a machine that has a drawing."""
     joints = kin.mechanism.joints
     axes = (("axes", tuple(j.axis.name for j in joints)),)
     pose = (("position", POSITION), ("rotation", ROTATION))

@@ -49,14 +49,14 @@ _RUNTIME = tuple(
     f"softkin/{name}.js"
     for name in ("configuration", "input", "limits", "numbers", "refusal", "roots", "rotation", "scene", "softkin")
 )
-"""The files that no mechanism changes; a machine may have the name of one of them."""
+"""The files that are the same for all mechanisms; a machine may have the name of one of them."""
 _AROUND = ("index.js", "package.json")
 _OF_THE_SEARCH = (
     *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
     *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
 )
 _TEXT = 90
-"""The most columns of a text; a longer one is a sum of several."""
+"""The largest number of columns of a text; a longer one is written as a sum."""
 _MEANINGS = {
     Status.OK: "no error",
     Status.NOT_INITIALIZED: "a parameter is not allowed",
@@ -143,7 +143,7 @@ def _module(kin: Kinematics, module: str) -> str:
 
 
 def _parts(kin: Kinematics) -> Parts | None:
-    """What is drawn of the machine; None where nothing can be drawn."""
+    """The drawn parts of the machine; None where nothing can be drawn."""
     try:
         return parts_of(kin)
     except Exception:  # whatever a drawing meets, the formulas are proven without it
@@ -159,7 +159,7 @@ def _drawn(kin: Kinematics) -> list[float] | None:
 
 
 def _head(kin: Kinematics) -> list[str]:
-    """What stands at the top of a module."""
+    """The lines at the top of a module."""
     mechanism = kin.mechanism
     lines = [*comment(f"{mechanism.name}: {mechanism.summary}"), ""]
     for joint in mechanism.joints:
@@ -195,7 +195,7 @@ def _further(kin: Kinematics) -> tuple[list[list[str]], list[str]]:
 
 
 def _all_joints(kin: Kinematics) -> list[str]:
-    """The function that finds all roots of a search; it is given what the search itself is."""
+    """The function that finds all roots of a scan; its arguments are those of the scan itself."""
     for program in kin.shared:
         for search in (s for s in program.body if isinstance(s, FindRoot)):
             constants = {o.name for o in kin.setup.outputs}
@@ -207,7 +207,7 @@ def _all_joints(kin: Kinematics) -> list[str]:
 
 
 def _imports(lines: Sequence[str]) -> list[str]:
-    """What the functions read of the runtime."""
+    """The names of the runtime that the functions use."""
     words = {word for line in lines for word in re.findall(r"[A-Za-z_]\w*", line.partition("// ")[0])}
     wanted = [n for n in (*RUNTIME, "refuseParameters") if n in words]
     return laid_out_list(sorted({*wanted, "createMachine", "freeze"}))

@@ -1,6 +1,6 @@
 """Expressions in JavaScript.
 
-Names of the derivation stay as they are, in small letters; what the runtime has, has a capital letter in its name.
+Names of the derivation stay as they are, in small letters; names of the runtime contain a capital letter.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ RUNTIME = (
     "DEGREE", "RADIAN", "Machine", "Refusal", "Status", "angleOf", "everyRoot", "isReasonable", "nearestOnArc",
     "nearestPeriod", "nearestRoot", "refuse", "solveLinear", "squareRoot", "turnInside",
 )  # fmt: skip
-"""What a module may import of the runtime."""
+"""The names that a module may import from the runtime."""
 _WORDS = frozenset(
     "arguments await break case catch class const continue debugger default delete do else enum eval export extends "
     "false finally for function if implements import in instanceof interface let new null package private protected "
     "public return static super switch this throw true try typeof undefined var void while with yield".split()
 )
-"""Words of JavaScript, which are no names."""
+"""Words of JavaScript, which cannot be names."""
 TAKEN = frozenset({"axes", "found", "given", "k", "p", "pass", "point", "offset", "position", "reference", "refuse",
                    "rotation", "signs", "start", "turn", "turns", "window"})  # fmt: skip
 """Names that a printed function needs for its own variables."""
@@ -66,7 +66,7 @@ def function_name(program: str) -> str:
 
 
 class JavaScript(ExpressionPrinter):
-    """Writes expressions: a choice evaluates one side alone."""
+    """Writes expressions: a choice evaluates only one side."""
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
         if isinstance(node, sp.Not):

@@ -13,7 +13,18 @@ from derive.emit.javascript.layout import comment, commented
 from derive.emit.javascript.printer import PRINTER, function_name, list_of, names_of, spelled
 from derive.emit.javascript.refusal import Refusals, condition_of
 from derive.ir.primitives import Select
-from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, binds, expressions, told
+from derive.ir.program import (
+    Call,
+    FindRoot,
+    Iterate,
+    Let,
+    Program,
+    Require,
+    Solve,
+    binds,
+    expressions,
+    reason_expressions,
+)
 from derive.ir.symbols import PLACE, symbols_of
 from derive.ir.tree import If, Item, grouped
 from derive.lowering.decided import decided
@@ -42,15 +53,17 @@ def _taken(constant: str) -> str:
 
 
 def read_by(program: Program) -> set[str]:
-    """What a program reads by itself: what those read that it calls is their affair."""
-    values = [e for s in program.body for e in (*expressions(s), *told(s))] + [o.value for o in program.outputs]
+    """The names that a program itself reads, without those that only its called programs read."""
+    values = [e for s in program.body for e in (*expressions(s), *reason_expressions(s))] + [
+        o.value for o in program.outputs
+    ]
     given = {g.name for s in program.body if isinstance(s, FindRoot) for p in (s.trial, s.finish) for g in s.given(p)}
     found = {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
     return found - {s.name for s in program.bound()}
 
 
 def _target(shape: Shape, read: set[str]) -> str:
-    """A pattern that takes an array apart; what is not read has no name."""
+    """A pattern that takes an array apart; values that are not read have no name."""
     if isinstance(shape, str):
         return spelled(shape) if shape in read else ""
     parts = [_target(part, read) if read & set(names(part)) else "" for part in shape]
@@ -69,7 +82,7 @@ class _Body:
 
     refusals: Refusals
     calls: int = 0
-    """How many results of calls have a name."""
+    """The number of results of calls that have a name."""
     declared: set[sp.Symbol] = field(default_factory=set)
     """The names that are declared before the choice that gives them."""
 

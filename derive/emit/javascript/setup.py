@@ -54,7 +54,7 @@ def setup_lines(kin: Kinematics, read: Collection[str], inputs: Inputs) -> list[
 
 
 def _window(window: Window, read: Collection[str], values: dict[str, str]) -> list[str]:
-    """The range of an axis. Limits that are none refuse, even where no program reads the range."""
+    """The range of an axis. Invalid limits are refused, even where no program reads the range."""
     given, place = [text(window.key)], f"window_of_{window.key}"
     if window.fallback:
         condition, low, high = window.fallback[-1]

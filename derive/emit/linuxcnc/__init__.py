@@ -1,9 +1,9 @@
-"""Kinematics modules of LinuxCNC: one C source a mechanism, written on demand around what `c` writes of it.
+"""Kinematics modules of LinuxCNC: one C source a mechanism, written on demand around the output of `c`.
 
 It may import the folders of `emit` but `page`, `softmotion` and `st`. The calls of LinuxCNC and its HAL stand in
 `templates/linuxcnc`.
 
 head: the comment at the top of a module: joints, letters, flags and pins
 package: the source of a mechanism, which needs no other
-words: which coordinate of a pose of LinuxCNC means what on a machine
+words: the meaning of each coordinate of a LinuxCNC pose on a machine
 """

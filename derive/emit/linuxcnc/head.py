@@ -1,4 +1,4 @@
-"""What stands at the top of a module: joints, letters, flags and pins of the machine."""
+"""The comment at the top of a module: joints, letters, flags and pins of the machine."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which coordinate of a pose of LinuxCNC (X Y Z A B C U V W) means what on a machine."""
+"""The meaning of each coordinate of a LinuxCNC pose (X Y Z A B C U V W) on a machine."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _TURN = "turn z"
 
 
 class Orientation(Enum):
-    """What A, B and C say of the orientation."""
+    """The meaning of A, B and C for the orientation."""
 
     NONE = "none"
     """Nothing: the machine follows no commanded rotation."""
@@ -36,7 +36,7 @@ class Orientation(Enum):
 
 @dataclass(frozen=True)
 class Words:
-    """What the letters of a machine are."""
+    """The meanings of the letters of a machine."""
 
     orientation: Orientation
     of_joints: tuple[str, ...]
@@ -87,8 +87,8 @@ def _orientation(kin: Kinematics, turning: Sequence[Joint]) -> Orientation:
 
 
 def flange_of(kin: Kinematics) -> sp.Expr | None:
-    """1 where the z axis of the flange is that of the machine, -1 where it looks down, or the constant that says which
-    of both; None where it is not along that axis.
+    """1 where the z axis of the flange has the direction of the machine's, -1 where it is opposite, or the constant of
+    the machine with this sign; None where the two are not parallel.
     """
     entries = {o.name: o.value for o in kin.forward.outputs}
     is_along = all(entries[name] == 0 for name in ("r13", "r23", "r31", "r32"))
@@ -120,7 +120,7 @@ def _others_are_straight(kin: Kinematics, turning: Sequence[Joint]) -> bool:
 
 
 def _rotary_letters(turning: Sequence[Joint]) -> dict[Joint, str]:
-    """A, B, C by the names of the joints; what has another name takes the letters that are left, in their order."""
+    """A, B and C for joints with these names; joints with other names take the remaining letters, in their order."""
     found = {joint: joint.name for joint in turning if joint.name in _ROTARY and len(joint.name) == 1}
     free = iter(letter for letter in _ROTARY if letter not in found.values())
     return {joint: found.get(joint) or next(free) for joint in turning}

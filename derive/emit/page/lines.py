@@ -26,7 +26,7 @@ class Case:
 
     value: tuple[str, ...]
     condition: tuple[str, ...]
-    """Where it has it; empty: otherwise."""
+    """The condition under which the name has this value; empty: in all other cases."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Line:
     name: str = ""
     """The element of the name that is bound."""
     math: tuple[str, ...] = ()
-    """What stands behind it: elements, one for each line."""
+    """The value behind the name: elements, one for each line."""
     cases: tuple[Case, ...] = ()
     note: str = ""
     depth: int = 0

@@ -64,7 +64,7 @@ def spelling_of(kinematics: Kinematics) -> Spelling:
 
 
 def _found_by_the_base(kinematics: Kinematics) -> Iterator[tuple[str, str]]:
-    """The values that the base block finds, each with what it is there: to which value an axis is the nearest."""
+    """The values that the base block finds, each with its spelling there: the value next to which a turn is chosen."""
     for index, joint in enumerate(kinematics.mechanism.joints):
         if joint in kinematics.period_joints:
             yield f"near_{joint.key}", f"choice.aNear[{index}]"
@@ -81,7 +81,7 @@ def _names(kinematics: Kinematics, programs: Sequence[Program]) -> list[str]:
 
 
 def _split(text: str) -> list[str]:
-    """The words of a text and what stands between them."""
+    """The words of a text, and the characters between them."""
     found: list[str] = []
     for letter in text:
         is_word = letter.isalnum() or letter == "_"

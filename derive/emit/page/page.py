@@ -37,7 +37,7 @@ _BESIDE = 54
 
 @dataclass(frozen=True)
 class Page:
-    """A page: its file, and what the index says of it."""
+    """A page: its file, and its entry in the index."""
 
     file: str
     title: str
@@ -48,7 +48,7 @@ class Page:
 
 @dataclass(frozen=True)
 class ShownProgram:
-    """A program on the page: what it is called in the block and in Python, its lines, its outputs."""
+    """A program on the page: its names in the block and in Python, its lines, its outputs."""
 
     anchor: str
     title: str
@@ -57,7 +57,7 @@ class ShownProgram:
 
 
 def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = True, viewer: str = "") -> Page:
-    """The page of a machine. kinematics: what the build made of the mechanism, measured where a witness has.
+    """The page of a machine. kinematics: the result of the build, with the witness's measurements where it has any.
 
     has_pictures: with the drawing, the machine in its singular poses, and maps; without, the formulas alone.
     viewer: the file that shows the machine in the browser, from where this page stands; empty where there is none.
@@ -194,6 +194,6 @@ def _program(program: Program, anchor: str, title: str, lines: Lines) -> ShownPr
 
 
 def _margin(margin: Margin, factors: Mapping[str, Factor], lines: Lines) -> tuple[str, ...]:
-    """What a margin is, in the names of the derivation; nothing of a determinant that no formula is derived for."""
+    """The formula of a margin, in the names of the derivation; empty for a determinant without a derived formula."""
     factor = factors.get(margin.name)
     return () if factor is None else lines.math.lines(factor.value, _BESIDE)

@@ -25,7 +25,7 @@ from derive.report.workspace_map import slices
 
 _SIZE = (440.0, 340.0)
 _TURNED = (25.0, 40.0, -30.0, 35.0, 50.0, 20.0)
-"""Added to the drawn pose where that is singular itself: a map is of no use there."""
+"""Added to the drawn pose where it is singular itself, because a map of a singular pose is of no use."""
 _SINGULAR = 1e-3
 
 
@@ -51,7 +51,7 @@ def pictured(kinematics: Kinematics, names: Mapping[str, str]) -> Pictured:
     try:
         drawing = drawing_of(kinematics)
         sheet = page(drawing, kinematics.mechanism.block_name, names)
-    except Exception as problem:  # whatever a drawing meets, the formulas are proven without it
+    except Exception as problem:  # the formulas are proven without a drawing, whatever its error
         return Pictured(machine, pose, None, Markup(""), " ".join(str(problem).split()))
     title = f"{kinematics.mechanism.block_name}: joints, axes and dimensions"
     return Pictured(machine, pose, drawing, drawn(sheet.marks, WIDTH, sheet.height, title), "")
@@ -95,7 +95,7 @@ def _singular(found: Pictured, at: SingularPose, names: Mapping[str, str]) -> Ma
 
 
 def _scene(machine: Machine, at: SingularPose) -> Scene | None:
-    """The machine there; where a bar has no direction, a hair beside."""
+    """The machine in this pose; where a bar has no direction there, in a pose very near to it."""
     for axes in (at.axes, at.beside):
         pose = pose_at(machine, axes) if at.frame is None else Pose(axes, at.frame, ())
         try:
@@ -116,7 +116,7 @@ class Map:
 
 
 def maps(found: Pictured) -> Iterator[Map]:
-    """The maps of the workspace; none where the machine has no pose that is drawn, or commands too little."""
+    """The maps of the workspace; none where no pose of the machine is drawn, or its task has too few coordinates."""
     if found.pose is None:
         return
     pose = _regular(found.machine, found.pose)

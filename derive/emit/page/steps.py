@@ -1,4 +1,4 @@
-"""The derivation on a page: its closure, what is known, its steps, and the tree of its branches."""
+"""The derivation on a page: its closure, the known values, its steps, and the tree of its branches."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ FORMS = {
     "spheres": "circles or spheres about known points: two solutions",
     "sum": "the sum of parallel angles, less those that are known",
 }
-"""What each rule solves."""
+"""The equation that each rule solves."""
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,9 @@ class ShownStep:
     free: str
     """The unknown that is free where a value vanishes; empty where there is none."""
     free_where: tuple[str, ...]
-    """That this value is zero."""
+    """The equation that says that this value is zero."""
     refused: tuple[tuple[str, ...], ...]
-    """What Initialize refuses."""
+    """The conditions that Initialize tests."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class Leaf:
 
 
 _DEEPEST = 3
-"""Branches up to this number are a tree; of more, every byte is told by itself."""
+"""Up to this number of branches are shown as a tree; of more, every byte is listed by itself."""
 
 
 def route_of(route: Route, mechanism: Mechanism, lines: Lines) -> ShownRoute:
@@ -104,7 +104,7 @@ def route_of(route: Route, mechanism: Mechanism, lines: Lines) -> ShownRoute:
 
 
 def _needed(route: Route) -> list[Statement]:
-    """What is bound before the first step and read in it or later."""
+    """The statements whose values are bound before the first step and read in it or later."""
     wanted = {s for e in route.equations for s in names_in(e.expression)}
     for step in route.steps:
         wanted |= {s for e in step.equations for s in names_in(e.expression)}
@@ -179,7 +179,7 @@ def _below(names: Sequence[str], known: Mapping[str, tuple[int, Branch]]) -> Ite
 
 
 def product_of(factors: Sequence[Factor], lines: Lines) -> tuple[str, ...]:
-    """The product of a chain as the description has it, a line for every few factors."""
+    """The product of a chain as the description writes it, a line for every few factors."""
     rows: list[Row] = [_factor(f, lines) for f in factors]
     found: list[str] = []
     line: Row = ()

@@ -1,4 +1,4 @@
-"""The tables of a page: axes, parameters, names in the block, margins, what was measured, and operations."""
+"""The tables of a page: axes, parameters, names in the block, margins, measurements, and operations."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def numbers(kinematics: Kinematics, spelling: Spelling) -> Iterator[Cells]:
 
 
 def measured(kinematics: Kinematics) -> Iterator[Cells]:
-    """What the witness measured, how, and the result."""
+    """The measurements of the witness: the quantity, the method, the result."""
     found = kinematics.evidence
     if found is None:
         return
@@ -90,13 +90,13 @@ def operations(kinematics: Kinematics) -> Iterator[Cells]:
     slots = 2 ** len(kinematics.branches)
     if kinematics.branches:
         rows.append(("Inverse kinematics, one branch", costs.inverse))
-        rows.append((f"Inverse kinematics, all {slots} branches open", costs.automatic))
+        rows.append((f"Inverse kinematics, all {slots} branches", costs.automatic))
     else:
         rows.append(("Inverse kinematics", costs.inverse))
     more: Sequence[tuple[str, Cost]] = (
-        ("Check of an exact frame, more", costs.exact),
-        ("Repair of a frame, more", costs.repair),
-        ("A branch at a singular pose, more", costs.corners),
+        ("In addition: check of an exact frame", costs.exact),
+        ("In addition: repair of a frame", costs.repair),
+        ("In addition: a branch at a singular pose", costs.corners),
     )
     rows += [(what, cost) for what, cost in more if any(cost.counts)]
     for what, cost in rows:
@@ -110,7 +110,7 @@ def bounds(kinematics: Kinematics) -> Iterator[str]:
 
 
 def functions(text: str) -> Iterator[Cells]:
-    """The functions that a page has, and what they are."""
+    """The functions on a page, with their definitions."""
     meanings = (
         ("√", "square root; of a radicand that is negative by rounding it is 0"),
         ("atan2", "atan2(y, x): the angle of the direction (x, y), from −π to π; atan2(0, 0) = 0"),

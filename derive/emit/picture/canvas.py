@@ -31,7 +31,7 @@ _DOTS = 72
 _PART = 64
 """A pixel in the units of a font."""
 _GROUND = 0.82
-"""How much of what is below it the ground of a text covers."""
+"""The opacity of the ground behind a text."""
 _SHADES = 8
 """Steps from the colour of a mark to that of the paper, for the pixels that the mark covers in part."""
 Bytes = NDArray[np.uint8]
@@ -63,8 +63,8 @@ def _png(marks: Sequence[Mark], height: int) -> bytes:
 
 
 class _Page:
-    """A page on which matplotlib draws. Its renderer is asked without figures and artists, which take most of the time
-    of a drawing.
+    """A page on which matplotlib draws. Its renderer is used without figures and artists, which would take most of the
+    time of a drawing.
     """
 
     def __init__(self, height: int) -> None:
@@ -157,7 +157,7 @@ class _Letters:
     covered: Bytes
     """How much of each pixel it covers, in rows from below."""
     aside: float
-    """Where the first column is, from the begin of its line; `up` is where the first row is."""
+    """The position of the first column, from the begin of its line; `up` is the position of the first row."""
     up: int
 
 

@@ -15,7 +15,7 @@ from derive.emit.picture.symbols import STEPS, arc
 from derive.emit.picture.view import View
 
 _SECOND = 45.0
-"""What a leader costs where a dimension line has room."""
+"""The cost of a leader where a dimension line has room."""
 _FREE = 12.0
 """How far the ends of a dimension line must be from its text, in pixels."""
 _SHORT = 26.0

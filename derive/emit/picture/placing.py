@@ -19,13 +19,13 @@ _OVER_TEXT, _ANY_TEXT, _OVER_INK, _THROUGH, _ON_LINE, _OUTSIDE = 3.0, 400.0, 3.0
 """The cost of a covered pixel of text, of any text that is covered, of a covered piece of a line, of a piece of a
 label's line through another label and along or across another label's line, and of a place outside the page."""
 _ROUNDS = 8
-"""How often all labels are placed again."""
+"""The number of times that all labels are placed again."""
 _ROWS = 1 << 12
 """More than the page has rows or columns of cells."""
 _NOWHERE = np.zeros((0, 2))
 _AROUND = np.array([(np.cos(angle), np.sin(angle)) for angle in np.arange(0.0, 2 * np.pi, np.pi / 8)])
 _WIDER = np.array([1.35, 1.0])
-"""Texts are wider than high, and so is what is around a point."""
+"""Texts are wider than high, and so is the ring of places around a point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,8 +133,8 @@ class Sheet:
 
 
 def _beside(label: _Label, others: Sequence[tuple[_Label, int]]) -> Vector:
-    """The cost of every place of a label beside others at their places: of text on text, and of lines of the one
-    through the text of the other.
+    """The cost of every place of a label beside other labels at their places: text covers text, or a line of one label
+    goes through the text of another.
     """
     own, extents = label.extents[:, None], np.array([other.extents[place] for other, place in others])
     wide = np.minimum(own[:, :, 2], extents[:, 2]) - np.maximum(own[:, :, 0], extents[:, 0])

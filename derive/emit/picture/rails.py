@@ -14,7 +14,7 @@ from derive.emit.picture.view import View
 _TRAVEL = 0.34
 """The length of a rail over the size of the machine."""
 FREE = 100.0
-"""The size that is drawn for a machine without lengths."""
+"""The size with which a machine without lengths is drawn."""
 _BACK = 0.25
 """The part of a rail that lies behind its zero."""
 _ASIDE, _ALONE = 15.0, 64.0

@@ -11,7 +11,7 @@ from derive.emit.picture.ink import Area, Line, Mark, Spot, Text
 _FAMILY = "DejaVu Sans, Verdana, sans-serif"
 """A viewer that lacks the font takes one of the same width."""
 ALIKE = f'font-family="{_FAMILY}" stroke-linejoin="round" stroke-linecap="round"'
-"""What all elements have in common: attributes of what they stand in."""
+"""Attributes that all elements have in common; their parent element has them."""
 MIDDLE = 0.35
 """The height of the middle of small letters above their line, as a share of their size."""
 

@@ -37,7 +37,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.lowering.scheduling import scheduled
 
 OF_A_SEARCH = 120_000
-"""The values of one row of a root scan, whose trials are computed together: measured."""
+"""The number of values for one row of a root scan, whose trials are computed together: measured."""
 CALLED = frozenset((
     "DEGREE", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc",
     "nearest_period", "opposite", "passed", "reasonable", "require", "root", "select", "settled", "sin", "solve",
@@ -51,7 +51,7 @@ TYPES = frozenset((
 
 
 def named_in(lines: Iterable[str], names: Collection[str]) -> set[str]:
-    """Those of the names that occur in the statements."""
+    """The given names that occur in the statements."""
     return words(lines) & set(names)
 
 
@@ -116,6 +116,6 @@ def _refused_late(body: Iterable[Statement]) -> list[Statement]:
 
 
 def values_of_a_row(kin: Kinematics) -> int:
-    """The values of one row on the way through the inverse: inputs, results, and what stands between them."""
+    """The number of values of one row in the inverse: inputs, intermediate values, results."""
     programs = (kin.branch, *kin.shared)
     return sum(len(p.inputs) + len(p.bound()) for p in programs) + OF_A_SEARCH * any(map(has_search, kin.shared))

@@ -10,7 +10,7 @@
     sin_q1 = across_q1/length_q1
     cos_q1, sin_q1 = elsewhere(length_q1 > 1e-11, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
 
-Programs are total, so that the first side does no harm in rows that are on the second, which are few as a rule. Where
+Programs are total, so that the first side does no harm in rows that take the second, which usually are few. Where
 nothing has to be computed on the second side:
 
     turn_q1 = select(absolute(rate_q1) > 1e-12, excess_q1/rate_q1, 0.0)
@@ -43,7 +43,7 @@ from derive.ir.tree import If, Item, given_to, read_in
 def array_arm_lines(
     arms: If, constants: Collection[sp.Symbol], lines: Callable[[Item], list[str]], printer: ScalarPrinter
 ) -> list[str]:
-    """The choice. constants: what is the same in all rows, so that a choice that only they decide is made once."""
+    """The choice. constants: the names with one value for all rows; a choice that only they decide is made once."""
     condition, results = printer.print(arms.condition), [spelled(name.name) for name in arms.names]
     if symbols_of(arms.condition) <= set(constants):
         holds, fails = ([line for item in side for line in lines(item)] for side in (arms.holds, arms.fails))
@@ -82,7 +82,7 @@ def array_arm_lines(
 def _side(
     side: Sequence[Item], names: Sequence[sp.Symbol], printer: ScalarPrinter, *, is_written_out: bool = False
 ) -> tuple[list[Item], list[str]]:
-    """What a side computes, and the results: what is there already needs no other name. Notes stand before the choice.
+    """The statements of a side, and its results: a value that has a name needs no other. Notes stand before the choice.
 
     is_written_out: whether a result that nothing else on the side reads stands where it is chosen.
     """
@@ -104,12 +104,12 @@ def _side(
 
 
 def _kind(name: sp.Symbol) -> str:
-    """What a name is in rows."""
+    """The type of a name on arrays."""
     return "Truth" if isinstance(name, Flag) else "Whole" if is_count(name) else "Real"
 
 
 def _unused(function: str, holds: Sequence[str]) -> str:
-    """A name that no choice on the first side has: it would take the place of this one before it is called."""
+    """A function name that no choice on the first side has: that would replace this function before its call."""
     number, found = 1, function
     while any(line.startswith(f"def {found}(") for line in holds):
         number += 1
@@ -118,7 +118,7 @@ def _unused(function: str, holds: Sequence[str]) -> str:
 
 
 def fixed(body: Iterable[Statement], constants: Iterable[sp.Symbol]) -> set[sp.Symbol]:
-    """What is the same in all rows: constants, and what is computed from nothing else."""
+    """The names with one value for all rows: constants, and values computed from constants alone."""
     found = set(constants)
     for statement in body:
         if isinstance(statement, Let) and symbols_of(statement.value) <= found:

@@ -1,4 +1,4 @@
-"""What a generated class states about itself: its axes, parameters and configuration bytes, as constructor calls."""
+"""The description of a machine in its class: axes, parameters and configuration bytes, as constructor calls."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ _CLASSES = frozenset(
     "OrientationKinematics OrientationPrograms Parameter PlainFrame Pose Programs Reals Rotation SearchedInverse Signs "
     "Singularity Solution StartedPrograms Status TotalImage Turns TwistChoice Values Vector".split()
 )
-"""What the package offers, and what modules of mechanisms import: no class of a mechanism is called so."""
+"""Names that the package offers or modules of mechanisms import: no class of a mechanism may have one."""
 _MODULES = frozenset("annotations catalogue core import_module orthonormalize".split())
-"""What stands in the package beside its modules: to import one of this name would replace it."""
+"""Names in the package that are no modules: to import a module with one of these names would replace them."""
 
 
 def class_name(name: str, better: str | None) -> str:
@@ -77,7 +77,7 @@ def usual(role: Role) -> dict[str, object]:
 
 
 def parameters(kin: Kinematics) -> list[str]:
-    """The parameters of the class: kind, name and meaning, then what differs from the usual of its kind."""
+    """The parameters of the class: kind, name and meaning, then the values that are not usual for the kind."""
     names = inputs(kin).names
     return _tuple(_parameter(p, names[p.name]) for p in kin.parameters)
 
@@ -89,7 +89,7 @@ def _parameter(p: Parameter, name: str) -> str:
 
 
 def limit_keys(kin: Kinematics) -> str:
-    """What has limits, by the last part of the names of their parameters."""
+    """The axes and quantities with limits, by the last part of the names of their limits."""
     return literal((*(j.key for j in kin.mechanism.joints), *(q.name for q in kin.mechanism.limited)))
 
 
@@ -105,7 +105,7 @@ def configuration(kin: Kinematics) -> list[str]:
 
 
 def turn_sizes(kin: Kinematics) -> str:
-    """How many turns a joint makes in one of its axis, of every axis with a period byte; empty without gears."""
+    """The turns of the joint per turn of its axis, for every axis with a period byte; empty without gears."""
     if not any(j.is_geared for j in kin.period_joints):
         return ""
     sizes = (j.turns for j in kin.period_joints)
@@ -118,8 +118,8 @@ def costs(kin: Kinematics) -> list[str]:
     found = costs_of(kin)
     rows = [f"forward: {_operations(found.forward)}", f"inverse: {_operations(found.inverse)}"]
     if kin.branches:
-        rows.append(f"inverse, all {2 ** len(kin.branches)} branches open: {_operations(found.automatic)}")
-    more = {"repair of a frame, more": found.repair, "a branch at a singular pose, more": found.corners}
+        rows.append(f"inverse, all {2 ** len(kin.branches)} branches: {_operations(found.automatic)}")
+    more = {"repair of a frame, in addition": found.repair, "a branch at a singular pose, in addition": found.corners}
     rows += [f"{what}: {_operations(cost)}" for what, cost in more.items() if any(cost.counts)]
     return [*rows, *(f"{b.note}: at most {b.limit} passes, all of which are counted" for b in found.bounds)]
 
@@ -132,13 +132,13 @@ def _operations(cost: Cost) -> str:
 
 
 def described(kin: Kinematics) -> list[str]:
-    """A line for each parameter: what the class calls it, its meaning, and its unit."""
+    """A line for each parameter: its name in the class, its meaning, and its unit."""
     names = inputs(kin).names
     return [f"{names[p.name]}: {p.meaning}" + (f" [{p.unit}]" if p.unit else "") for p in kin.parameters]
 
 
 def notes(kin: Kinematics) -> list[str]:
-    """What is to be known, in the names of the class; the parameters that are called otherwise here come last."""
+    """The notes on the mechanism, in the names of the class; those on parameters with another name here come last."""
     given = inputs(kin)
     return [*map(given.told, kin.mechanism.all_notes), *given.notes]
 
@@ -189,7 +189,7 @@ def _tuple(entries: Iterable[str]) -> list[str]:
 
 
 _OF_INIT = frozenset({"self", "locals", "unrolled", "Constants", "limits"})
-"""What the text of `__init__` reads."""
+"""The names that the text of `__init__` reads."""
 OF_CLASS = frozenset(
     """
     AXES BRANCHES CONFIGURATION DEFAULT_CONFIGURATION DISTANCE_AXES FREEDOM HELD JACOBIAN_ROWS KEY LIMIT_KEYS MARGINS
@@ -200,7 +200,7 @@ OF_CLASS = frozenset(
     path project singularity singularity_batch to_dict to_json twist with_base with_tool
     """.split()
 )
-"""What a class has beside its parameters, which are attributes of it."""
+"""The attributes of a class besides its parameters."""
 
 
 @kept_by_identity(10)
@@ -218,7 +218,7 @@ def _meaning(name: str) -> str | None:
 
 
 def _others(parameter: Parameter, wish: str) -> Iterator[str]:
-    """As Python writes a name that is a word of its own, then with the kind of the parameter."""
+    """Other names: first with an underscore, as usual for words of Python, then with the kind of the parameter."""
     plain = wish.lstrip("_") or "value"
     if _meaning(wish) is not None:
         yield f"{plain}_"

@@ -44,7 +44,7 @@ _MADE = ("Axis", "ConfigurationByte", "Diagnosis", "Parameter", "Status")
 
 
 def index(kin: Kinematics) -> dict[str, Any]:
-    """What the lists of the package say of a mechanism."""
+    """The entry of a mechanism in the lists of the package."""
     mechanism = kin.mechanism
     return {
         "name": mechanism.name,
@@ -76,7 +76,7 @@ def modules(kin: Kinematics) -> dict[str, str]:
 
 
 def _class_context(kin: Kinematics, arrays: Sequence[Method], lean: Unrolled | None) -> dict[str, Any]:
-    """What the text of the class reads; `lean` are the branches in a straight line, where it has them."""
+    """The values that the template of the class reads; `lean` are its branches in a straight line, if any."""
     scalar = methods(kin)
     reasons = explained(reasons_of(kin))
     bodies = [scalar_body(m, reasons) if m.is_explained else scalar_body(_untold(m)) for m in scalar]
@@ -124,7 +124,7 @@ def _called(kin: Kinematics, bodies: Sequence[Sequence[str]], further: Sequence[
 
 
 def _array_context(kin: Kinematics, arrays: Sequence[Method]) -> dict[str, Any]:
-    """What the text of the programs on arrays reads."""
+    """The values that the template of the programs on arrays reads."""
     array_programs = _array_programs(kin)
     texts = [(_array_head(m), array_body(m)) for m in arrays]
     lines = [line for head, body in texts for line in (head, *body)]

@@ -1,4 +1,4 @@
-"""Which program becomes which method: the arguments that it unpacks, and the shape of its result."""
+"""The method of each program: the arguments that it unpacks, and the shape of its result."""
 
 from __future__ import annotations
 
@@ -180,7 +180,7 @@ def limits(kin: Kinematics) -> Method:
 
 
 def _quantities(kin: Kinematics) -> list[Method]:
-    """The quantities beside the axes that have limits: what the test of the limits computes of them."""
+    """The quantities other than axes that have limits, as the test of the limits computes them."""
     if not kin.limited:
         return []
     names = [value_of(quantity) for quantity in kin.limited]

@@ -88,7 +88,7 @@ def files(parts: Sequence[Part]) -> dict[str, str]:
 
 
 def texts(parts: Sequence[Part], package: str) -> dict[str, str]:
-    """The same before it is laid out, for a package of any name; modules import each other from `softkin`."""
+    """All files before their layout, for a package of any name; modules import each other from `softkin`."""
     listed = [part["index"] for part in parts]
     listed.sort(key=lambda entry: entry["module"])
     exports = in_order({*_EXPORTS, *(entry["class_name"] for entry in listed)})

@@ -29,8 +29,8 @@ from derive.ir.program import (
     Require,
     Solve,
     expressions,
+    reason_expressions,
     rewritten,
-    told,
 )
 from derive.ir.symbols import (
     PLACE,
@@ -57,11 +57,11 @@ class Argument:
     """Its type: `Axes`, `Vector`, `Rotation`, `Signs`, `Turns`."""
     shape: tuple[Shape, ...]
     default: str = ""
-    """What stands for None; empty where there has to be a value."""
+    """The value in place of None; empty where a value is required."""
 
     @property
     def declared(self) -> str:
-        """As it stands in the head of a function."""
+        """The argument in the head of a function."""
         return f"{self.name}: {self.kind} | None = None" if self.default else f"{self.name}: {self.kind}"
 
     @property
@@ -136,7 +136,7 @@ def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[
 
 
 def _unnoted(item: Item, names: Sequence[sp.Symbol]) -> Item:
-    """The statement without its note, if that stands before the choice that gives it."""
+    """The statement without its note, if the note stands above the choice that binds the name."""
     return replace(item, note="", turn_of="") if isinstance(item, Let) and item.name in names else item
 
 
@@ -145,7 +145,7 @@ def _side(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> 
 
 
 def _turn_lines(let: Let, value: NearestPeriod, printer: ScalarPrinter) -> list[str]:
-    """A value that is nearly always in its interval: asked first, because a call takes longer."""
+    """A value that is nearly always in its interval: this is tested first, because a call takes longer."""
     name, centre = spelled(let.name.name), printer.print(value.args[1])
     low, high = (literal(side * 180.0 - float(EDGE)) for side in (-1, 1))
     away = name if value.args[1] == 0 else f"{name} - {centre}" if value.args[1].is_Symbol else f"{name} - ({centre})"
@@ -162,7 +162,7 @@ def has_search(program: Program) -> bool:
 
 
 def without_conversions(program: Program) -> Program:
-    """The program with whole numbers where they multiply: Python converts them by itself."""
+    """The program without conversions of whole numbers: where they multiply, Python converts them by itself."""
     own = {
         let.name: let.value for let in program.lets() if isinstance(let.value, ToReal) and let.value.args[0].is_Symbol
     }
@@ -194,7 +194,7 @@ def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
 
 
 def unpacked(method: Method) -> list[str]:
-    """The arguments by the names that the program reads; what it does not read is `_`."""
+    """The arguments, unpacked to the names that the program reads; a value that it does not read is `_`."""
     read = _read(method.program)
     lines: list[str] = []
     for argument in method.arguments:
@@ -204,8 +204,10 @@ def unpacked(method: Method) -> list[str]:
 
 
 def _read(program: Program) -> set[str]:
-    """What a program reads by itself: what those read that it calls is their affair."""
-    values = [e for s in program.body for e in (*expressions(s), *told(s))] + [o.value for o in program.outputs]
+    """The names that a program itself reads, without those that only its called programs read."""
+    values = [e for s in program.body for e in (*expressions(s), *reason_expressions(s))] + [
+        o.value for o in program.outputs
+    ]
     given = {g.name for s in program.body if isinstance(s, FindRoot) for p in (s.trial, s.finish) for g in s.given(p)}
     found = {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
     return found - {s.name for s in program.bound()}
@@ -235,13 +237,13 @@ def constant_lines(method: Method, owner: str = "self._constants") -> list[str]:
 
 
 def constants_of(method: Method) -> list[str]:
-    """What a method reads besides its arguments, in alphabetical order."""
+    """The names that a method reads besides its arguments, in alphabetical order."""
     given = {name for argument in method.arguments for name in names(argument.shape)}
     return sorted(_read(method.program) - given)
 
 
 def values_of(method: Method, printer: ScalarPrinter) -> str:
-    """What a method returns where nothing refuses, in its shape; empty where it returns nothing."""
+    """The values that a method returns where nothing refuses, in its shape; empty where it returns nothing."""
     values = {o.name: printer.print(o.value) for o in method.program.outputs}
 
     def text(shape: Shape) -> str:

@@ -19,7 +19,7 @@ from derive.report.reasons import Check, Reasons
 
 _SCALAR = ScalarPrinter()
 _MANY = 3
-"""So many values or more are tested for size by a call."""
+"""At least this many values are tested for size by a call."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Refusals:
 
     answer: Callable[[Status], str]
     success: str = field(default="Status.OK", kw_only=True)
-    """What a body without results returns where no condition refuses."""
+    """The return value of a body without results where no condition refuses."""
 
     def lines(self, requires: Sequence[Require]) -> list[str]:
         """The lines that refuse where conditions with the same refusal do not all hold."""
@@ -125,7 +125,7 @@ class Limits:
 
 
 def _unless(conditions: Sequence[sp.Basic]) -> str:
-    """The `if` in front of what is done where conditions do not all hold."""
+    """The `if` in front of the statements for the case that conditions do not all hold."""
     values = sized(conditions, _MANY)
     if values:
         return f"if not reasonable({', '.join(map(_SCALAR.print, values))}):"

@@ -31,7 +31,7 @@ def rotation_functions() -> dict[str, object]:
 
 
 def _with_shortcut(lines: Sequence[str]) -> list[str]:
-    """The lines, with the end of nearly every call in front of the first value: the rotation is exact."""
+    """The lines, with an early return for an exact rotation, as nearly every call has, in front of the first value."""
     first = rotation_program().lets()[0].name.name
     place = next(k for k, line in enumerate(lines) if line.startswith(f"{first} = "))
     conditions = " and ".join(map(ScalarPrinter().print, surely_exact()))

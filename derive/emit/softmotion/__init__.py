@@ -1,22 +1,22 @@
 """Function blocks for SoftMotion: their interfaces, methods, settings, self-tests and their overview.
 
 It may import the folders of `emit` but `page`. `Initialize` reads all inputs of a block (`ReadInputs`), and computes
-what depends on them alone. Beside it only `AxisSettings` writes variables of a block: every other method may be called
-by several tasks at once.
+the values that depend on them alone. Besides it only `AxisSettings` writes variables of a block: several tasks may call
+every other method at once.
 
 axis_limits: which blocks leave the test of their limits to the base block
 base: the base block: the methods that no geometry changes
 block: the data of a block that templates read
-calls: the programs of a block without what the base block does around them
+calls: the programs of a block without the steps that the base block does
 description: the comment of a block, which the SoftMotion configurator shows
 flat: blocks without a base, for profiles that are flat
 inputs: the inputs of a block: type, default, range, unit
 layout: the text of a method without empty sections
 library: all files: text, PLCopenXML and the import script
-methods: the methods of a block, and how what they read is spelled
+methods: the methods of a block, and the spelling of the values that they read
 overview: the table of all blocks
 own_interface: the interface of our own, by which a program asks the kinematics of an axis group
 pictures: the pictures in the descriptions of blocks
-refused: why Initialize refuses an input, in words
+refused: the reasons why Initialize refuses an input, in words
 self_test: the self-test of a block, as tables of calls and answers
 """

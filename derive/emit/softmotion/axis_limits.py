@@ -1,4 +1,4 @@
-"""Which blocks test the limits of their axes alone: the base block does that for them."""
+"""The blocks that test no limits but those of their axes: the base block tests these for them."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from derive.report.reasons import Check, reasons_of, texts
 
 @kept_by_identity(10)
 def limit_reasons(kinematics: Kinematics) -> tuple[int, ...]:
-    """The number of the reason that an axis is below its lower limit, for every axis in its order; empty where a block
+    """The number of the reason "below its lower limit" of every axis, in the order of the axes; empty where a block
     tests other limits, too.
 
-    The numbers of an axis follow one another: below, with turns that another turn is inside, above. Axes are tested in
-    the order of their numbers.
+    The numbers of an axis follow one another: "below", then "another turn" if the axis has turns, then "above". Axes
+    are tested in the order of their numbers.
     """
     numbers: dict[str, int] = {}
     body = kinematics.limits.body

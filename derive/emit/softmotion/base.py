@@ -55,8 +55,8 @@ BASE_VARIABLES = (
 )
 """The instance variables of the base block."""
 PRIVATE = ("FindAxes", "Configure")
-"""The private methods of the base block: what CartesianToAxes, its offset variant and Diagnose have in common, and how
-a configuration is written."""
+"""The private methods of the base block: the common part of CartesianToAxes, its offset variant and Diagnose, and the
+one that writes a configuration."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Method:
 
 
 def inherited_texts(contract: Contract, templates: Environment) -> frozenset[str]:
-    """The statements of the methods that a geometry need not override, by which the base block is right for it."""
+    """The statements of the methods that a geometry need not override, if those of the base block are right for it."""
     plain = (
         _method(contract.overridable[name], name, contract, templates, is_guarded=False)
         for name in ("FindImage", "FindMargins")
@@ -151,7 +151,7 @@ def _template(signature: Signature, contract: Contract) -> str:
 def _method(
     signature: Signature, template: str, contract: Contract, templates: Environment, *, is_guarded: bool = True
 ) -> Method:
-    """A method of the base block. is_guarded: whether it answers nothing else before Initialize."""
+    """A method of the base block. is_guarded: whether before Initialize it only returns an error."""
     text = templates.get_template(f"base/{template}.st.j2").render(
         contract.spelling,
         method=signature.name,

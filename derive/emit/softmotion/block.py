@@ -35,12 +35,12 @@ _OF_AXIS = {
     "single": "isSingle",
     "mid": "middle",
 }
-"""The constants of an axis: how their neutral names begin, and what the structure of the axis calls them."""
+"""The constants of an axis: the beginnings of their neutral names, and their names in the structure of the axis."""
 
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis: its field in AXISPOS_REF, and what the base block knows of it."""
+    """One axis: its field in AXISPOS_REF, and its properties in the base block."""
 
     name: str
     field: str
@@ -124,7 +124,7 @@ class Block:
     has_settings: bool
     """Whether drives pass their limits to the block."""
     command: Command
-    """What the inverse reads of a command."""
+    """The parts of a command that the inverse reads."""
     limit_reasons: tuple[int, ...]
     """The number of the reason that an axis is below its lower limit, for every axis; empty where the block tests more
     limits than those of its axes."""
@@ -246,8 +246,8 @@ def constants(kinematics: Kinematics) -> tuple[str, ...]:
 
 
 def setup_of(kinematics: Kinematics) -> Program:
-    """The program of ReadInputs, with nothing that no method reads: one function computes for every
-    axis what depends on the limits of its drive.
+    """The program of ReadInputs, without values that no method reads, and without those that depend on the limits of a
+    drive, which one function computes for every axis.
     """
     setup = kinematics.setup_less_windows
     stored = set(constants(kinematics)) | {CHECK_LIMITS}
@@ -286,7 +286,7 @@ def turns_of(joint: Joint) -> str:
 
 
 def _chosen(kinematics: Kinematics) -> list[tuple[str, str, str]]:
-    """What the configuration block calls the inputs of every branch: no name is another one, or that of a period."""
+    """The names of the inputs of every branch in the configuration block; none equals another, or that of a period."""
     used = {"config", *(f"iperiod{j.key}" for j in kinematics.period_joints)}
     found = []
     for branch in kinematics.branches:

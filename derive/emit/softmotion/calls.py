@@ -1,4 +1,4 @@
-"""What the base block does around the programs of a block: it checks the inputs, reads the turns, chooses among
+"""The steps of the base block around the programs of a block: it checks the inputs, reads the turns, chooses among
 solutions, and tests the limits of the axes.
 """
 
@@ -23,7 +23,7 @@ _POINT = frozenset(f"point_{axis}" for axis in "xyz")
 
 @dataclass(frozen=True)
 class Command:
-    """What the inverse reads of a command."""
+    """The parts of a command that the inverse reads."""
 
     reads_position: bool
     reads_rotation: bool
@@ -35,7 +35,7 @@ class Command:
 
 @kept_by_identity(10)
 def command_of(kinematics: Kinematics) -> Command:
-    """What the base block checks, or reads, before a branch is solved."""
+    """The parts of a command that the base block checks or reads before a branch is solved."""
     joints = kinematics.mechanism.joints
     known = _checked_first(kinematics)
     read = {symbol.name for symbol in kinematics.branch.reads()}
@@ -54,19 +54,19 @@ def commanded(key: str) -> sp.Symbol:
 
 @kept_by_identity(10)
 def branch_of(kinematics: Kinematics) -> Program:
-    """The program of one branch without what the base block does."""
+    """The program of one branch without the steps of the base block."""
     return _solving(kinematics.branch, kinematics)
 
 
 @kept_by_identity(10)
 def offset_branch_of(kinematics: Kinematics) -> Program | None:
-    """The same for a tool offset; None where the mechanism has no such program, or needs none."""
+    """The program of one branch for a tool offset; None where the mechanism has none, or needs none."""
     offset = _offset_of(kinematics)
     return None if offset is None else _solving(offset, kinematics)
 
 
 def keeps_orientation(kinematics: Kinematics) -> bool:
-    """Whether the flange has one orientation: it is where the point of a tool is, less its offset."""
+    """Whether the flange has a constant orientation: its position then is that of the tool's point less the offset."""
     return kinematics.freedom is Freedom.ZERO
 
 
@@ -82,7 +82,7 @@ def _solving(program: Program, kinematics: Kinematics) -> Program:
 
 
 def without_axes(program: Program | None, kinematics: Kinematics) -> Program | None:
-    """A program of axis values, and of the offset of a tool, which the base block checks."""
+    """A program of axis values without the checks of its inputs, which the base block does."""
     if program is None:
         return None
     known = frozenset(joint.axis.name for joint in kinematics.mechanism.joints)
@@ -90,7 +90,7 @@ def without_axes(program: Program | None, kinematics: Kinematics) -> Program | N
 
 
 def _without(program: Program, known: frozenset[str]) -> Program:
-    """The program without its first conditions on what is known to be a number."""
+    """The program without its first conditions on inputs that are known to be numbers."""
     first = checks(program)
     left = (_unchecked(require, known) for require in first)
     return with_inputs(replace(program, body=(*(r for r in left if r is not None), *program.body[len(first) :])))
@@ -115,7 +115,7 @@ def _names(requires: tuple[Require, ...]) -> Iterator[str]:
 
 
 def _unchecked(require: Require, known: frozenset[str]) -> Require | None:
-    """The condition without its parts on what is known to be a number; None where nothing is left."""
+    """The condition without its parts on inputs that are known to be numbers; None where nothing is left."""
     parts = [p for p in sp.And.make_args(require.condition) if {s.name for s in p.free_symbols} - known]
     return replace(require, condition=sp.And(*parts)) if parts else None
 

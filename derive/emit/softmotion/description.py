@@ -31,8 +31,8 @@ _WIDTH = 100
 _NAMES_DIRECTION = re.compile(r"\b[XYZ]\b")
 _MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "turns, deg; declared linear"}
 _MOTION |= {Kind.GEARED: "geared, deg; declared linear", Kind.DRIVING: "turning motor, deg; declared linear"}
-_PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 open"
-_GEARED = "turns of its joint, behind the gear: 1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 open"
+_PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 automatic"
+_GEARED = f"turns of its joint, behind the gear: {_PERIOD}"
 _BRANCH = "0 automatic, 3 where both solutions coincide"
 _READ = (
     f"A commanded rotation R may have few exact digits, as after conversion from REAL. Where R^T R differs from the "
@@ -46,13 +46,13 @@ _OPEN_TURN = (
     "them, any other axis the value nearest to the reference. Diagnose gives the number of a turn that is inside the "
     "limits (iTurn)."
 )
-_BOUNDED = "Every method is bounded: no loop runs without an end, and none waits. "
+_BOUNDED = "The run time of every method is bounded: no loop is endless, and no method waits. "
 _REENTRANT = "others are re-entrant: several tasks may call them at once."
 _TASKS = {
     True: f"{_BOUNDED}Initialize and AxisSettings write variables of the block; all {_REENTRANT}",
     False: f"{_BOUNDED}Initialize alone writes variables of the block; all {_REENTRANT}",
 }
-"""What holds for all methods, by whether drives pass their limits to the block."""
+"""A paragraph about all methods, by whether drives pass their limits to the block."""
 _KINDS = {
     (True, False): "Position kinematics for a SoftMotion axis group. ",
     (False, True): "Orientation kinematics, to be combined with a position kinematics for a SoftMotion axis group. ",
@@ -65,7 +65,7 @@ _WITHOUT_LENGTH = (
     "no earlier warning"
 )
 _AUTOMATIC = (
-    "Automatic bytes, meant for point-to-point movements, take the solution nearest to the reference. Limits refuse "
+    "Automatic branches, meant for point-to-point movements, take the solution nearest to the reference. Limits refuse "
     "and never choose another solution or turn."
 )
 _DRIVES = " The limits that SoftMotion passes (AxisSettings) narrow those of the block."
@@ -185,7 +185,7 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
 
 
 def _looped(kinematics: Kinematics, costs: Costs) -> Iterator[str]:
-    """Of a method with a loop what a call typically costs, what it costs in vain, and the worst case."""
+    """The cost of a method with a loop: of a typical call, of a call without a solution, and in the worst case."""
     cases = () if kinematics.self_test is None else kinematics.self_test.cases
     programs = (
         ("AxesToCartesian", Called.FORWARD, kinematics.forward, costs.forward),
@@ -207,11 +207,11 @@ def _costs(costs: Costs, block: Block) -> Iterator[str]:
     rows = [("AxesToCartesian", costs.forward), ("CartesianToAxes", costs.inverse)]
     if block.branches:
         rows[1:] = [("CartesianToAxes, one branch", costs.inverse)]
-        rows.append((f"CartesianToAxes, all {block.slots} branches open", costs.automatic))
+        rows.append((f"CartesianToAxes, all {block.slots} branches", costs.automatic))
     more = (
-        ("Check of an exact frame, more", costs.exact),
-        ("Repair of a frame, more", costs.repair),
-        ("A branch at a singular pose, more", costs.corners),
+        ("In addition: check of an exact frame", costs.exact),
+        ("In addition: repair of a frame", costs.repair),
+        ("In addition: a branch at a singular pose", costs.corners),
     )
     rows += [(what, cost) for what, cost in more if any(cost.counts)]
     yield from _table(_COST_HEAD, map(_cost_row, rows))

@@ -1,7 +1,7 @@
-"""Blocks that extend nothing: what the base block has stands in each of them.
+"""Blocks that extend nothing: each contains the variables and methods of the base block.
 
-Only the text of the objects is read, so that a block has whatever the base has: its variables, and every method
-that the block does not override.
+Only the text of the objects is read. A block gets the variables of the base, and every method that it does not
+override.
 """
 
 from __future__ import annotations

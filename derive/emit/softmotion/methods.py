@@ -1,4 +1,4 @@
-"""The methods of a function block: which methods it has, the spelling of what they read, and their refusals."""
+"""The methods of a function block: their list, the spelling of the values that they read, and their refusals."""
 
 from __future__ import annotations
 
@@ -167,8 +167,8 @@ def _names(block: Block, contract: Contract) -> list[str]:
 
 
 def _end_point(public: Signature, block: Block, contract: Contract) -> Signature:
-    """The signature of the private method that finds the end point on a flange of known orientation. Of a block without
-    axes it is the same point for every orientation.
+    """The signature of the private method that finds the end point on a flange of known orientation. In a block without
+    axes the point is the same for every orientation.
     """
     unread = () if block.axes else ("mR", "aRef", "cd")
     flange = Parameter("VAR_IN_OUT CONSTANT", "mFlange", contract.spelling["types"]["matrix"])
@@ -231,7 +231,7 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
 
 
 def _coordinates(program: Program) -> dict[str, str]:
-    """The values that are a coordinate of the pose and nothing else: they are written where they are found."""
+    """The values that are just a coordinate of the pose: they are assigned to it as soon as they are known."""
     bound = {let.name.name for let in program.lets()}
     values = [str(o.value) for o in program.outputs]
     named = {o.name: str(o.value) for o in program.outputs if o.name in "xyz"}

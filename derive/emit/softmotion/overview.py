@@ -22,7 +22,7 @@ def row_of(kinematics: Kinematics) -> dict[str, str]:
 
 
 def _tools(kinematics: Kinematics) -> str:
-    """The offsets that SMC_GroupSetTool accepts: to remove an offset, the orientation of the flange must be known."""
+    """The offsets that SMC_GroupSetTool accepts: to subtract one, SoftMotion must know the flange's orientation."""
     if kinematics.mechanism.is_orientation:
         return "with a position block"
     if kinematics.mechanism.task.turning is Turning.DIRECTION or kinematics.mechanism.followed_turns:

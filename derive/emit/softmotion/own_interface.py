@@ -1,4 +1,4 @@
-"""The interface of our own: what a program asks the kinematics that is active in an axis group."""
+"""The interface of our own, by which a program calls the kinematics that is active in an axis group."""
 
 from __future__ import annotations
 

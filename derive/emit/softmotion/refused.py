@@ -1,4 +1,4 @@
-"""Why Initialize refuses an input, in the words of the Python package."""
+"""The reasons why Initialize refuses an input, in the words of the Python package."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LONGEST, _MOST_NAMED = 255, 3
 
 @kept_by_identity(10)
 def refused_texts(kinematics: Kinematics) -> dict[str, str]:
-    """The text of every refusal, by the sentence of its condition: the inputs, then what they must be.
+    """The text of every refusal, by the sentence of its condition: the inputs, then the condition on them.
 
     A condition on a single input gives the range of that input and the condition.
     """
@@ -42,7 +42,7 @@ def refused_texts(kinematics: Kinematics) -> dict[str, str]:
 
 
 def _spelled(text: str, named: Sequence[Parameter], spelled: Mapping[str, str]) -> str:
-    """The text with the inputs that it is about as they are spelled, a name of one word among them."""
+    """The text with the spelling of the inputs that it is about, also of an input whose name is one plain word."""
     names = {p.name: spelled[p.name] for p in named if "_" not in p.name}
     return re.sub(r"\b[a-z]+\b", lambda found: names.get(found[0], found[0]), text)
 

@@ -2,10 +2,10 @@
 
 It may import the folders of `emit` but `page`, `softmotion` and `linuxcnc`.
 
-`templates/st/softmotion.toml` is the contract as data: type names, signatures, error names, profiles of libraries. What
-no document settles stands there alone, with a comment that says so. Its enumerators become constants of one list,
-`Softkin_Names`, and blocks use those. `templates/st/reserved.toml` holds the names that nothing may be given. A flag is
-a BOOL; a sign, the number of a turn and a count are an INT; a sign becomes a number once, where it multiplies.
+`templates/st/softmotion.toml` is the contract as data: type names, signatures, error names, profiles of libraries. A
+name that no document gives stands nowhere else, with a comment that says so. Its enumerators become constants of one
+list, `Softkin_Names`, and blocks use those. `templates/st/reserved.toml` holds the names that may not be declared. A
+flag is a BOOL; a sign, the number of a turn and a count are an INT; a sign becomes a number once, where it multiplies.
 
 contract: the contract of SoftMotion, read from its file
 expression: expressions
@@ -21,5 +21,5 @@ reserved: names that may not be declared
 rotation: the repair of the commanded rotation
 scan: the root scan: a method that calls the programs of a trial
 shared: programs that several methods share, each as a private method
-stretches: what one branch has computed, read by the next one
+stretches: values that one branch has computed and the next one reads
 """

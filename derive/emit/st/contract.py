@@ -45,7 +45,7 @@ class Signature:
 
 @dataclass(frozen=True)
 class Interface:
-    """An interface: what it extends, and what it adds."""
+    """An interface: those that it extends, and the methods that it adds."""
 
     name: str
     since: tuple[int, ...]
@@ -63,7 +63,7 @@ class Constant:
     type: str
     value: str
     meaning: str
-    """What it is, and where no document names the enumerator, that none does."""
+    """The meaning of the enumerator, with a remark where no document names it."""
 
 
 @dataclass(frozen=True)
@@ -84,13 +84,13 @@ class Contract:
     supplied: Mapping[str, Signature]
     """The protected methods that every geometry supplies to the base block."""
     supplied_for: Mapping[str, frozenset[str]]
-    """Those of them that only a block with one of certain public methods needs, each with these."""
+    """The supplied methods that only a block with one of certain public methods needs, each with these."""
     supplied_turning: frozenset[str]
-    """Those of these that only a block needs whose flange turns."""
+    """The supplied methods that only a block with a turning flange needs."""
     overridable: Mapping[str, Signature]
-    """The protected methods of the base block that a geometry overrides of which something else is true."""
+    """The protected methods of the base block that a geometry overrides where they are not right for it."""
     overridable_for: Mapping[str, frozenset[str]]
-    """Those of them that only a block with one of certain public methods may override, each with these."""
+    """The overridable methods that only a block with one of certain public methods may override, each with these."""
     offered: Mapping[str, Signature]
     """The protected methods of the base block that those of a geometry call."""
     is_flat: bool

@@ -16,12 +16,12 @@ _GIVEN = {r.name: f"rot[{r.name[1]}, {r.name[2]}]" for r in ROTATION_ENTRIES}
 
 
 def followed(signature: Signature, contract: Contract) -> Printed:
-    """All of it."""
+    """The projection of a flange that follows the whole rotation."""
     return _printed(normalise("projection", (), [Output(r.name, r) for r in ROTATION_ENTRIES]), signature, contract)
 
 
 def about_z(signature: Signature, contract: Contract) -> Printed:
-    """The turn about z nearest to it."""
+    """The projection to the nearest turn about z."""
     return _printed(projection_about_z(sp.eye(3)), signature, contract)
 
 

@@ -1,7 +1,7 @@
 """The refusals of inputs: each is kept as a text, which names the input and its allowed range.
 
-A range, and a pair of limits, is checked by a method of the base block, in one statement for an input; the first of
-these that refuses counts. Other conditions stand behind them, where every number is one of reasonable size.
+A method of the base block checks a range or a pair of limits, in one statement for an input; the first refusal counts.
+Other conditions stand behind these statements, where every number is known to be of reasonable size.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from derive.ir.passes import plain
 from derive.ir.program import Let, Program, Require
 
 REFUSAL = "refusal"
-"""The instance variable that holds why Initialize refused."""
+"""The instance variable that holds the reason why Initialize refused."""
 _BEHIND = f"IF {REFUSAL} <> '' THEN\n  RETURN;\nEND_IF\n"
 _ABOVE = r"(?://[^\n]*\n)*"
 _REFUSING = re.compile(r"(IF NOT \([^;]*?\) THEN\n)(  refusal :=\s+'[^\n]*';\n)  RETURN;\nEND_IF\n")
@@ -58,7 +58,7 @@ class OfInputs(Refusal):
         return [*conjunction("IF NOT (", parts, ") THEN"), *refused, "  RETURN;", "END_IF"]
 
     def _called(self, condition: sp.Basic, printer: StructuredText) -> tuple[str, tuple[str, ...]] | None:
-        """The method that checks the condition, and what it is given; None where none does."""
+        """The method that checks the condition, and its arguments; None where no method checks it."""
         if condition in self.limits:
             window, axis = self.limits[condition]
             given = tuple(printer.names[name] for name in window.given)
@@ -92,8 +92,8 @@ def _is_plain(condition: sp.Basic) -> bool:
 
 
 def chained(program: Printed) -> Printed:
-    """The program with conditions that follow each other in one chain of ELSIF, behind which it refuses, as it does
-    behind the calls that check. The texts say what comments would.
+    """The program with successive conditions in one chain of ELSIF, after which it refuses, as it does after the calls
+    that check inputs. The texts of the refusals serve as comments.
     """
 
     def chain(found: re.Match[str]) -> str:
@@ -137,8 +137,8 @@ def without_limits(program: Program, limits: Mapping[sp.Basic, tuple[Window, int
 def with_limits_of_machine(
     program: Printed, limits: Mapping[sp.Basic, tuple[Window, int]], axes: Sequence[str], names: Mapping[str, str]
 ) -> Printed:
-    """The program with statements, behind those that read limits, that set the limits of axes for which none are given
-    and the machine has some: the last rule counts. names: how inputs are spelled.
+    """The program with further statements behind those that read limits: they set the limits of axes for which none are
+    given but the machine has some; the last rule counts. names: the spelling of inputs.
     """
     lines = _limits_of_machine(limits, axes, StructuredText(names))
     if not lines:
@@ -157,7 +157,7 @@ def _limits_of_machine(
             needed = "" if condition == sp.true else f" AND ({printer.print(condition)})"
             values = (assigned(f"{axis}.{end}", printer.print(v)) for end, v in (("lower", low), ("upper", high)))
             lines += [
-                f"// Where none are given, {axes[place]} has limits of the machine",
+                f"// Without given limits, {axes[place]} has the limits of its mechanism",
                 f"IF {axis}.unlimited{needed} THEN",
                 *indented([*"\n".join(values).split("\n"), f"{axis}.unlimited := FALSE;"]),
                 "END_IF",

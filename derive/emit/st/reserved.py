@@ -17,7 +17,7 @@ _REMEDY = "choose another name for the mechanism, parameter, joint or branch tha
 
 @lru_cache
 def _lists() -> dict[str, tuple[str, frozenset[str], tuple[str, ...]]]:
-    """The lists of the file: what the names of a list are, the names in small letters, and prefixes of names."""
+    """The lists of the file: the meaning of the names of a list, the names in small letters, and prefixes of names."""
     data = tomllib.loads(_FILE.read_text(encoding="utf-8"))
     return {
         key: (d["meaning"], frozenset(d["names"].lower().split()), tuple(p.lower() for p in d.get("prefixes", ())))

@@ -1,7 +1,7 @@
-"""Stretches that branches share, in Structured Text: what one branch has computed the next one reads.
+"""Stretches that branches share, in Structured Text: the next branch reads values that one branch has computed.
 
-The values are in a structure of the caller, which begins every call with none. A stretch that refused for one branch
-refuses for every other branch that shares it.
+The values are in a structure of the caller, which is empty at the begin of every call. A stretch that refused for one
+branch refuses for every other branch that shares it.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from derive.ir.tree import Item
 from derive.report.branch_stretches import Stretch, stretches_of
 
 KNOWN, KEPT, SIDE = "shared.known", "shared.kept", "side"
-"""What a caller keeps for all branches, and which of the signs of a stretch are positive, as a number."""
+"""The values that a caller keeps for all branches, and a number that says which signs of a stretch are positive."""
 SOLVED, REFUSED = 1, 2
-"""What is known of a stretch; 0 before it was computed."""
+"""The state of a stretch; 0 before it was computed."""
 Body = Callable[[Sequence[Item], int], Iterator[str]]
 """Writes statements within a width."""
 
 
 def has_sides(program: Program) -> bool:
-    """Whether some branches share what depends on a sign."""
+    """Whether some branches share values that depend on a sign."""
     return any(s.is_shared and s.signs for s in stretches_of(program))
 
 
 def stretch_lines(program: Program, printer: StructuredText, refusal: Refusal, body: Body) -> Iterator[str]:
-    """The statements of a branch, each stretch that is shared between two tests of what is known."""
+    """The statements of a branch; each shared stretch stands between two tests of its state."""
     number = row = 1
     for stretch in stretches_of(program):
         if not stretch.is_shared:
@@ -50,7 +50,7 @@ def _shared(
     further = f" + {times}{SIDE}" if stretch.signs else ""
     places = [(f"{KEPT}[{first + k}{further}]", printer.name(name)) for k, name in enumerate(stretch.kept)]
     words = " and ".join(branch_with(sign) for sign in stretch.signs)
-    yield f"// The same in all branches{f' with this {words}' if words else ''}: computed once a call"
+    yield f"// Equal in all branches{f' with this {words}' if words else ''}, so computed once a call"
     if stretch.signs:
         sides = (f"SEL({printer.name(s)} > 0, {2**k}, 0)" for k, s in enumerate(stretch.signs))
         yield f"{SIDE} := {' + '.join(sides)};"

@@ -22,7 +22,7 @@ FLANGE = tuple(real(f"flange_{c}") for c in COORDINATE_NAMES)
 
 @dataclass(frozen=True)
 class Closure:
-    """Equations, the statements that bind their names, and the coordinate of the position that is given."""
+    """Equations, with the statements that bind their names, in the coordinates of the task."""
 
     equations: tuple[Equation, ...]
     arguments: tuple[sp.Expr, ...]
@@ -38,7 +38,8 @@ class Closure:
     """The chain for which the position equations are written, which ends in `target`."""
     target: Target = Target(())
     back: tuple[tuple[Factor, ...], Target] | None = None
-    """The same from the flange to the point in which the first joints intersect."""
+    """The chain and target of the position equations seen from the flange, to the point in which the first joints
+    intersect."""
 
 
 def arguments_of(expressions: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
@@ -48,7 +49,7 @@ def arguments_of(expressions: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
 
 
 def named_equation(mechanism: Mechanism, label: str, expression: sp.Expr) -> Equation:
-    """An equation in normal form, in which what never moves stands under its names."""
+    """An equation in normal form, with names for the sines, cosines and roots that never change."""
     return Equation(
         label, polynomial(with_fixed_names(mechanism, expression), all_angles(mechanism), signs_of(mechanism))
     )

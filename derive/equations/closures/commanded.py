@@ -1,6 +1,6 @@
-"""The closure of what is commanded: a pose, a pose with one joint known, a point off the flange.
+"""The closure for what is commanded: a pose, a pose with one joint known, a point off the flange.
 
-A chain gives f(q) - x = 0; a mechanism that states equations gives these. A commanded rotation about z enters as the
+A chain gives f(q) - x = 0; a mechanism that states equations gives those. A commanded rotation about z enters as the
 known angle `heading`, by its sine and cosine.
 """
 
@@ -80,12 +80,12 @@ def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ..
     unknowns = Unknowns(angles, lengths, all_angles(mechanism), signs_of(mechanism))
     follows = turning is not Turning.NONE
     columns = (2,) if turning in (Turning.DIRECTION, Turning.PITCH) else (0, 1, 2)
-    is_whole = follows and not mechanism.followed_turns  # a direction that is projected tells no wrist centre
+    is_whole = follows and not mechanism.followed_turns  # a projected direction does not determine the wrist centre
     commanded = Commanded(sp.Matrix(3, 3, ROTATION_ENTRIES), columns if is_whole else ())
     pose = pose_of(chain)
     planes = _planes_of(mechanism, pose.position)
     table = dict(planes)
-    point = tuple(table.get(c, real(c)) for c in COORDINATE_NAMES)  # those not commanded are what the machine has
+    point = tuple(table.get(c, real(c)) for c in COORDINATE_NAMES)  # the machine determines the others
     split = split_positions(chain, point, commanded, unknowns) if mechanism.task.position else Split(())
     arguments = dict.fromkeys((*arguments_of(pose.position), *(t.amount for t in pose.turns)))
     turns = pose.turns if follows else ()
@@ -140,7 +140,7 @@ def offset_closure(mechanism: Mechanism, unknown: tuple[Joint, ...]) -> Closure:
 
 
 def _named_tool(mechanism: Mechanism, entry: sp.Expr, name: str, unknown: set[sp.Symbol], lets: list[Let]) -> sp.Expr:
-    """The entry with its known part under one name, which the solver treats as a symbol."""
+    """The entry with one name for its known part, which the solver treats as a symbol."""
     form = polynomial(entry, angles_of(mechanism), signs_of(mechanism))
     moving, known = split_known(form, unknown)
     if not is_compound(known):
@@ -159,7 +159,7 @@ def _position_closure(mechanism: Mechanism, position: sp.ImmutableMatrix) -> Clo
 
 
 def _planes_of(mechanism: Mechanism, position: sp.ImmutableMatrix) -> tuple[tuple[str, sp.Expr], ...]:
-    """The coordinates of a chain that the task does not command, by their values, which no joint moves."""
+    """The coordinates of a chain that the task does not command, with their values, which no joint changes."""
     joints = {j.symbol for j in mechanism.joints}
     moving = joints | {f(a) for a in angles_of(mechanism) for f in (sine, cosine)}
     planes: list[tuple[str, sp.Expr]] = []

@@ -1,4 +1,4 @@
-"""Names for what never moves: sines and cosines of fixed angles, and roots that are made of parameters alone."""
+"""Names for constants of a machine: sines and cosines of fixed angles, and roots of parameters."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def fixed_angles(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
 
 
 def fixed_lets(mechanism: Mechanism) -> tuple[Let, ...]:
-    """The cosines and sines of these angles, and the roots that are made of parameters alone."""
+    """The bindings of the cosines and sines of fixed angles, and of the roots that are made of parameters alone."""
     functions = ((cosine, sp.cos), (sine, sp.sin))
     angles = tuple(Let(f(a), g(a * DEGREE)) for a in fixed_angles(mechanism) for f, g in functions)
     return (
@@ -38,7 +38,7 @@ def fixed_names(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
 
 
 def fixed_squares(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
-    """The squares of these roots, by their names."""
+    """The squares of the roots of parameters, by the names of the roots."""
     parameters = tuple(p.symbol for p in mechanism.parameters)
     own = {real(p.name): p for p in parameters}
     return {

@@ -14,9 +14,10 @@ from derive.ir.symbols import COORDINATE_NAMES, cosine, real, sine
 
 
 def stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: str = "span") -> Closure:
-    """The stated equations; with an offset they hold for the flange, whose orientation is known.
+    """The stated equations. With an offset they are written for the flange, whose orientation is then known.
 
-    known: the known part of a rod's vector: its "span" where the joints are unknown, its "pivot" where the position is.
+    known: the name of the known part of a rod's vector: "span" where the joints are unknown, "pivot" where the position
+    is unknown.
     """
     flange = dict(zip(COORDINATE_NAMES, FLANGE, strict=True))
     rotation = sp.eye(3) if mechanism.heading is None else sp.Matrix(3, 3, [*heading_entries().values()])
@@ -47,7 +48,7 @@ def position_closure(mechanism: Mechanism) -> Closure:
 def _rod_equation(
     mechanism: Mechanism, rod: Rod, table: dict[sp.Symbol, sp.Symbol], sought: tuple[str, set[sp.Symbol]]
 ) -> Equation:
-    """|plate - base|^2 = length^2, with the known part of every coordinate under one name."""
+    """|plate - base|^2 = length^2, with one name for the known part of every coordinate."""
     word, wanted = sought
     unknown = {s for v in wanted for s in (v, sine(v), cosine(v))}
     lets: list[Let] = []

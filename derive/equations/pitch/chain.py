@@ -35,7 +35,7 @@ class Followed:
 
     @property
     def commanded(self) -> sp.Matrix:
-        """The same direction as the commanded rotation has it, seen in the frame of the base."""
+        """The commanded direction that corresponds to `direction`, in the frame of the base."""
         axis = sp.Matrix([0, 0, 1]) if self.roll is None else matrix_of_turns(self.flange).T[:, self.roll.axis]
         return _ROTATION * axis
 

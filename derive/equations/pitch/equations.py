@@ -18,7 +18,7 @@ from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import COORDINATE_NAMES, real
 
 IN_PLANE = real("in_plane")
-"""The length of the commanded direction, seen in the plane in which the pitch moves the tool."""
+"""The length of the commanded direction's projection to the plane in which the pitch moves the tool."""
 
 
 def followed_entries(problem: Problem) -> tuple[Equation, ...]:
@@ -45,7 +45,7 @@ def followed_entries(problem: Problem) -> tuple[Equation, ...]:
 
 
 def _pitch(problem: Problem, turns: Sequence[Factor], entries: sp.Matrix, lets: list[Let]) -> tuple[Equation, ...]:
-    """The direction of the tool in the plane of the pitch, taken to length one."""
+    """The direction of the tool, projected to the plane of the pitch and normalised."""
     seen, column = turns, 2
     if problem.followed > 1:
         seen, column = turns[:-1], turns[-1].axis
@@ -65,7 +65,7 @@ def _pitch(problem: Problem, turns: Sequence[Factor], entries: sp.Matrix, lets: 
 
 
 def _roll(problem: Problem, turn: Factor, entries: sp.Matrix, lets: list[Let]) -> tuple[Equation, ...]:
-    """The turn about the axis of the tool that is nearest to what is left of the commanded rotation."""
+    """The turn about the axis of the tool that is nearest to the remaining commanded rotation."""
     i, j = (turn.axis + 1) % 3, (turn.axis + 2) % 3
     along, across, length, divisor = (real(f"roll_{w}") for w in ("along", "across", "length", "divisor"))
     lets += [
@@ -89,7 +89,9 @@ def _equation(problem: Problem, label: str, moved: sp.Expr, name: sp.Symbol, let
 
 
 def with_refusal(statements: Sequence[Statement]) -> tuple[Statement, ...]:
-    """The statements, which refuse a direction that is square to the plane of the arm: none there is nearest to it."""
+    """The statements, which refuse a direction at right angles to the plane of the arm: no direction in the plane is
+    nearest to it.
+    """
     refusal = Require(sp.Gt(IN_PLANE, FREE_ANGLE), Status.UNREACHABLE, reason=about_machine(Why.ACROSS))
     found: list[Statement] = []
     for statement in statements:

@@ -1,4 +1,4 @@
-"""The joint that turns the plane of an arm, where the position leaves it free: the tool's direction tells it."""
+"""The joint that turns the plane of an arm, where the position leaves it free: the tool's direction determines it."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _LEAN = real("heading_length")
 
 
 def free_heading(mechanism: Mechanism, steps: Sequence[sp.Symbol] = ()) -> tuple[tuple[Let, ...], sp.Symbol | None]:
-    """The joint that turns the plane, where the position does not decide it: as the tool's direction needs it.
+    """The joint that turns the plane: where the position does not determine it, the tool's direction does.
 
     Two turns hold the direction in the plane: one for each sign of the step of that joint, where it has two roots
-    (`steps`), else the one nearer to the reference. Where the tool is along the axis of the joint it is the reference.
-    Returns the statements, which bind `free_value` of the joint, and the joint; nothing where not one joint alone turns
-    the plane.
+    (`steps`), else the one nearer to the reference. Where the tool is along the axis of the joint, the joint takes its
+    reference. Returns the statements, which bind `free_value` of the joint, and the joint; none where more or fewer
+    than one joint turns the plane.
     """
     found = followed_of(mechanism)
     joints = {j.symbol: j for j in mechanism.solved_joints if j.is_angle}
@@ -53,7 +53,7 @@ def free_value(joint: sp.Symbol) -> sp.Symbol:
 
 @dataclass(frozen=True)
 class _Heading:
-    """The joint that turns the plane, by its sense and a fixed angle, and the sign of its step."""
+    """The joint that turns the plane, its sense, a fixed angle added to it, and the sign of its step."""
 
     joint: Joint
     sense: int

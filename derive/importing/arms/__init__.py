@@ -2,11 +2,11 @@
 
 Like `importing`, it may import the folders from `ir` to `mechanisms`.
 
-headings: along which of x, y and z every axis moves, and the fixed turns between their frames
-lines: a robot as lines: where its axes stand at joint values of zero
+headings: the direction x, y or z along which every axis moves, and the fixed turns between their frames
+lines: a robot as lines: the positions of its axes at joint values of zero
 pieces: the chain of an arm in its simple form, with the fewest shifts
-points: where on its line every axis is placed, so that the fewest shifts remain
-rounded: angles that a file has rounded, put back
-snapping: simple angles and rotations near those of a file, and the record of what was moved
-tasks: what a chain can follow of a commanded pose, and which joints have to be held
+points: the point on its line at which every axis is placed, so that the fewest shifts remain
+rounded: the exact values of angles that a file has rounded
+snapping: simple angles and rotations near those of a file, and the record of such changes
+tasks: the part of a commanded pose that a chain can follow, and the joints that have to be held
 """

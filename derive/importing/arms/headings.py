@@ -1,4 +1,4 @@
-"""Along which of x, y and z every axis moves, and the fixed turns between the frames in which it does.
+"""The direction x, y or z along which every axis moves, and the fixed turns between the frames of the axes.
 
 At joint values of zero a frame keeps the orientation of the one before it as long as the next axis is along one of its
 coordinate axes: then the chain is written with shifts alone between the joints.
@@ -48,7 +48,7 @@ def headings(arm: Arm, names: Sequence[str], limit: float) -> tuple[tuple[Headin
 def toward(direction: Array, before: int, limit: float) -> tuple[Turns, int, int]:
     """The fewest turns after which a direction is along a coordinate axis: turns, letter, and sign.
 
-    before: the letter of the joint before, whose value takes a turn about the same letter up.
+    before: the letter of the joint before, whose value absorbs a turn about the same letter.
     """
     limit = max(limit, ROUNDING)
     letter = int(np.argmax(np.abs(direction)))

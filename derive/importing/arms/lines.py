@@ -1,4 +1,4 @@
-"""A robot as lines: where its axes stand at joint values of zero, in the frame of the base.
+"""A robot as lines: the positions of its axes at joint values of zero, in the frame of the base.
 
 Forward kinematics is the product of the motions about these lines, times the pose of the tip at zero.
 """
@@ -35,8 +35,8 @@ class Arm:
     lines: tuple[Line, ...]
     tip: Array
     size: float
-    """The length of the way from the first joint along all others to the tip, one unit where it is nothing: what
-    lengths are compared with.
+    """The length of the path from the first joint along all others to the tip, or one unit where that is zero. Lengths
+    are compared with it.
     """
     rounding: float
     """A length below which differences are the rounding of our own calculation."""
@@ -95,14 +95,14 @@ def moved(line: Line, value: float) -> Array:
 
 @dataclass(frozen=True)
 class Relation:
-    """How two lines stand to each other: their distance, and their angle (radians, at most a right angle)."""
+    """The relation of two lines: their distance, and their angle (radians, at most a right angle)."""
 
     distance: float
     angle: float
 
 
 def relation(first: Line, second: Line) -> Relation:
-    """The distance and the angle of two lines; a slide has a direction alone, and no distance from anything."""
+    """The distance and the angle of two lines; a slide has only a direction, and its distance is zero."""
     cross = np.cross(first.direction, second.direction)
     sine = float(np.linalg.norm(cross))
     angle = float(np.arctan2(sine, abs(first.direction @ second.direction)))
@@ -129,7 +129,9 @@ def feet(first: Line, second: Line) -> tuple[Array, Array] | None:
 
 
 def spread(lines: Sequence[Line]) -> float:
-    """How far three lines are from meeting in one point: their distances, and how far apart they pass the middle."""
+    """The amount by which three lines miss a common point: their distances, and the distance of their feet on the
+    middle one.
+    """
     first, middle, last = lines
     before, behind = feet(first, middle), feet(middle, last)
     if before is None or behind is None:

@@ -25,7 +25,7 @@ class Piece:
     drives: tuple[tuple[int, float], ...]
     constant: float
     place: int
-    """Before which line of the arm it stands; the number of lines: before the tip."""
+    """The number of the line of the arm before which it stands; the number of lines where it stands before the tip."""
 
     def matrix(self, values: Sequence[float]) -> Array:
         """The homogeneous 4 x 4 matrix at axis values."""
@@ -40,7 +40,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class Simple:
-    """An arm in its simple form, and what was moved for it."""
+    """An arm in its simple form, and the changes that this took."""
 
     pieces: tuple[Piece, ...]
     moved: tuple[Snapped, ...]
@@ -90,7 +90,7 @@ def _way(
 ) -> tuple[list[Piece], Array]:
     """The shifts and turns to the next line, the shifts where they are fewest; and how far they lead.
 
-    letter: that of the joint before, which takes a first turn about the same letter up.
+    letter: that of the joint before, which absorbs a first turn about the same letter.
     """
     turned = [Piece(Motion.TURN, axis, (), angle, place) for axis, angle in way.turns]
     choices = []
@@ -107,7 +107,7 @@ def _way(
 
 
 def _off(arm: Arm, place: int, here: Array, target: Array) -> float:
-    """How far a line or the tip has been moved."""
+    """The distance by which a line or the tip has been moved."""
     if place == len(arm.lines):
         return float(np.linalg.norm(here - target))
     line = arm.lines[place]
@@ -123,7 +123,7 @@ def _motion(arm: Arm, way: Heading, place: int) -> Piece:
 
 
 def _merged(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
-    """Neighbouring turns about the same letter as one: bars that keep a link parallel, offsets of a joint."""
+    """The pieces with neighbouring turns about one letter merged: bars that keep a link parallel, joint offsets."""
     found: list[Piece] = []
     for piece in pieces:
         last = found[-1] if found else None

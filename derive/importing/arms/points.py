@@ -1,7 +1,7 @@
-"""Where on its line every axis is placed, so that the fewest shifts remain between the axes.
+"""The point on its line at which every axis is placed, so that the fewest shifts remain between the axes.
 
-A point of a rotary axis may slide along the axis; a slide has a direction alone. Candidates are the points at which
-lines meet or come nearest to their neighbours, those of the file, and their projections on parallel neighbours.
+A point of a rotary axis may move along the axis; a slide has only a direction. Candidates are the points at which lines
+meet or come nearest to their neighbours, those of the file, and their projections on parallel neighbours.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ Cost = tuple[int, int, int, int, float]
 
 @dataclass(frozen=True)
 class Search:
-    """What candidates are judged by: frames of the lines and of the tip, and what counts as nothing."""
+    """The data for rating candidates: frames of the lines and of the tip, and the size below which a shift is zero."""
 
     arm: Arm
     frames: tuple[Array, ...]
-    """Of the base, of every line, and of the tip."""
+    """The frames of the base, of every line, and of the tip."""
     limit: float
 
     def shifts(self, index: int, between: Array) -> int:

@@ -1,7 +1,7 @@
-"""Angles that a file has rounded, put back: 1.5708 is a right angle, and so is 1.570796325.
+"""The exact values of angles that a file has rounded: 1.5708 is a right angle, and so is 1.570796325.
 
-An angle is put back to a multiple of 15 degrees where the file has it rounded to the decimals that it writes, or where
-it is within the limit. With a limit of 0 nothing is put back.
+An angle becomes a multiple of 15 degrees where it equals that multiple rounded to the decimals that the file writes, or
+where the difference is within the limit. With a limit of 0 no angle is changed.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from derive.importing.arms.snapping import Snapped, angle_between, nearest_angle
 from derive.importing.robot import Array, Moving, Place, Robot, Shifted, Step, Triple, Turned
 
 _NEARLY = 2e-3
-"""What is farther from a multiple of 15 degrees is an angle of the machine's own: 1.57 is 8e-4 off."""
+"""An angle that differs more from a multiple of 15 degrees was not meant to be one: 1.57 differs by 8e-4."""
 
 
 def snapped_robot(robot: Robot, limit: float) -> tuple[Robot, tuple[Snapped, ...]]:
-    """The robot with the angles of its file put back, and what was moved."""
+    """The robot with the exact angles, and the record of the changes."""
     moved: list[Snapped] = []
     steps = tuple(_step(step, limit, moved) for step in robot.steps)
     return replace(robot, steps=steps), tuple(moved)
 
 
 def nearly(robot: Robot) -> list[float]:
-    """By how much angles that were not put back miss a multiple of 15 degrees, where that is little."""
+    """The small amounts by which unchanged angles miss a multiple of 15 degrees."""
     angles = [p.angle for s in robot.steps for p in s.places if isinstance(p, Turned)]
     return [m for a in angles if ROUNDING < (m := abs(a - nearest_angle(a))) < _NEARLY]
 
@@ -56,7 +56,7 @@ def _triple(row: Array) -> Triple:
 
 
 def _moving(step: Step, moving: Moving | None, limit: float, moved: list[Snapped]) -> Moving | None:
-    """The movement with its offset put back, where it turns."""
+    """The movement; where it turns, with the exact value of its offset."""
     if moving is None or not moving.offset or not moving.turns:
         return moving
     offset = _angle(f"{step.name}, offset", moving.offset, moving.rounding, limit, moved)
@@ -78,12 +78,12 @@ def _angle(place: str, angle: float, rounding: float, limit: float, moved: list[
 
 
 def _is_within(amount: float, rounding: float) -> bool:
-    """Whether an amount is what rounding makes; half a unit has errors of calculation."""
+    """Whether an amount is within rounding; the comparison allows for errors of calculation."""
     return amount <= rounding * (1.0 + 1e-9)
 
 
 def _simple(stated: Array, rounding: float, limit: float) -> tuple[Array, str]:
-    """The rotation by right angles, or by multiples of 15 degrees, that a rotation is; itself where it is none."""
+    """The rotation by right angles, or by multiples of 15 degrees, that a rotation stands for; else the rotation."""
     right = right_angled(stated)
     if right is not None and angle_between(right, stated) <= max(limit, ROUNDING):
         return right, "read as one of right angles"

@@ -1,7 +1,7 @@
-"""Simple angles and rotations near those of a file, and the record of what was moved there.
+"""Simple angles and rotations near those of a file, and the record of such changes.
 
-Nothing is moved by more than the limit, a share of the machine's size (lengths) or of one radian (angles); what was
-moved is listed, and bounds how far forward kinematics can be from the file's.
+No value is changed by more than the limit, a share of the machine's size (lengths) or of one radian (angles). The
+changes are listed, and bound the difference of forward kinematics from the file's.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ import numpy as np
 from derive.importing.robot import Array
 
 STEP = np.pi / 12
-"""Angles are put back to multiples of 15 degrees: right angles, and those that inclined wrists have."""
+"""Angles become multiples of 15 degrees: right angles, and those of inclined wrists."""
 
 
 @dataclass(frozen=True)
 class Snapped:
-    """Something that was moved, by how much (radians or lengths)."""
+    """A value that was changed, and the amount (radians or lengths)."""
 
     what: str
     amount: float

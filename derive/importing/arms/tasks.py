@@ -1,4 +1,5 @@
-"""What a chain can follow of a commanded pose, and which joints have to be held: by the rank of its Jacobian."""
+"""The part of a commanded pose that a chain can follow, and the joints that have to be held: by the rank of its
+Jacobian."""
 
 from __future__ import annotations
 
@@ -16,7 +17,7 @@ _SAMPLES = 6
 _SMALL = 1e-9
 _NEARLY = 1e-6
 _WELL = 5e-3
-"""A motion smaller than this share is no reason to hold a joint: it stems from axes that nearly meet."""
+"""A motion smaller than this share comes from axes that nearly meet, and is no reason to hold a joint."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Followed:
     turning: str
     held: tuple[int, ...] = ()
     facing: int = 2
-    """Which of x, y and z (0, 1, 2) of the tip is the direction of the tool, which a description calls z."""
+    """The axis x, y or z (0, 1, 2) of the tip that is the direction of the tool, which a description calls z."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class Motions:
 
 
 def motions(arm: Arm, count: int) -> Motions:
-    """Jacobians at joint values that are nothing special, always the same ones."""
+    """Jacobians at general joint values, which are always the same."""
     rng = np.random.default_rng(5)
     jacobians, rotations = [], []
     for _ in range(_SAMPLES):
@@ -93,7 +94,7 @@ def _jacobian(arm: Arm, values: Array) -> tuple[Array, Array]:
 
 
 def followed(arm: Arm, count: int, held: Sequence[int] = ()) -> Followed:
-    """The task of a chain, with the joints that are held: as named, or as few as make it solvable."""
+    """The task of a chain, with its held joints: those that are named, or as few as make it solvable."""
     seen = motions(arm, count)
     free = [k for k in range(count) if k not in held]
     rank = seen.rank(axes=free)
@@ -182,7 +183,7 @@ def _to_hold(arm: Arm, seen: Motions, free: Sequence[int], count: int) -> tuple[
             break
         best = min(possible, key=lambda k: _preference(arm, rest, k))
         solved = [k for k in possible if _is_solved(arm, [r for r in rest if r != k], k)]
-        if solved and (best not in solved or rest.index(best) != 2):  # the one without which the tip moves best
+        if solved and (best not in solved or rest.index(best) != 2):  # hold the joint without which the tip moves best
             best = max(solved, key=lambda k: seen.least([r for r in rest if r != k]))
         held.append(best)
     return tuple(held)

@@ -2,13 +2,13 @@
 
 Like `importing`, it may import the folders from `ir` to `mechanisms`.
 
-documents: XML and the numbers in it, read with one sentence for whatever is wrong
+documents: XML and the numbers in it; any fault is reported in one sentence
 mimics: joints that follow others
 mjcf: MJCF: the chain between two bodies or sites
 orientations: the five ways in which MJCF gives an orientation
 tables: tables of Denavit-Hartenberg parameters, in TOML or CSV
-transmissions: the transmissions of a URDF, which are reported and not read into the chain
-trees: a robot as a tree of links, and the joints on the way between two links
+transmissions: the transmissions of a URDF, which are reported but do not enter the chain
+trees: a robot as a tree of links, and the joints on the path between two links
 urdf: URDF: the chain between two links
-whole: an MJCF file with the files that it includes in their places
+whole: an MJCF file with its included files inserted
 """

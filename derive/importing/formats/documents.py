@@ -1,4 +1,4 @@
-"""Reading XML: one sentence for everything that is wrong with a file."""
+"""Reading XML: any fault of a file is reported in one sentence."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def parsed(path: Path) -> Element:
 
 
 def without_namespace(root: Element) -> Element:
-    """The root with its elements named without the namespace that the root has: `xmlns=` says nothing of a robot."""
+    """The root with its elements named without the namespace of the root, which has no meaning for a robot."""
     space, closing, _ = root.tag.rpartition("}")
     for element in root.iter() if closing else ():
         element.tag = element.tag.removeprefix(space + closing)
@@ -54,7 +54,7 @@ def limit(path: Path, text: str, place: str) -> float:
 
 
 def required(path: Path, element: Element, attribute: str) -> str:
-    """An attribute that has to be there."""
+    """A required attribute."""
     value = element.get(attribute)
     if not value:
         name = element.get("name")
@@ -85,10 +85,10 @@ def numbers(path: Path, element: Element, attribute: str, place: str, default: t
 
 
 def rounding(text: str) -> float:
-    """How far a number may be from the one that the file has rounded, by the decimals that are written.
+    """The largest distance of a number from the exact one that the file has rounded, by its number of decimals.
 
-    With three decimals it is half a unit of the last one; with more a whole unit, for 3.1415 is cut off; with fewer
-    nothing is known, and 0 is returned. Zeros behind the fourth decimal fill up a number that was rounded before.
+    With three decimals it is half a unit of the last one; with more a whole unit, because 3.1415 is cut off; with fewer
+    it is 0, because nothing is known. Zeros behind the fourth decimal only pad a number that was rounded before.
     """
     try:
         exponent = Decimal(text).as_tuple().exponent
@@ -102,6 +102,6 @@ def rounding(text: str) -> float:
 
 
 def roundings(element: Element, attribute: str, count: int) -> tuple[float, ...]:
-    """The `rounding` of each number of an attribute, which has so many; of none where it is not stated."""
+    """The `rounding` of each of the `count` numbers of an attribute; 0 where the attribute is missing."""
     words = (element.get(attribute) or "").split()
     return tuple(rounding(word) for word in words) if words else (0.0,) * count

@@ -17,7 +17,7 @@ class Follower:
     multiplier: float
     offset: float
     rounding: float = 0.0
-    """How far the offset may be from one that the file has rounded (radians)."""
+    """The largest distance of the offset from the exact one that the file has rounded (radians)."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Driven:
 
 
 def driven(path: Path, name: str, followers: Mapping[str, Follower]) -> Driven:
-    """What moves a joint: a follower may follow a follower."""
+    """The axis that moves a joint, directly or through other followers."""
     multiplier, offset, rounding, seen = 1.0, 0.0, 0.0, [name]
     while name in followers:
         follower = followers[name]

@@ -36,7 +36,7 @@ _FREE = {"free": "moves freely in space", "ball": "turns freely about a point"}
 
 @dataclass(frozen=True)
 class Frame:
-    """A body or a site, below another body; on the way to it there may be a `<frame>`, which only shifts and turns."""
+    """A body or a site, below another body; a `<frame>` between them only shifts and turns."""
 
     name: str
     element: Element
@@ -131,7 +131,7 @@ def _frames(file: File) -> Iterator[Frame]:
 
 
 def _below(file: File, parent: Element, body: Frame, label: str) -> Iterator[Frame]:
-    """The bodies and sites in a body, or in a frame of it. label: what those without a name are called after."""
+    """The bodies and sites in a body, or in a frame of it. label: the beginning of names for those without a name."""
     for number_, element in enumerate(parent):
         inner = element.get("childclass") or body.body_class
         own = element.get("name") or f"{label}.{number_}"
@@ -203,7 +203,7 @@ def _start(file: File, name: str, stated: Mapping[str, str]) -> float:
 
 
 def _start_rounding(file: File, name: str, stated: Mapping[str, str]) -> float:
-    """How far that value may be from one that is rounded: in degrees 15 is written exactly."""
+    """The largest distance of that value from the exact one; zero in degrees, in which 15 is written exactly."""
     is_radian = _kind(file, name, stated) is Kind.ROTARY and file.degree == 1.0
     return rounding(stated.get("ref", "0")) if is_radian else 0.0
 

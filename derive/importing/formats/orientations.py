@@ -1,4 +1,4 @@
-"""The five ways in which MJCF gives an orientation, and what its compiler settings say about them."""
+"""The five ways in which MJCF gives an orientation, and the compiler settings for them."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from derive.importing.robot import Array, Oriented, Place, Shifted, Turned, Unre
 
 Element = ElementTree.Element
 _AXES = 0.71
-"""The turn by which an axis is off whose rounded numbers are off by half a unit, in units: a hair more than 1/√2."""
+"""The largest angular error of an axis whose numbers are rounded by half a unit, in units: slightly more than 1/√2."""
 _QUATERNION = 2.0 * _AXES
-"""The same of a quaternion, whose numbers are those of half the turn."""
+"""The largest angular error of a quaternion, whose numbers belong to half the turn."""
 
 
 @dataclass(frozen=True)
 class File:
-    """A file with what its compiler settings and defaults say."""
+    """A file with its compiler settings and defaults."""
 
     path: Path
     root: Element

@@ -34,7 +34,7 @@ _METRES = {"mm": 1e-3, "m": 1.0}
 
 @dataclass(frozen=True)
 class Table:
-    """A table as it stands in the file."""
+    """The content of a table."""
 
     path: Path
     settings: Mapping[str, str]
@@ -148,7 +148,7 @@ def _steps(table: Table, index: int, kinds: Mapping[str, Kind | None]) -> tuple[
 
 
 def _rounding(table: Table, index: int, entry: str) -> float:
-    """How far an angle may be from one that is rounded: in degrees 15 is written exactly."""
+    """The largest distance of an angle from the exact one; zero in degrees, in which 15 is written exactly."""
     return rounding(str(table.rows[index].get(entry, 0))) if table.settings["angles"] == "radians" else 0.0
 
 

@@ -1,6 +1,6 @@
-"""Transmissions of a URDF, between motors and joints: a description is in joint values, so they are reported alone.
+"""Transmissions of a URDF, between motors and joints: a description is in joint values, so they are only reported.
 
-Read are those of `transmission_interface`, as a child of the robot or of its `ros2_control`, and what came before them.
+Those of `transmission_interface` are read, as a child of the robot or of its `ros2_control`, and the older forms.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _REDUCTIONS = ("mechanicalReduction", "mechanical_reduction")
 
 
 def transmission_notes(path: Path, root: Element, axes: Container[str]) -> Iterator[str]:
-    """What is said of the transmissions that move axes: the reductions, and a line for motors that share joints."""
+    """The notes on transmissions that move axes: the reductions, and a line for motors that share joints."""
     reductions: list[str] = []
     found = False
     for element in root.iter("transmission"):

@@ -1,7 +1,7 @@
 """URDF, with its macros expanded: the chain of joints between two links.
 
-Read with the standard library: the elements that kinematics needs are few, and the readers that exist bring meshes,
-graphs and a viewer along, and read a file with a wrong number or an unknown joint type without a word.
+It is read with the standard library: kinematics needs few elements, while existing readers depend on meshes, graphs and
+a viewer, and accept a file with a wrong number or an unknown joint type without a message.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ def _direction(path: Path, joint: Element, name: str) -> Triple:
 
 
 def _followers(path: Path, joints: Mapping[str, Element], passed: Sequence[str], scale: float) -> dict[str, Follower]:
-    """Those among some joints, and among the joints that they follow; the mimics of all others are not read."""
+    """The followers among some joints, and among the joints that they follow; other mimics are not read."""
     found: dict[str, Follower] = {}
     left = list(passed)
     while left:

@@ -1,4 +1,4 @@
-"""A model of MuJoCo with the files that it includes in their places."""
+"""A MuJoCo model with its included files inserted."""
 
 from __future__ import annotations
 

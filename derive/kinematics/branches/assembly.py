@@ -1,4 +1,4 @@
-"""Assembly modes: which sign of the determinant of forward kinematics belongs to which mode, and the poses that the
+"""Assembly modes: the sign of the determinant of forward kinematics that belongs to each mode, and the poses that the
 inverse must refuse.
 
 Let Phi be the equations of a loop and x the position. Its two solutions for x, at given joints, have opposite signs of
@@ -57,9 +57,9 @@ from derive.plate.plate import platform_checks
 _SAMPLES = 256
 _NAME = "assembly"
 _MARGINS = {2: "rods_aligned", 3: "rods_coplanar"}
-"""Where the two solutions meet, by the number of rods that hold the tool."""
+"""The name of the singularity at which the two solutions meet, by the number of rods that hold the tool."""
 _CLOSURE = "loop_singular"
-"""The same of equations that are no rods."""
+"""The name of this singularity for equations that are no rods."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +74,8 @@ class Assembled:
 
 
 def with_derived_assembly(mechanism: Mechanism) -> Mechanism:
-    """The mechanism with a name for its two positions at the same axes, where it has two and names none. Raises
-    `DescriptionError` where one name does not tell them apart, or where there is one position alone.
+    """The mechanism with named assembly modes, where it has two positions at the same axes and names none. Raises
+    `DescriptionError` where one name does not tell them apart, or where there is only one position.
     """
     if mechanism.chain is not None or mechanism.is_platform:
         return mechanism
@@ -108,13 +108,13 @@ def _derived(mechanism: Mechanism) -> Assembly:
 
 
 def _along(rod: Rod, coordinates: list[sp.Symbol]) -> list[sp.Expr]:
-    """Half the slopes of the equation of a rod: of an end that the position shifts, the rod itself."""
+    """Half the derivatives of a rod's equation: the vector of the rod, where the position shifts one of its ends."""
     between = [p - b for p, b in zip(rod.plate, rod.base, strict=True)]
     return [sp.Add(*[v * sp.diff(v, c) for v in between]) for c in coordinates]
 
 
 def _without_held(matrix: sp.Matrix) -> sp.Matrix:
-    """The matrix without the equations that hold one coordinate by itself (z of a quill), and without that one."""
+    """The matrix without equations that alone fix one coordinate (z of a quill), and without that coordinate."""
     for row in range(matrix.rows):
         own = [column for column in range(matrix.cols) if matrix[row, column] != 0]
         if len(own) == 1 and matrix[row, own[0]].is_number:
@@ -126,7 +126,7 @@ def _without_held(matrix: sp.Matrix) -> sp.Matrix:
 
 
 def _meanings(mechanism: Mechanism, rods: int) -> tuple[str, str]:
-    """What both signs mean."""
+    """The meanings of both signs."""
     names = [rod.name for rod in mechanism.rods]
     if rods == 2:
         text = f"from its base to the tool, rod {names[1]} points to the {{}} of rod {names[0]}"
@@ -139,7 +139,7 @@ def _meanings(mechanism: Mechanism, rods: int) -> tuple[str, str]:
 
 
 def assembled(mechanism: Mechanism, forward: Forward) -> Assembled:
-    """Bind the assembly sign to the parameter of the machine, as the indicator of the description tells."""
+    """Bind the assembly sign to the parameter of the machine, by the indicator of the description."""
     if mechanism.is_platform:
         return Assembled(forward, DETERMINANT, MARGIN)
     if mechanism.assembly is None or forward.determinant is None:
@@ -221,8 +221,8 @@ def bound_checks(mechanism: Mechanism, offset: bool) -> tuple[Statement, ...]:
 
 
 def mirror_checks(mechanism: Mechanism, solved: tuple[Statement, ...]) -> tuple[Statement, ...]:
-    """The checks that lengths are positive where the description says so and the step that solved for one does not
-    see to it.
+    """The checks that lengths are positive where the description says so and the step that solves for the length does
+    not guarantee it.
     """
     values = {s.name: s.value for s in solved if isinstance(s, Let)}
     checks: list[Statement] = []

@@ -42,7 +42,7 @@ from derive.plate.turning import given_pose
 
 _SAMPLES = 64
 _SAME = 1e-9
-"""Ratios that differ by less than this share are one."""
+"""Ratios that differ by less than this share are equal."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Assignment:
 
     @property
     def factor(self) -> sp.Symbol:
-        """The same sign as a real number, which multiplies."""
+        """The sign of the branch as a real number, for products."""
         return real(f"sign_{self.branch.name}")
 
     def margin(self, mechanism: Mechanism) -> sp.Expr:
@@ -121,9 +121,9 @@ def _assigned(
 def _told(
     branch: Branch, indicator: np.ndarray, determinants: Sequence[StepDeterminant], sampled: Sequence[np.ndarray]
 ) -> list[tuple[StepDeterminant, int]]:
-    """The steps whose determinants have the sign of an indicator, or the opposite one. Where the assembly of a loop
-    makes the signs of several steps one, those count whose unknown the indicator reads; where long links do, the step
-    of whose determinant the indicator is a multiple.
+    """The steps whose determinants have the sign of an indicator, or the opposite one. Where several steps have equal
+    signs because of the assembly of a loop, those count whose unknown the indicator reads; where they have because of
+    long links, the step counts whose determinant is proportional to the indicator.
     """
     agreeing = [
         (s, o, row)
@@ -138,12 +138,12 @@ def _told(
 
 
 def _are_multiples(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two quantities have one ratio at all samples."""
+    """Whether two quantities have the same ratio at all samples."""
     return bool(np.abs(one * other[0] - one[0] * other).max() <= _SAME * np.abs(one * other[0]).max())
 
 
 def _met(determinants: Sequence[StepDeterminant]) -> str:
-    """For which unknowns there are two solutions."""
+    """The unknowns with two solutions, in words."""
     if not determinants:
         return "and this machine has one solution alone"
     return f"those for {', '.join(s.step.name for s in determinants)}"

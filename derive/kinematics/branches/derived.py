@@ -1,7 +1,7 @@
-"""Branches that the description does not name: named here, by the determinants of the steps that make them.
+"""Names for branches that the description does not name, from the determinants of the steps that decide them.
 
 The indicator of such a branch is its determinant as an expression of the joints, without the factors that are
-positive for every machine; so the meaning of both signs can be read, and the name can be replaced by a better one.
+positive for every machine. So a reader sees the meaning of both signs, and can choose a better name.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _PARALLEL = 0.999999
 
 
 def with_derived_branches(mechanism: Mechanism, inverse: Inverse, forward: Forward) -> Mechanism:
-    """The mechanism with a branch for every two-root step that none of its own names, behind its own."""
+    """The mechanism with a further branch for every two-root step that none of its own branches names."""
     unnamed = steps_without_branch(mechanism, inverse, forward)
     named = _branches_of(mechanism, inverse, forward, unnamed)
     return replace(mechanism, branches=(*mechanism.branches, *named)) if named else mechanism
@@ -64,7 +64,7 @@ def _branches_of(
 
 
 def _in_joints(mechanism: Mechanism, inverse: Inverse, forward: Forward, step: StepDeterminant) -> sp.Expr:
-    """The determinant of a step in the joints (and, of a loop, in the commanded pose), as a description writes it."""
+    """The determinant of a step in the joints (for a loop also in the commanded pose), as a description writes it."""
     pose = given_pose(mechanism) if mechanism.is_platform else forward
     statements = derivation_at_axes(mechanism, inverse, pose)
     lets = {s.name: s.value for s in statements if isinstance(s, Let)}
@@ -110,7 +110,7 @@ def _shorter(mechanism: Mechanism, value: sp.Expr) -> sp.Expr:
 
 
 def _word(mechanism: Mechanism, step: StepDeterminant, indicator: sp.Expr) -> str:
-    """What a mechanic calls such a choice."""
+    """The usual word for such a choice."""
     joints = {j.symbol for j in mechanism.joints}
     if step.step in {j.symbol for j in mechanism.joints if not j.is_angle}:
         return "slide"
@@ -122,7 +122,7 @@ def _word(mechanism: Mechanism, step: StepDeterminant, indicator: sp.Expr) -> st
 
 
 def _meanings(mechanism: Mechanism, indicator: sp.Expr) -> tuple[str, str]:
-    """What the positive and the negative sign of an indicator mean."""
+    """The meanings of the positive and the negative sign of an indicator."""
     joints = {j.symbol: j.name for j in mechanism.joints}
     if indicator in joints:
         return f"{joints[indicator]} is positive", f"{joints[indicator]} is negative"
@@ -148,7 +148,7 @@ def in_words(mechanism: Mechanism, value: sp.Expr) -> str:
 
 
 def _is_elbow(mechanism: Mechanism, indicator: sp.Expr) -> bool:
-    """Whether the joint stands beside one that is parallel to it: both then bend the arm in one plane."""
+    """Whether a neighbour of the joint is parallel to it: both then bend the arm in one plane."""
     moved = indicator.free_symbols & {j.symbol for j in mechanism.joints}
     if len(moved) > 1:
         return True

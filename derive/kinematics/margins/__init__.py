@@ -2,6 +2,6 @@
 
 Like `kinematics`, it may import the folders from `ir` to `optimize`.
 
-candidates: what may be a margin: the determinants of steps and their conditioning, each over its scale
+candidates: the candidates for margins: the determinants of steps and their conditioning, each over its scale
 determinant: the margins that multiply, with integer exponents, to the determinant of the Jacobian
 """

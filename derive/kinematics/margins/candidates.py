@@ -1,4 +1,4 @@
-"""What may be a margin: the determinants of the steps and their conditioning, each over its scale."""
+"""The candidates for margins: the determinants of the steps and their conditioning, each over its scale."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Factor:
     name: str
     value: sp.Expr
     is_length: bool = False
-    """Whether it has the unit of length of the user, because the machine has no length to divide it by."""
+    """Whether it is in the user's unit of length, because the machine has no length to divide it by."""
     is_signed: bool = True
 
     @property
@@ -48,7 +48,7 @@ class Factor:
         length = real(f"length_{self.name}")
         other = Select(sp.Lt(length, -FREE_ANGLE), sp.Integer(-1), sp.Integer(0)) if self.is_signed else sp.Integer(0)
         told = Select(sp.Gt(length, FREE_ANGLE), sp.Integer(1), other)
-        return Let(length, self.value), Let(margin, told, "0 where nothing determines the axis, else 1 or -1")
+        return Let(length, self.value), Let(margin, told, "0 where no equation determines the axis, else 1 or -1")
 
 
 def factor_of(mechanism: Mechanism, found: Assignment | Conditioning) -> Factor:

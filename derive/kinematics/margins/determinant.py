@@ -28,11 +28,11 @@ from derive.kinematics.margins.candidates import Factor
 from derive.kinematics.sampling import ENOUGH, possible_axes, sample_machine, size_of
 
 _EXACT = 1e-6
-"""The largest difference of logarithms of what is one product."""
+"""The largest difference between the logarithms of equal products."""
 
 
 _DIGITS = 1e-6
-"""The share of the largest singular value of a Jacobian that its least one has where its determinant has digits."""
+"""The determinant of a Jacobian has digits where its least singular value is at least this share of its largest."""
 
 
 def singularity_program(
@@ -59,7 +59,7 @@ def singularity_program(
 
 
 def samples_anywhere(mechanism: Mechanism, program: Program) -> dict[str, NDArray[np.float64]]:
-    """One machine, with axis values over its whole range that a program accepts some of."""
+    """One machine with axis values over its whole range, of which a program accepts at least some."""
     return possible_axes(mechanism, sample_machine(mechanism, 11), 64, 12, program)
 
 
@@ -68,7 +68,7 @@ def _exponents(
 ) -> list[int]:
     """Fit log|det J| = c + Σ e_k log|m_k| over poses of one machine; the e_k must be integers and the fit exact.
 
-    Lengths are measured in lengths of the machine, which moves c alone: so the unit of length decides nothing.
+    Lengths are measured in lengths of the machine, which changes only c, so that the unit of length has no influence.
     """
     count = max(v.size for v in samples.values())
     values, status = run(margins, samples)

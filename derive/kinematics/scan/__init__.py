@@ -7,7 +7,7 @@ candidates: all candidates for a root in closed form, where the residual is a co
 choice: the choice of the joint that is searched
 conic: where the unit circle meets a conic
 derivations: the closed form and the trial, and the branches of their steps
-guards: where a trial is out of reach
+guards: the conditions under which a trial is within reach
 inverse: the inverse: closed form and scan in one program
 machine_checks: checks of a trial that parameters alone decide
 margins: the margins

@@ -1,12 +1,11 @@
 """The choice of the joint that is searched, where no subproblem solves a chain.
 
-With one joint known the others are solved, and one equation is left: the residual of a trial along this joint. Of a
-commanded point the third coordinate is left; joints that are held are known anyway. Every rotary joint is tried in
-turn. The positions are solved before the rotation, so the equations of the positions may hold no more unknown joints
-than there are equations, but for one more where three axes are parallel: where they do, nothing is derived. Of several
-joints that would do, the one is taken whose trial has the fewest branches, then the fewest places where it may be out
-of reach, then the fewest operations. Where its residual is a conic in cosine and sine of the joint, its roots are known
-in closed form, and nothing is scanned.
+With one joint known the others are solved, and one equation is left: the residual of a trial along this joint. For a
+commanded point the third coordinate is left; held joints are known anyway. Every rotary joint is tried in turn. The
+positions are solved before the rotation, so their equations may hold no more unknown joints than there are equations
+(one more where three axes are parallel); a joint that violates this is not tried. Of several suitable joints the one
+is taken whose trial has the fewest branches, then the fewest guards, then the fewest operations. Where its residual is
+a conic in cosine and sine of the joint, its roots are known in closed form, and nothing is scanned.
 """
 
 from __future__ import annotations
@@ -111,7 +110,7 @@ def _searched(mechanism: Mechanism, found: _Candidate) -> Mechanism:
 
 
 def _note(mechanism: Mechanism, found: _Candidate) -> str:
-    """What to know about the search."""
+    """The note about the root scan for users."""
     (last,) = (b for b in mechanism.branches if b.is_crossing)
     joint = found.joint.name
     if _is_quartic(mechanism, found):

@@ -26,7 +26,7 @@ class Guard:
 
     @property
     def room(self) -> sp.Expr:
-        """By how much the condition holds."""
+        """The amount by which the condition holds."""
         return room_of(self.condition)
 
 
@@ -65,8 +65,8 @@ def conditions_of(statements: Sequence[Statement]) -> list[sp.Basic]:
 
 
 def room_of(condition: sp.Basic) -> sp.Expr:
-    """By how much a condition holds, without a unit: 1 - c^2 of a cosine c whose size is at most 1; of a radicand, by
-    how much it is above its bound, divided by the scale of which the bound is `BOUNDARY`.
+    """The amount by which a condition holds, without a unit: 1 - c^2 for a cosine c whose size is at most 1; for a
+    radicand, its amount above the bound, divided by the scale of which the bound is `BOUNDARY`.
     """
     if isinstance(condition, sp.Le):
         (cosine_value,) = condition.lhs.args

@@ -154,7 +154,7 @@ def margins_wanted(both: Scanned) -> list[sp.Expr]:
 
 
 def _is_length(mechanism: Mechanism, branch: Branch) -> bool:
-    """Whether an indicator is a length: it vanishes with all lengths of the machine."""
+    """Whether an indicator is a length: it then vanishes where all lengths of the machine are zero."""
     gone = {p.symbol: 0 for p in mechanism.parameters if p.role is not Role.ANGLE}
     return bool(sp.sympify(branch.indicator).subs(gone) == 0)
 

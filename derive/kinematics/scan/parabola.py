@@ -1,8 +1,8 @@
 """A step towards a root that may be double: to the nearer root of the parabola with the same value, slope and bend.
 
-Where the parabola has no root, the step leads to its vertex. So roots that are nearly double are found as fast as
-others. A step that does not lower the value is not taken, and none from a value that is rounding: of two roots that are
-nearly one, each stays on its side.
+Where the parabola has no root, the step leads to its vertex. So nearly double roots are found as fast as others. A step
+is not taken if it does not lower the value, or if the value is rounding already: two nearly equal roots each stay on
+their side.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ def parabola(
     there: sp.Expr,
     terms: sp.Expr,
 ) -> Iterator[Let]:
-    """The statements that bind the name to what is a step behind the start.
+    """The statements that bind the name to the start plus one step.
 
-    word: what the names of the statements end in. there: the value behind the step. terms: the size of the terms of
+    word: the end of the names of the statements. there: the value after the step. terms: the size of the terms of
     which the value is the sum.
     """
     value, slope, bend, square, radius, below, after = (

@@ -1,7 +1,7 @@
 """A root of an arm with a spherical wrist: its position is improved before the wrist follows it.
 
-Near a double root the position of a trial has half of its digits. Where the wrist is singular, too, it cannot mend the
-rotation for every small motion of the joints in front of it: Newton's method on the whole closure would stop short.
+Near a double root the position of a trial has half of its digits. Where the wrist is singular, too, it cannot correct
+the rotation for every small motion of the joints in front of it: Newton's method on the whole closure would stall.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def with_position_first(both: Scanned, trial: Trial) -> tuple[Statement, ...]:
 
 
 def _names(joint: Joint) -> tuple[sp.Symbol, ...]:
-    """What a trial binds of a joint."""
+    """The names that a trial binds for a joint."""
     names = (cosine(joint.symbol), sine(joint.symbol)) if joint.is_angle else (joint.symbol,)
     return tuple(_called(name, _TRIED) for name in names)
 
@@ -50,7 +50,7 @@ def _called(name: sp.Symbol, ending: str) -> sp.Symbol:
 
 
 def _placed(joint: Joint) -> Iterable[Let]:
-    """A joint behind Newton's method, under its names in the trial."""
+    """The result of Newton's method for a joint, bound to the joint's names in the trial."""
     value = real(f"{joint.symbol.name}{_PLACED}")
     values = (sp.cos(value), sp.sin(value)) if joint.is_angle else (value,)
     return (Let(name, v) for name, v in zip(_names(joint), values, strict=True))
@@ -75,7 +75,7 @@ def _improved(both: Scanned, front: tuple[Joint, ...], begun: dict[sp.Symbol, sp
 
 
 def _front(mechanism: Mechanism, links: tuple[Factor, ...], joints: tuple[Joint, ...]) -> Mechanism:
-    """The machine up to its wrist, which brings a point somewhere."""
+    """The machine up to its wrist, as a mechanism that positions a point."""
     return replace(
         mechanism,
         chain=Chain(links),

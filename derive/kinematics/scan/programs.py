@@ -215,7 +215,9 @@ def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequ
 
 
 def _agreement(mechanism: Mechanism) -> list[Let]:
-    """What tells a rotation that agrees with the goal from one half a turn away, whose error vanishes as well."""
+    """The statements that distinguish a rotation that agrees with the goal from one half a turn away, whose error also
+    vanishes.
+    """
     if mechanism.task.turning is Turning.NONE:
         return []
     trace = sp.Add(*[GOAL[r] * r for r in ROTATION_ENTRIES])

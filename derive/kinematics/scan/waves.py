@@ -41,13 +41,13 @@ class NoWaveError(Exception):
 
 @dataclass
 class Waves:
-    """What the names of a program are, with the statements that compute the coefficients."""
+    """The values of the names of a program as waves, with the statements that compute the coefficients."""
 
     known: dict[sp.Symbol, Value]
     """At first the cosine and the sine of the angle."""
     lets: list[Let] = field(default_factory=list)
     squares: dict[sp.Symbol, Value] = field(default_factory=dict)
-    """What the names of roots are squared."""
+    """The squares of the names of roots."""
     signs: set[sp.Symbol] = field(default_factory=set)
 
     def read(self, statements: Iterable[Let]) -> None:
@@ -118,7 +118,7 @@ class Waves:
         return real(name)
 
     def vanishing(self, factors: Sequence[sp.Expr]) -> set[sp.Expr]:
-        """The coefficients that vanish whatever the numbers are: by what they are at random ones, as a sum of terms."""
+        """The coefficients that vanish identically: tested at random numbers, relative to the size of their terms."""
         named = {let.name: let.value for let in self.lets}
         written = {f: f.xreplace(named) for f in factors}
         sums = [(f, [s for s in sp.Mul.make_args(v) if isinstance(s, sp.Add)]) for f, v in written.items()]

@@ -72,8 +72,8 @@ def within_reach(
 
 
 def in_order(statements: Sequence[Statement]) -> list[Statement]:
-    """Every statement behind those that it reads: a motion reads values bound behind the angle that do not depend on
-    it.
+    """The statements, each behind those that it reads: a motion may read values that are bound behind the angle but do
+    not depend on it.
     """
     sources = {name: s for s in statements for name in binds(s)}
     ordered: list[Statement] = []
@@ -124,7 +124,7 @@ def _condition(
 
 
 def _own(angle: sp.Symbol) -> dict[sp.Symbol, _Part]:
-    """The cosine and sine of the angle, which depend on it by themselves."""
+    """The cosine and sine of the angle itself, as values that depend on it."""
     none, one = sp.Integer(0), sp.Integer(1)
     return {cosine(angle): _Part(cosine(angle), none, one, none), sine(angle): _Part(sine(angle), none, none, one)}
 
@@ -166,12 +166,12 @@ def _dependent(statements: Sequence[Statement], angle: sp.Symbol) -> dict[sp.Sym
 
 
 def _is_chosen(value: sp.Basic, names: Set[sp.Symbol]) -> bool:
-    """Whether a value is chosen by what depends on these names: written out, such values grow with every choice."""
+    """Whether a value is a choice whose condition depends on these names: written out, such values become too long."""
     return any(choice.free_symbols & names for choice in value.atoms(Select))
 
 
 def _squares(value: sp.Expr, dependent: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-    """The squares of lengths through what the lengths are made of."""
+    """The value with the squares of lengths written out by the sides of these lengths."""
     roots = {name: v.args[0] for name, v in dependent.items() if isinstance(v, Root)}
     return value.replace(lambda n: isinstance(n, sp.Pow) and n.base in roots and n.exp == 2, lambda n: roots[n.base])
 
@@ -302,7 +302,9 @@ def _cosine_of(value: sp.Expr) -> sp.Expr:
 
 
 def _bound(conditioning: Conditioning, condition: _Condition, names: dict[sp.Symbol, sp.Symbol]) -> list[Let]:
-    """Cosine and sine behind the motion, which is made where it is needed and costs no more than rounding."""
+    """Cosine and sine after the motion, which takes place where it is needed and changes the pose by no more than
+    rounding.
+    """
     word, before = condition.word, [names[f(conditioning.angle)] for f in (cosine, sine)]
     value, size, moved, costs = (real(f"{name}_{word}") for name in ("value", "size", "moved", "cost"))
     stays = flag(f"stays_{word}")

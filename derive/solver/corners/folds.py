@@ -188,8 +188,8 @@ def turned(later: Later, turn: sp.Symbol) -> tuple[Let, ...]:
 
 
 def _swept(later: Later) -> tuple[Let, ...]:
-    """The same where the angle follows a later one, by the way with the smaller residual; a free
-    angle has no residual.
+    """The motion where the angle follows a later one: of two ways, the one with the smaller residual. A free angle has
+    no residual.
     """
     legs, (near, mirrored) = later.legs, (later.name(f"{way}_cost") for way in WAYS)
     determined = sp.Gt(legs.distance, FREE_ANGLE * later.scale)
@@ -210,8 +210,8 @@ def _residual(later: Later, word: str) -> sp.Expr:
 
 
 def taken(later: Later, *, is_swept: bool) -> tuple[Let, ...]:
-    """The angle as it was where it is far from the fold, or the later step has a solution; else
-    turned within rounding.
+    """The unchanged angle where it is far from the fold or the later step has a solution; else the angle turned within
+    rounding.
     """
     bests = [later.name(f"best_{word}") for word in ("cost", "ahead", "cos", "sin")]
     chosen = [later.name(f"turned_{word}") for word in ("cost", "ahead", "cos", "sin")]

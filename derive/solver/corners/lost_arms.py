@@ -2,9 +2,9 @@
 
 A step takes u as the angle from an arm (p, q) to a point (x, y), of one length but for rounding. Where the arm is known
 through one root it is as small as the point. Where it is a sum of several roots near their folds, each with half of its
-digits, the sum may be zero and the point not; so may one root that is read off an entry of a rotation near one, or off
-a polar radius near its largest value. Then nothing is left to divide by: u is free, as it is where the point is on the
-axis.
+digits, the sum may be zero and the point not. The same happens to one root that is computed from an entry of a rotation
+near one, or from a polar radius near its largest value. Then nothing is left to divide by: u is free, as it is where
+the point is on the axis.
 """
 
 from __future__ import annotations

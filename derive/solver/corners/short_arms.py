@@ -3,7 +3,7 @@ step is long enough.
 
 A two-root step takes the sine of its angle v as a root. Near zero the root has half of the digits. A later step solves
 a cos u + b sin u = e, which needs an arm (a, b) as long as e. Where v turns the arm, its length has half of the digits,
-too. An elbow that is nearly straight makes the arm vanish that the joint before it turns; there, and wherever the
+too. A nearly straight elbow makes the arm vanish that the joint before it turns. There, and wherever the
 later step is at its own boundary, the pose would be refused. So v turns by the least t with |(a, b) + (a', b') t| =
 |e + e' t|, a quadratic equation, if the residual of v's own equation stays within rounding. Where the arm is long
 enough, or the roots are far apart, v stays.

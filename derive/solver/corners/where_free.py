@@ -1,4 +1,6 @@
-"""What a length is where an angle is free: there entries of the commanded rotation vanish, and others are one."""
+"""The square of a length where an angle is free: there some entries of the commanded rotation vanish, others are
+one.
+"""
 
 from __future__ import annotations
 

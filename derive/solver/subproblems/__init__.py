@@ -5,7 +5,7 @@ Like `solver`, it may import the folders from `ir` to `equations`.
 affine: k v + c = 0, for a length v
 affine_system: M v = e, for two or three lengths v, or one length along a direction
 direction: cos u : sin u = along : across, for an angle u, which other rules lead to
-naming: names for known values, one for each value
+naming: one name for each known value
 one_equation/: a cos u + b sin u = e, for an angle u
 pair: two equations that are linear in cos u and sin u, for an angle u
 polar: f cos v = a and f sin v = b, for an angle v and a length f

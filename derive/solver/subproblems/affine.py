@@ -1,7 +1,7 @@
 """Affine:  k v + c = 0  with k never zero.
 
 One root, v = -c / k. Determinant k. There is no degenerate case: an equation whose k can vanish is not taken. Where k
-is made of parameters alone, the machine is refused for which it vanishes.
+is made of parameters alone, a machine for which it vanishes is refused.
 """
 
 from __future__ import annotations

@@ -2,14 +2,15 @@
 
 One root, by Cramer's rule. Determinant det M. There is no degenerate case: equations whose determinant can vanish are
 not taken. A single coefficient may vanish: a table turned by 90 degrees exchanges its axes. Where det M is made of
-parameters alone, the machine is refused for which it vanishes: two of its slides are parallel.
+parameters alone, a machine for which it vanishes is refused: two of its slides are parallel.
 
 Along a direction:  k₁ v + c₁ = 0 and k₂ v + c₂ = 0 with k₁² + k₂² never zero, for one unknown length v: a slide along
-a direction that is known. One root, v = -(k₁ c₁ + k₂ c₂) / (k₁² + k₂²); the steps before have seen to it that the
-equations agree.
+a direction that is known. One root, v = -(k₁ c₁ + k₂ c₂) / (k₁² + k₂²); earlier steps have made sure that the equations
+agree.
 
 Across:  one or two equations whose determinant can vanish, and is made of the directions of slides alone: a ram that a
-head may lay flat. There a slide points across its way, or two are parallel, and one of them is free (degenerate case):
+head may lay flat. There a slide is at right angles to the coordinate that it has to change, or two slides are parallel,
+and one of them is free (degenerate case):
 the values nearest to the reference that satisfy the equations, v = r + M' (e - M r) / |M|^2, where the equations agree.
 The determinant is the conditioning. Taken only where nothing else is left.
 
@@ -49,7 +50,7 @@ def affine_triple(problem: Problem, equations: tuple[Equation, ...]) -> Iterator
 
 
 def affine_along(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
-    """Every length that two or three equations determine together and none of them alone: along a known direction."""
+    """Every length that two or three equations determine together but none of them alone: along a known direction."""
     for count in _NAMES:
         for some in combinations(equations, count):
             unknowns = problem.unknowns_of(sp.Tuple(*(e.expression for e in some)))
@@ -94,7 +95,7 @@ def affine_across(problem: Problem, equations: tuple[Equation, ...]) -> Iterator
 
 
 def _is_direction(problem: Problem, value: sp.Expr) -> bool:
-    """Whether a value is made of directions alone: it needs no scale to be compared with."""
+    """Whether a value is made of directions alone, so that it has no unit and needs no scale."""
     directions = {f(a) for a in problem.units for f in (cosine, sine)} | {*ROTATION_ENTRIES}
     return set(problem.reduce(value).free_symbols) <= directions
 
@@ -174,7 +175,7 @@ def _solve(problem: Problem, equations: tuple[Equation, ...], unknowns: tuple[sp
 
 
 def _adjugate(problem: Problem, matrix: sp.Matrix) -> sp.Matrix:
-    """det M times the inverse of M; the cofactors of three rows in their normal form, of a rotation its own entries."""
+    """det M times the inverse of M: the cofactors of three rows in normal form; for a rotation, its own entries."""
     adjugate = matrix.adjugate()
     return adjugate if matrix.rows == 2 else adjugate.applyfunc(problem.reduce)
 

@@ -1,8 +1,8 @@
 """Direction:  cos u : sin u = along : across.
 
-One root. Where the conditioning (the length of the vector that turns) vanishes nothing determines u: it takes the value
-of the reference. Cosine and sine are divided by the length of (along, across) itself, so that sin^2 + cos^2 = 1 to
-rounding.
+One root. Where the conditioning (the length of the vector that turns) vanishes nothing determines u, and u takes the
+value of the reference. Cosine and sine are divided by the length of (along, across) itself, so that sin^2 + cos^2 = 1
+to rounding.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from derive.ir.symbols import (
     sine,
 )
 
-AT_THE_SINGULARITY = "where it is singular: the angle of the reference"
+AT_THE_SINGULARITY = "at a singularity: the angle of the reference"
 
 
 def direction(
@@ -42,7 +42,7 @@ def direction(
     is_length: bool = False,
     scale: sp.Expr | None = None,
 ) -> tuple[Statement, ...]:
-    """Bind cosine and sine of the angle; `conditioning` decides whether they are determined.
+    """Bind cosine and sine of the angle; `conditioning` says whether they are determined.
 
     `is_length`: the conditioning is the length of (along, across) itself. `scale`: the length of the machine with
     which it is compared.

@@ -41,8 +41,8 @@ def pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]
 
 
 def scaled_pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
-    """Every angle that two equations determine together, of which each is the coordinate of a turned vector times a
-    factor that never vanishes: of an arm at a known angle, the height of its tip and the square of its distance.
+    """Every angle that two equations determine together, where each equation is a coordinate of a turned vector times a
+    factor that never vanishes: the height of an arm's tip, and the square of its distance.
     """
     for angle in problem.angles:
         rows = [(e, r) for e in equations for r in [_row(problem, e, angle)] if r is not None]
@@ -57,7 +57,7 @@ def scaled_pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[B
 
 
 def _without_factor(problem: Problem, row: Row) -> tuple[Row, sp.Expr]:
-    """The row over the factor that both of its coefficients have and that never vanishes, and this factor."""
+    """The row, divided by a common factor of its coefficients that never vanishes, and this factor."""
     a, b, e = row
     factors = sp.Mul.make_args(sp.factor(sp.gcd(a, b)))
     factor = sp.Mul(*[f for f in factors if not f.is_number and problem.is_never_zero(f)])
@@ -67,7 +67,7 @@ def _without_factor(problem: Problem, row: Row) -> tuple[Row, sp.Expr]:
 
 
 def _share(problem: Problem, factor: sp.Expr) -> sp.Expr:
-    """A factor without its unit: every length of the machine in it over the machine's scale."""
+    """A factor without its unit: each length in it is divided by the machine's scale."""
     turned = {f(angle) for angle in problem.units for f in (cosine, sine)}
     return factor.xreplace({s: s / problem.scale for s in factor.free_symbols - turned - {*problem.signs}})
 
@@ -111,8 +111,8 @@ def _solve(problem: Problem, angle: sp.Symbol, used: tuple[Equation, Equation], 
 
 
 def _sense(problem: Problem, row1: Row, row2: Row) -> sp.Expr | None:
-    """s where the rows are one vector rotated by the angle: +1, -1 where it turns the other way, or a sign of the
-    machine.
+    """s where the rows are one vector rotated by the angle: +1, or -1 where the angle turns the other way, or a sign of
+    the machine; else None.
     """
     (a1, b1, _), (a2, b2, _) = row1, row2
     for sense in (sp.Integer(1), sp.Integer(-1), *problem.signs):

@@ -1,9 +1,9 @@
 """Polar:  f cos v = a,  f sin v = b  with both f and v unknown.
 
 v is the polar angle of (sigma a, sigma b), and f = sigma |(a, b)| the polar radius. Two roots, or one where f is known
-to be positive. Determinant f: its sign is the branch. Where |(a, b)| vanishes v is free (degenerate case); it is the
-conditioning. f is an unknown length, or a product with the sine or cosine of another angle, which then becomes known:
-of an unknown length, or of a known one, such as an arm that this other angle swings.
+to be positive. Determinant f: its sign is the branch. Where |(a, b)| vanishes v is free (degenerate case); this length
+is the conditioning. f is an unknown length; or it is the sine or cosine of another angle, which then becomes known,
+times an unknown or a known length, such as an arm that this other angle swings.
 """
 
 from __future__ import annotations
@@ -59,14 +59,14 @@ class _Radius:
         return self.unit * self.unknown
 
     def is_positive(self, problem: Problem) -> bool:
-        """Whether the machine says so."""
+        """Whether the description says that the radius is positive."""
         return bool(self.unit.is_positive) and problem.is_positive(self.unknown)
 
 
 def _unit(problem: Problem, equation: Equation, part: _Part) -> sp.Expr:
-    """The known factor that makes the radius a length in an equation of lengths: an arm that is only turned.
+    """The known factor of the radius that is a length, in an equation of lengths: an arm that is only turned.
 
-    Divided by it the radius would be a sine, and be compared with lengths of the machine.
+    Without this factor the radius would be a sine, and would be compared with lengths of the machine.
     """
     unknown, constant, _ = part
     if not equation.is_length or unknown.free_symbols & set(problem.lengths):
@@ -75,7 +75,7 @@ def _unit(problem: Problem, equation: Equation, part: _Part) -> sp.Expr:
 
 
 def _unknown_terms(problem: Problem, equation: Equation) -> list[set[sp.Symbol]]:
-    """The unknowns of each term that has some."""
+    """The unknowns of each term that has unknowns."""
     unknowns = set(problem.atoms())
     found = (t.free_symbols & unknowns for t in sp.Add.make_args(equation.expression))
     return [symbols for symbols in found if symbols]
@@ -87,7 +87,7 @@ def _is_in_all(function: sp.Symbol, terms: list[set[sp.Symbol]]) -> bool:
 
 
 def _radius(problem: Problem, equation: Equation, function: sp.Symbol) -> _Part | None:
-    """The parts of the equation where it is such a product; else None."""
+    """The parts (f, c, a) of the equation, where it has this form; else None."""
     linear = linear_coefficients(equation.expression, (function,))
     if linear is None or problem.unknowns_of(linear[1]):
         return None
@@ -144,8 +144,8 @@ def _solve(
 def _conditioning(
     problem: Problem, angle: sp.Symbol, radius: sp.Expr, distance: sp.Expr, scale: sp.Expr
 ) -> Conditioning:
-    """For a product such as r sin(phi) the sine alone, which has no unit: the step that finds r has its own
-    conditioning.
+    """The conditioning of the angle. For a product such as r sin(phi) it is the sine alone, which has no unit: the step
+    that finds r has its own conditioning.
     """
     functions = [f for f in sp.Mul.make_args(radius) if f not in problem.lengths and f.is_Symbol]
     if len(functions) == 0 or len(functions) == len(sp.Mul.make_args(radius)):

@@ -79,7 +79,7 @@ def _known_sign(problem: Problem, determinant: sp.Expr, unknown: sp.Symbol) -> s
     for quantity in problem.positive:
         value = _through(problem, quantity, unknown)
         if value == 0 or not (determinant.free_symbols ^ value.free_symbols) <= {*problem.signs}:
-            continue  # no multiple: another symbol stands in one of them
+            continue  # no multiple: one value has a symbol that the other lacks
         ratio = cancelled(determinant / value)
         for sign in (sp.Integer(1), *(s for s in problem.signs if s.is_nonzero and s in ratio.free_symbols)):
             number = cancelled(ratio * sign)

@@ -2,8 +2,8 @@
 
 For two lengths, (r - l)(r + l), this is |l| - |r|. For the three sides of a triangle, (l1 + l2 - r)(l1 + l2 + r)
 (l1 - l2 + r)(l2 + r - l1), it is the larger of r - (l1 + l2) and |l1 - l2| - r, with the sizes of lengths that have a
-sign. For a length that occurs only as its square, such as the rod l in l^2 - x^2 - y^2, it is by how much the rod is
-too short or too long.
+sign. For a length that occurs only as its square, such as the rod l in l^2 - x^2 - y^2, it is the length by which the
+rod is too short or too long.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from derive.ir.symbols import real
 
 
 def out_of_reach(joint: sp.Symbol, radicand: sp.Expr, known: Iterable[Let]) -> Reason:
-    """Why an angle has no value; `known` are the names in the radicand that have one."""
+    """The reason why an angle has no value; `known` binds the names in the radicand."""
     return _with_amount(about_joint(joint, Why.OUT_OF_REACH), radicand, known)
 
 
 def cannot_reach(what: str, radicand: sp.Expr, known: Iterable[Let]) -> Reason:
-    """Why a length has no value: the equation's rod does not reach."""
+    """The reason why a length has no value: the equation's rod does not reach."""
     return _with_amount(about(what, Why.CANNOT_REACH), radicand, known)
 
 
@@ -66,7 +66,7 @@ def _negative_terms(value: sp.Expr) -> int:
 def _of_lengths(
     sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]
 ) -> sp.Expr | None:
-    """By how much one length is too short for another, or the third side of a triangle too long or too short."""
+    """The amount by which one length is too short for another, or a triangle's third side is too long or too short."""
 
     def size(value: sp.Expr) -> sp.Expr:
         """The size of a length, which may have a sign."""
@@ -96,8 +96,8 @@ def _sides(sums: list[sp.Expr]) -> list[sp.Expr] | None:
 
 
 def _of_rod(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: frozenset[sp.Symbol]) -> sp.Expr | None:
-    """By how much a length that occurs only as its square is too short or too long; names of
-    products are written out.
+    """The amount by which a length that occurs only as its square is too short or too long; names of products are
+    written out.
     """
     expanded = [sp.expand(_written_out(f, values)) for f in sums]
     for rod in sorted({s for f in expanded for s in f.free_symbols if s in lengths}, key=str):

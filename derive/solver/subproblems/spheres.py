@@ -109,7 +109,8 @@ def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ..
 
 
 Parts = tuple[sp.Matrix, sp.Matrix, sp.Expr, sp.Expr | None]
-"""Foot, normal, the square of its length, and the square of the height where it is known better than from the foot."""
+"""Foot, normal, the square of the normal's length, and the square of the height where a better formula than that by
+the foot exists."""
 
 
 def _circles(statements: list[Statement], found: tuple[Sphere, ...], apart: sp.Matrix) -> Parts:
@@ -166,8 +167,8 @@ def _normal_square(statements: list[Statement], value: sp.Expr, found: tuple[Sph
 def _named(
     statements: list[Statement], vector: sp.Matrix, name: str, unknowns: tuple[sp.Symbol, ...], note: str = ""
 ) -> sp.Matrix:
-    """The vector by names of its components, bound here where they are more than a name; the note
-    stands at the first.
+    """The vector with names for its components, bound here where a component is more than a name; the note stands at
+    the first binding.
     """
     entries = []
     for value, unknown in zip(vector, unknowns, strict=True):

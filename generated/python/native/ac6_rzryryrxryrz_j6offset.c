@@ -169,7 +169,7 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
       slope_length_q1_tried = 0.0;
     }
     const double one_by_distance_q1_tried = 1.0/length_q1_tried;
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     cos_q1_tried = along_q1_tried*one_by_distance_q1_tried;
     const double across_q1_tried = sign_shoulder_tried*wrist_y_tried;
     sin_q1_tried = across_q1_tried*one_by_distance_q1_tried;
@@ -181,7 +181,7 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   } else {
     /* q1 where the pose leaves it free */
     const double chosen_q1 = freed == 0 ? freed_angle : reference_a1;
-    cos_q1_tried = cos(chosen_q1); /* where it is singular: the angle of the reference */
+    cos_q1_tried = cos(chosen_q1); /* at a singularity: the angle of the reference */
     sin_q1_tried = sin(chosen_q1);
     slope_cos_q1_tried = 0.0;
     slope_sin_q1_tried = 0.0;
@@ -203,7 +203,7 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   const double sum_in_one_plus_cos_q3_tried_2 = k->a2_minus_effective_q3_tried + reach_tried;
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3_tried = -sum_in_one_plus_cos_q3_tried*sum_in_one_plus_cos_q3_tried_2;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried;
   const double slope_wrist_z_tried = k->j6_offset_x*(goal_r32*cos_q6_tried + goal_r31*sin_q6_tried);
   const double slope_wrist_x_from_q1_tried = slope_wrist_x_tried*cos_q1_tried
@@ -278,7 +278,7 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
       slope_length_q2_tried = 0.0;
     }
     const double one_by_root_of_length_q2_tried = 1.0/length_q2_tried;
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     cos_q2_tried = along_q2_tried*one_by_root_of_length_q2_tried;
     sin_q2_tried = across_q2_tried*one_by_root_of_length_q2_tried;
     slope_cos_q2_tried = (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)
@@ -288,7 +288,7 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   } else {
     /* q2 where the pose leaves it free */
     const double chosen_q2 = freed == 1 ? freed_angle : reference_a2;
-    cos_q2_tried = cos(chosen_q2); /* where it is singular: the angle of the reference */
+    cos_q2_tried = cos(chosen_q2); /* at a singularity: the angle of the reference */
     sin_q2_tried = sin(chosen_q2);
     slope_cos_q2_tried = 0.0;
     slope_sin_q2_tried = 0.0;
@@ -352,14 +352,13 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     const double along_q1_tried = sign_shoulder_tried*wrist_x_tried;
     const double length_q1_tried = distance_q1_tried > k->machine_scale_times_free_angle ? distance_q1_tried
         : 1.0;
-    /* where it is singular: the angle of the reference */
-    cos_q1_tried = along_q1_tried/length_q1_tried;
+    cos_q1_tried = along_q1_tried/length_q1_tried; /* at a singularity: the angle of the reference */
     const double across_q1_tried = sign_shoulder_tried*wrist_y_tried;
     sin_q1_tried = across_q1_tried/length_q1_tried;
   } else {
     /* q1 where the pose leaves it free */
     const double chosen_q1 = freed == 0 ? freed_angle : reference_a1;
-    cos_q1_tried = cos(chosen_q1); /* where it is singular: the angle of the reference */
+    cos_q1_tried = cos(chosen_q1); /* at a singularity: the angle of the reference */
     sin_q1_tried = sin(chosen_q1);
   }
   /* coordinate of the point that the remaining links must reach */
@@ -377,7 +376,7 @@ static softkin_status find_finish_root(const void *machine, const double *given,
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3_tried = (reach_tried - k->a2_minus_effective_q3_tried)
       *(k->a2_minus_effective_q3_tried + reach_tried);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried;
   const double divisor_of_cos_q3_tried = sum_q3_tried > 0.0 ? sum_q3_tried : 1.0;
   const double cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried;
@@ -403,13 +402,12 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     const double sum_in_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried;
     const double length_q2_tried = (reach_tried > k->machine_scale_times_free_angle)
         && (sum_in_length_q2_tried > 0.0) ? softkin_root(sum_in_length_q2_tried) : 1.0;
-    /* where it is singular: the angle of the reference */
-    cos_q2_tried = along_q2_tried/length_q2_tried;
+    cos_q2_tried = along_q2_tried/length_q2_tried; /* at a singularity: the angle of the reference */
     sin_q2_tried = across_q2_tried/length_q2_tried;
   } else {
     /* q2 where the pose leaves it free */
     const double chosen_q2 = freed == 1 ? freed_angle : reference_a2;
-    cos_q2_tried = cos(chosen_q2); /* where it is singular: the angle of the reference */
+    cos_q2_tried = cos(chosen_q2); /* at a singularity: the angle of the reference */
     sin_q2_tried = sin(chosen_q2);
   }
   const double r21_from_q1_tried = goal_r21*cos_q1_tried - goal_r11*sin_q1_tried;
@@ -878,7 +876,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3_closed = (reach_closed - k->a2_minus_effective_q3_tried)
       *(k->a2_minus_effective_q3_tried + reach_closed);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed;
   const double divisor_of_cos_q3_closed = sum_q3_closed > 0.0 ? sum_q3_closed : 1.0;
   const double cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)
@@ -927,12 +925,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     if (distance_q1_closed > k->machine_scale_times_free_angle) {
       /* rotation by q1 that points the arm at the point */
       const double along_q1_closed = sign_shoulder_closed*wrist_x_closed;
-      /* where it is singular: the angle of the reference */
+      /* at a singularity: the angle of the reference */
       cos_q1_closed = along_q1_closed/distance_q1_closed;
       const double across_q1_closed = sign_shoulder_closed*wrist_y_closed;
       sin_q1_closed = across_q1_closed/distance_q1_closed;
     } else {
-      cos_q1_closed = cos(reference_a1); /* where it is singular: the angle of the reference */
+      cos_q1_closed = cos(reference_a1); /* at a singularity: the angle of the reference */
       sin_q1_closed = sin(reference_a1);
     }
     q1 = softkin_angle_of(sin_q1_closed, cos_q1_closed);
@@ -954,11 +952,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
           + along_q2_closed*along_q2_closed;
       const double length_q2_closed = sum_in_length_q2_closed > 0.0 ? softkin_root(sum_in_length_q2_closed)
           : 1.0;
-      /* where it is singular: the angle of the reference */
-      cos_q2_closed = along_q2_closed/length_q2_closed;
+      cos_q2_closed = along_q2_closed/length_q2_closed; /* at a singularity: the angle of the reference */
       sin_q2_closed = across_q2_closed/length_q2_closed;
     } else {
-      cos_q2_closed = cos(reference_a2); /* where it is singular: the angle of the reference */
+      cos_q2_closed = cos(reference_a2); /* at a singularity: the angle of the reference */
       sin_q2_closed = sin(reference_a2);
     }
     q2 = softkin_angle_of(sin_q2_closed, cos_q2_closed);
@@ -979,13 +976,13 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     const double sign_wrist_closed = sigma_wrist; /* wrist: +1 positive, -1 negative */
     double direction_x_q4_closed, direction_y_q4_closed;
     if (radius_q4_closed > 1e-11) {
-      /* polar coordinates: angle q4 from the r33 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r33 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_closed = r33_from_q123_closed*sign_wrist_closed;
       direction_y_q4_closed = -r23_from_q1_closed*sign_wrist_closed;
     } else {
       const double reference_a4 = (ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
-      /* polar coordinates: angle q4 from the r33 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r33 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_closed = cos(reference_a4);
       direction_y_q4_closed = sin(reference_a4);

@@ -26,8 +26,9 @@
  * The wrist byte is the sign of cos A5 for a spherical wrist, and the sign of sin A4 with a lateral
  * offset.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_AC6_RZRYRYRXRYRZ_J6OFFSET_H
@@ -107,10 +108,10 @@ typedef struct {
   double warning_distance;
 } ac6_rzryryrxryrz_j6offset_parameters;
 
-/** A machine: constants that `ac6_rzryryrxryrz_j6offset_init` computes, and that nobody changes. */
+/** A machine: constants that `ac6_rzryryrxryrz_j6offset_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[AC6_RZRYRYRXRYRZ_J6OFFSET_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_a4, highest_a4, mid_a4, lowest_a5, highest_a5, mid_a5, lowest_a6, highest_a6, mid_a6, d1, a1,
@@ -121,7 +122,7 @@ typedef struct {
   bool single_a1, single_a2, single_a3, single_a4, single_a5, single_a6, searched;
 } ac6_rzryryrxryrz_j6offset_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism ac6_rzryryrxryrz_j6offset_mechanism;
 
 void ac6_rzryryrxryrz_j6offset_defaults(ac6_rzryryrxryrz_j6offset_parameters *parameters);
@@ -172,7 +173,7 @@ softkin_status ac6_rzryryrxryrz_j6offset_branch(const ac6_rzryryrxryrz_j6offset_
     double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `ac6_rzryryrxryrz_j6offset_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `ac6_rzryryrxryrz_j6offset_branch`.
  *
  * @param statuses 16; axes: 16 times 6, without a meaning where a slot refuses
  */

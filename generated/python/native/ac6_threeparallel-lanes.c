@@ -46,7 +46,7 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     const double sign_shoulder = sigma_shoulder; /* shoulder: +1 left, -1 right */
     /* how far ahead of the axis the point is; negative: behind it */
     const double ahead_q1_before_q1_for_q3 = -softkin_lane_root(ahead_squared_q1)*sign_shoulder;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)
         /distance_q1_squared;
     const double sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)
@@ -63,7 +63,7 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     const double q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33;
     /* polar coordinates: angle q6 from the r31 and r32 equations */
     const double along_q6 = -r21_from_q1*sign_wrist;
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     const double cos_q6_before_q6_of_q3 = along_q6/radius_q6;
     const double across_q6 = r22_from_q1*sign_wrist;
     const double sin_q6_before_q6_of_q3 = across_q6/radius_q6;
@@ -108,8 +108,7 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
     const double sin_q3 = softkin_lane_root(sine_square_q3)*quotient_in_sin_q3*sign_elbow;
     const double arm_across_q2 = a3*sin_q3;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
     const double direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1;
     const double direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1;
     const double angle_q2 = softkin_lane_angle(direction_y_q2, direction_x_q2);
@@ -180,7 +179,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* how far ahead of the axis the point is; negative: behind it */
     const double ahead_q1_before_q1_for_q3_right = softkin_lane_root(ahead_squared_q1);
     const double product_in_cos_q1_before_q1_for_q3_left = ahead_q1_before_q1_for_q3_right*wrist_x;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - product_in_cos_q1_before_q1_for_q3_left)
         /distance_q1_squared;
     const double d4_times_wrist_x = d4*wrist_x;
@@ -196,7 +195,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* cosine and sine of q5 from the q6 radius and r32 equations */
     const double cos_q5_left = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left;
     const double r21_from_q1_left_by_radius_q6_left = r21_from_q1_left/radius_q6_left;
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     const double cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left_by_radius_q6_left;
     const double r22_from_q1_left_by_radius_q6_left = r22_from_q1_left/radius_q6_left;
     const double r21_from_q1_before_q6_before_q6_of_q3_left_down = r31*cos_q6_before_q6_of_q3_left_down
@@ -242,7 +241,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         *wrist_x_from_q1_before_q6_of_q3_left_up
         + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up);
     missed += reach_left_up > machine_scale_times_free_angle ? 0.0 : 1.0;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_before_q1_for_q3_right = (product_in_cos_q1_before_q1_for_q3_left - d4_times_wrist_y)
         /distance_q1_squared;
     const double sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + product_in_sin_q1_before_q1_for_q3_left)
@@ -256,7 +255,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* cosine and sine of q5 from the q6 radius and r32 equations */
     const double cos_q5_right = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right;
     const double r21_from_q1_right_by_radius_q6_right = r21_from_q1_right/radius_q6_right;
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     const double cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right_by_radius_q6_right;
     const double r22_from_q1_right_by_radius_q6_right = r22_from_q1_right/radius_q6_right;
     const double r21_from_q1_before_q6_before_q6_of_q3_right_down = r31*cos_q6_before_q6_of_q3_right_down

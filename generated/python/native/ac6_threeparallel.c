@@ -249,12 +249,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sign_wrist = sigma_wrist; /* wrist: +1 down, -1 up */
   double cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3;
   if (distance_q1 > k->machine_scale_times_free_angle) {
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - k->d4*wrist_y)/distance_q1_squared;
     sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + k->d4*wrist_x)/distance_q1_squared;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3 = cos(reference_a1);
     sin_q1_before_q1_for_q3 = sin(reference_a1);
   }
@@ -501,14 +501,14 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (radius_q6 > 1e-11) {
     /* polar coordinates: angle q6 from the r31 and r32 equations */
     const double along_q6 = -r21_from_q1*sign_wrist;
-    cos_q6_before_q6_of_q3 = along_q6/radius_q6; /* where it is singular: the angle of the reference */
+    cos_q6_before_q6_of_q3 = along_q6/radius_q6; /* at a singularity: the angle of the reference */
     const double across_q6 = r22_from_q1*sign_wrist;
     sin_q6_before_q6_of_q3 = across_q6/radius_q6;
   } else {
     const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
     const double cos_of_reference_a6 = cos(reference_a6);
     const double sin_of_reference_a6 = sin(reference_a6);
-    cos_q6_before_q6_of_q3 = cos_of_reference_a6; /* where it is singular: the angle of the reference */
+    cos_q6_before_q6_of_q3 = cos_of_reference_a6; /* at a singularity: the angle of the reference */
     sin_q6_before_q6_of_q3 = sin_of_reference_a6;
   }
   const double r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3
@@ -619,14 +619,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (reach > k->machine_scale_times_free_angle) {
     const double arm_along_q2 = k->a2 + k->a3*cos_q3;
     const double arm_across_q2 = k->a3*sin_q3;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1;
     direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_q2 = cos(reference_a2);
     direction_y_q2 = sin(reference_a2);
   }
@@ -1002,24 +1000,24 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (distance_q1 > k->machine_scale_times_free_angle) {
     const double d4_times_wrist_y = k->d4*wrist_y;
     const double product_in_cos_q1_before_q1_for_q3_left = ahead_q1_before_q1_for_q3_right*wrist_x;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - product_in_cos_q1_before_q1_for_q3_left)
         /distance_q1_squared;
     const double d4_times_wrist_x = k->d4*wrist_x;
     const double product_in_sin_q1_before_q1_for_q3_left = ahead_q1_before_q1_for_q3_right*wrist_y;
     sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - product_in_sin_q1_before_q1_for_q3_left)
         /distance_q1_squared;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3_right = (product_in_cos_q1_before_q1_for_q3_left - d4_times_wrist_y)
         /distance_q1_squared;
     sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + product_in_sin_q1_before_q1_for_q3_left)
         /distance_q1_squared;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3_left = cos(reference_a1);
     sin_q1_before_q1_for_q3_left = sin(reference_a1);
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left;
     sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left;
   }
@@ -1033,20 +1031,20 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       sin_q6_before_q6_of_q3_left_up;
   if (radius_q6_left > 1e-11) {
     const double r21_from_q1_left_by_radius_q6_left = r21_from_q1_left/radius_q6_left;
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left_by_radius_q6_left;
     sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left;
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     cos_q6_before_q6_of_q3_left_up = -cos_q6_before_q6_of_q3_left_down;
     sin_q6_before_q6_of_q3_left_up = -sin_q6_before_q6_of_q3_left_down;
   } else {
     const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
     const double cos_of_reference_a6 = cos(reference_a6);
     const double sin_of_reference_a6 = sin(reference_a6);
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     cos_q6_before_q6_of_q3_left_down = cos_of_reference_a6;
     sin_q6_before_q6_of_q3_left_down = sin_of_reference_a6;
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     cos_q6_before_q6_of_q3_left_up = cos_of_reference_a6;
     sin_q6_before_q6_of_q3_left_up = sin_of_reference_a6;
   }
@@ -1378,20 +1376,20 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up;
   if (radius_q6_right > 1e-11) {
     const double r21_from_q1_right_by_radius_q6_right = r21_from_q1_right/radius_q6_right;
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right_by_radius_q6_right;
     sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right;
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     cos_q6_before_q6_of_q3_right_up = -cos_q6_before_q6_of_q3_right_down;
     sin_q6_before_q6_of_q3_right_up = -sin_q6_before_q6_of_q3_right_down;
   } else {
     const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
     const double cos_of_reference_a6 = cos(reference_a6);
     const double sin_of_reference_a6 = sin(reference_a6);
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     cos_q6_before_q6_of_q3_right_down = cos_of_reference_a6;
     sin_q6_before_q6_of_q3_right_down = sin_of_reference_a6;
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     cos_q6_before_q6_of_q3_right_up = cos_of_reference_a6;
     sin_q6_before_q6_of_q3_right_up = sin_of_reference_a6;
   }

@@ -16,8 +16,9 @@
  * turn of A6
  * rows of the Jacobian: x, y, z, turn x, turn y, turn z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_AC6_THREEPARALLEL_H
@@ -94,10 +95,10 @@ typedef struct {
   double warning_distance;
 } ac6_threeparallel_parameters;
 
-/** A machine: constants that `ac6_threeparallel_init` computes, and that nobody changes. */
+/** A machine: constants that `ac6_threeparallel_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[AC6_THREEPARALLEL_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_a4, highest_a4, mid_a4, lowest_a5, highest_a5, mid_a5, lowest_a6, highest_a6, mid_a6, d1, a2,
@@ -110,7 +111,7 @@ typedef struct {
   bool single_a1, single_a2, single_a3, single_a4, single_a5, single_a6;
 } ac6_threeparallel_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism ac6_threeparallel_mechanism;
 
 void ac6_threeparallel_defaults(ac6_threeparallel_parameters *parameters);
@@ -159,7 +160,7 @@ softkin_status ac6_threeparallel_branch(const ac6_threeparallel_machine *machine
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `ac6_threeparallel_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `ac6_threeparallel_branch`.
  *
  * @param statuses 8; axes: 8 times 6, without a meaning where a slot refuses
  */

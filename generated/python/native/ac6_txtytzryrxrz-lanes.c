@@ -33,7 +33,7 @@ void ac6_txtytzryrxrz_regular(const void *machine, const softkin_lanes *given,
     const double wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33;
     const double axis_a3 = offset_a3 + wrist_z;
     const double sign_wrist = sigma_wrist; /* wrist: +1 upright, -1 flipped */
-    /* polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
      * reference */
     const double direction_x_a4 = r33*sign_wrist;
     const double direction_y_a4 = r13*sign_wrist;

@@ -187,13 +187,13 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sign_wrist = sigma_wrist; /* wrist: +1 upright, -1 flipped */
   double direction_x_a4, direction_y_a4;
   if (radius_a4 > 1e-11) {
-    /* polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
      * reference */
     direction_x_a4 = r33*sign_wrist;
     direction_y_a4 = r13*sign_wrist;
   } else {
     const double reference_a4 = (ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
-    /* polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
      * reference */
     direction_x_a4 = cos(reference_a4);
     direction_y_a4 = sin(reference_a4);
@@ -444,7 +444,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   double direction_x_a4_upright, direction_y_a4_upright, scaled_r11_from_a4_upright, direction_y_a6_upright,
       direction_x_a4_flipped, direction_y_a4_flipped, scaled_r11_from_a4_flipped, direction_y_a6_flipped;
   if (radius_a4 > 1e-11) {
-    /* polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
      * reference */
     direction_x_a4_upright = r33;
     direction_y_a4_upright = r13;
@@ -455,7 +455,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       scaled_r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31;
       direction_y_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12;
     }
-    /* polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
      * reference */
     direction_x_a4_flipped = -r33;
     direction_y_a4_flipped = -r13;
@@ -463,13 +463,13 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     direction_y_a6_flipped = -direction_y_a6_upright;
   } else {
     const double reference_a4 = (ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
-    /* polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
      * reference */
     direction_x_a4_upright = cos(reference_a4);
     direction_y_a4_upright = sin(reference_a4);
     scaled_r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31;
     direction_y_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12;
-    /* polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
      * reference */
     direction_x_a4_flipped = direction_x_a4_upright;
     direction_y_a4_flipped = direction_y_a4_upright;

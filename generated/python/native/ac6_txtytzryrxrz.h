@@ -13,8 +13,9 @@
  * configuration: wrist, turn of A4, turn of A5, turn of A6
  * rows of the Jacobian: x, y, z, turn x, turn y, turn z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_AC6_TXTYTZRYRXRZ_H
@@ -85,10 +86,10 @@ typedef struct {
   double warning_distance;
 } ac6_txtytzryrxrz_parameters;
 
-/** A machine: constants that `ac6_txtytzryrxrz_init` computes, and that nobody changes. */
+/** A machine: constants that `ac6_txtytzryrxrz_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[AC6_TXTYTZRYRXRZ_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, lowest_a3, highest_a3, lowest_a4, highest_a4, mid_a4,
       lowest_a5, highest_a5, mid_a5, lowest_a6, highest_a6, mid_a6, flange_x, flange_y, flange_z, offset_a1,
@@ -96,7 +97,7 @@ typedef struct {
   bool single_a4, single_a5, single_a6;
 } ac6_txtytzryrxrz_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism ac6_txtytzryrxrz_mechanism;
 
 void ac6_txtytzryrxrz_defaults(ac6_txtytzryrxrz_parameters *parameters);
@@ -144,7 +145,7 @@ softkin_status ac6_txtytzryrxrz_branch(const ac6_txtytzryrxrz_machine *machine, 
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `ac6_txtytzryrxrz_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `ac6_txtytzryrxrz_branch`.
  *
  * @param statuses 2; axes: 2 times 6, without a meaning where a slot refuses
  */

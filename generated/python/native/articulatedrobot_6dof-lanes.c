@@ -57,7 +57,7 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     const double one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
     missed += sum_q3 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3;
@@ -75,14 +75,14 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     const double across_q2_squared_plus_along_q2_squared = across_q2*across_q2 + along_q2*along_q2;
     missed += across_q2_squared_plus_along_q2_squared > 0.0 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)
         /distance_q1_squared;
     const double sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)
         /distance_q1_squared;
     const double r13_from_q1 = r13*cos_q1_before_q1_for_q3 + r23*sin_q1_before_q1_for_q3;
     const double length_q2 = softkin_lane_root(across_q2_squared_plus_along_q2_squared);
-    const double cos_q2 = along_q2/length_q2; /* where it is singular: the angle of the reference */
+    const double cos_q2 = along_q2/length_q2; /* at a singularity: the angle of the reference */
     const double sin_q2 = across_q2/length_q2;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3;
@@ -99,7 +99,7 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     const double axis_a2 = offset_a2 + softkin_lane_angle(sin_q2, cos_q2)*SOFTKIN_RADIAN;
     const double axis_a3 = offset_a3 + softkin_lane_angle(sin_q3, cos_q3)*SOFTKIN_RADIAN;
     const double sign_hand = sigma_hand; /* hand: +1 down, -1 up */
-    /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     const double direction_x_q4 = -r13_from_q123*sign_hand;
     const double direction_y_q4 = r23_from_q1*sign_hand;
@@ -187,7 +187,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* 1 + cosine, times the scale */
     const double one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3)
         *(a2_minus_effective_q3 + reach_front);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
     missed += sum_q3_front > 0.0 ? 0.0 : 1.0;
     /* coordinate of the point that the remaining links must reach */
@@ -201,7 +201,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* 1 + cosine, times the scale */
     const double one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3)
         *(a2_minus_effective_q3 + reach_back);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
     missed += sum_q3_back > 0.0 ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
@@ -254,7 +254,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double d3_times_wrist_y = d3*wrist_y;
     const double product_in_cos_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front*wrist_x;
     const double one_by_distance_q1_squared = 1.0/distance_q1_squared;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_before_q1_for_q3_front = (product_in_cos_q1_before_q1_for_q3_front - d3_times_wrist_y)
         *one_by_distance_q1_squared;
     const double d3_times_wrist_x = d3*wrist_x;
@@ -263,7 +263,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
         *one_by_distance_q1_squared;
     const double r13_from_q1_front = r13*cos_q1_before_q1_for_q3_front + r23*sin_q1_before_q1_for_q3_front;
     const double length_q2_front_down = softkin_lane_root(across_q2_squared_plus_along_q2_squared_front_down);
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     const double cos_q2_front_down = along_q2_front_down/length_q2_front_down;
     const double sin_q2_front_down = across_q2_front_down/length_q2_front_down;
     const double product_in_cos_q3_front_down = d4_by_effective_q3*sin_swing_q3_front_down;
@@ -285,7 +285,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
         + r13_from_q123_front_down*r13_from_q123_front_down);
     missed += radius_q4_front_down > 1e-11 ? 0.0 : 1.0;
     const double length_q2_front_up = softkin_lane_root(across_q2_squared_plus_along_q2_squared_front_up);
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     const double cos_q2_front_up = along_q2_front_up/length_q2_front_up;
     const double sin_q2_front_up = across_q2_front_up/length_q2_front_up;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
@@ -298,14 +298,14 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double radius_q4_front_up = softkin_lane_root(r23_from_q1_front_squared
         + r13_from_q123_front_up*r13_from_q123_front_up);
     missed += radius_q4_front_up > 1e-11 ? 0.0 : 1.0;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - product_in_cos_q1_before_q1_for_q3_front)
         *one_by_distance_q1_squared;
     const double sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - product_in_sin_q1_before_q1_for_q3_front)
         *one_by_distance_q1_squared;
     const double r13_from_q1_back = r13*cos_q1_before_q1_for_q3_back + r23*sin_q1_before_q1_for_q3_back;
     const double length_q2_back_down = softkin_lane_root(across_q2_squared_plus_along_q2_squared_back_down);
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     const double cos_q2_back_down = along_q2_back_down/length_q2_back_down;
     const double sin_q2_back_down = across_q2_back_down/length_q2_back_down;
     const double product_in_cos_q3_back_down = d4_by_effective_q3*sin_swing_q3_back_down;
@@ -325,7 +325,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
         + r13_from_q123_back_down*r13_from_q123_back_down);
     missed += radius_q4_back_down > 1e-11 ? 0.0 : 1.0;
     const double length_q2_back_up = softkin_lane_root(across_q2_squared_plus_along_q2_squared_back_up);
-    /* where it is singular: the angle of the reference */
+    /* at a singularity: the angle of the reference */
     const double cos_q2_back_up = along_q2_back_up/length_q2_back_up;
     const double sin_q2_back_up = across_q2_back_up/length_q2_back_up;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */

@@ -260,12 +260,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double ahead_q1_before_q1_for_q3 = softkin_root(ahead_squared_q1)*sign_arm;
   double cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3;
   if (distance_q1 > k->machine_scale_times_free_angle) {
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - k->d3*wrist_y)/distance_q1_squared;
     sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + k->d3*wrist_x)/distance_q1_squared;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3 = cos(reference_a1);
     sin_q1_before_q1_for_q3 = sin(reference_a1);
   }
@@ -324,7 +324,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double one_less_cos_q3 = (k->a2_plus_effective_q3 + reach)*(k->a2_plus_effective_q3 - reach);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3 = (reach - k->a2_minus_effective_q3)*(k->a2_minus_effective_q3 + reach);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
   const double divisor_of_cos_q3 = sum_q3 > 0.0 ? sum_q3 : 1.0;
   const double cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3;
@@ -354,11 +354,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     const double across_q2_squared_plus_along_q2_squared = across_q2*across_q2 + along_q2*along_q2;
     const double length_q2 = across_q2_squared_plus_along_q2_squared > 0.0
         ? softkin_root(across_q2_squared_plus_along_q2_squared) : 1.0;
-    cos_q2 = along_q2/length_q2; /* where it is singular: the angle of the reference */
+    cos_q2 = along_q2/length_q2; /* at a singularity: the angle of the reference */
     sin_q2 = across_q2/length_q2;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    cos_q2 = cos(reference_a2); /* where it is singular: the angle of the reference */
+    cos_q2 = cos(reference_a2); /* at a singularity: the angle of the reference */
     sin_q2 = sin(reference_a2);
   }
   /* A2: without a commanded turn, the value nearest to this */
@@ -386,13 +386,13 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sign_hand = sigma_hand; /* hand: +1 down, -1 up */
   double direction_x_q4, direction_y_q4;
   if (radius_q4 > 1e-11) {
-    /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4 = -r13_from_q123*sign_hand;
     direction_y_q4 = r23_from_q1*sign_hand;
   } else {
     const double reference_a4 = (ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
-    /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4 = cos(reference_a4);
     direction_y_q4 = sin(reference_a4);
@@ -783,7 +783,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3_front = (reach_front - k->a2_minus_effective_q3)
       *(k->a2_minus_effective_q3 + reach_front);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
   const double divisor_of_cos_q3_front = sum_q3_front > 0.0 ? sum_q3_front : 1.0;
   const double cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/divisor_of_cos_q3_front;
@@ -794,24 +794,24 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (distance_q1 > k->machine_scale_times_free_angle) {
     const double d3_times_wrist_y = k->d3*wrist_y;
     const double product_in_cos_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front*wrist_x;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3_front = (product_in_cos_q1_before_q1_for_q3_front - d3_times_wrist_y)
         /distance_q1_squared;
     const double d3_times_wrist_x = k->d3*wrist_x;
     const double product_in_sin_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front*wrist_y;
     sin_q1_before_q1_for_q3_front = (d3_times_wrist_x + product_in_sin_q1_before_q1_for_q3_front)
         /distance_q1_squared;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - product_in_cos_q1_before_q1_for_q3_front)
         /distance_q1_squared;
     sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - product_in_sin_q1_before_q1_for_q3_front)
         /distance_q1_squared;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3_front = cos(reference_a1);
     sin_q1_before_q1_for_q3_front = sin(reference_a1);
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front;
     sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front;
   }
@@ -855,7 +855,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       direction_x_q4_front_down_up, direction_y_q4_front_down_up, scaled_r21_from_q1234_front_down_up,
       scaled_r22_from_q1234_front_down_up;
   if (radius_q4_front_down > 0.1) {
-    /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4_front_down_down = -r13_from_q123_front_down;
     direction_y_q4_front_down_down = r23_from_q1_front;
@@ -863,7 +863,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         + r32*sin_q23_front_down;
     scaled_r21_from_q1234_front_down_down = -sum_in_scaled_r21_from_q1234_front_down_down;
     scaled_r22_from_q1234_front_down_down = r11_from_q1_front*cos_q23_front_down + r31*sin_q23_front_down;
-    /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4_front_down_up = -direction_x_q4_front_down_down;
     direction_y_q4_front_down_up = -r23_from_q1_front;
@@ -876,20 +876,20 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double r21_from_q1_front = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front;
     const double r22_from_q1_front = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front;
     if (radius_q4_front_down > 1e-11) {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_down_down = -r13_from_q123_front_down;
       direction_y_q4_front_down_down = r23_from_q1_front;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_down_up = -direction_x_q4_front_down_down;
       direction_y_q4_front_down_up = -r23_from_q1_front;
     } else {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_down_down = cos_of_reference_a4;
       direction_y_q4_front_down_down = sin_of_reference_a4;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_down_up = cos_of_reference_a4;
       direction_y_q4_front_down_up = sin_of_reference_a4;
@@ -946,7 +946,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       scaled_r22_from_q1234_front_up_down, direction_x_q4_front_up_up, direction_y_q4_front_up_up,
       scaled_r21_from_q1234_front_up_up, scaled_r22_from_q1234_front_up_up;
   if (radius_q4_front_up > 0.1) {
-    /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4_front_up_down = -r13_from_q123_front_up;
     direction_y_q4_front_up_down = r23_from_q1_front;
@@ -954,7 +954,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         + r32*sin_q23_front_up;
     scaled_r21_from_q1234_front_up_down = -sum_in_scaled_r21_from_q1234_front_up_down;
     scaled_r22_from_q1234_front_up_down = r11_from_q1_front*cos_q23_front_up + r31*sin_q23_front_up;
-    /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4_front_up_up = -direction_x_q4_front_up_down;
     direction_y_q4_front_up_up = -r23_from_q1_front;
@@ -967,20 +967,20 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double r21_from_q1_front = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front;
     const double r22_from_q1_front = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front;
     if (radius_q4_front_up > 1e-11) {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_up_down = -r13_from_q123_front_up;
       direction_y_q4_front_up_down = r23_from_q1_front;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_up_up = -direction_x_q4_front_up_down;
       direction_y_q4_front_up_up = -r23_from_q1_front;
     } else {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_up_down = cos_of_reference_a4;
       direction_y_q4_front_up_down = sin_of_reference_a4;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_up_up = cos_of_reference_a4;
       direction_y_q4_front_up_up = sin_of_reference_a4;
@@ -1033,7 +1033,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3_back = (reach_back - k->a2_minus_effective_q3)
       *(k->a2_minus_effective_q3 + reach_back);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
   const double divisor_of_cos_q3_back = sum_q3_back > 0.0 ? sum_q3_back : 1.0;
   const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back;
@@ -1077,7 +1077,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       scaled_r22_from_q1234_back_down_down, direction_x_q4_back_down_up, direction_y_q4_back_down_up,
       scaled_r21_from_q1234_back_down_up, scaled_r22_from_q1234_back_down_up;
   if (radius_q4_back_down > 0.1) {
-    /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4_back_down_down = -r13_from_q123_back_down;
     direction_y_q4_back_down_down = r23_from_q1_back;
@@ -1085,7 +1085,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         + r32*sin_q23_back_down;
     scaled_r21_from_q1234_back_down_down = -sum_in_scaled_r21_from_q1234_back_down_down;
     scaled_r22_from_q1234_back_down_down = r11_from_q1_back*cos_q23_back_down + r31*sin_q23_back_down;
-    /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4_back_down_up = -direction_x_q4_back_down_down;
     direction_y_q4_back_down_up = -r23_from_q1_back;
@@ -1098,20 +1098,20 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double r21_from_q1_back = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back;
     const double r22_from_q1_back = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back;
     if (radius_q4_back_down > 1e-11) {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_down_down = -r13_from_q123_back_down;
       direction_y_q4_back_down_down = r23_from_q1_back;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_down_up = -direction_x_q4_back_down_down;
       direction_y_q4_back_down_up = -r23_from_q1_back;
     } else {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_down_down = cos_of_reference_a4;
       direction_y_q4_back_down_down = sin_of_reference_a4;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_down_up = cos_of_reference_a4;
       direction_y_q4_back_down_up = sin_of_reference_a4;
@@ -1168,7 +1168,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       scaled_r22_from_q1234_back_up_down, direction_x_q4_back_up_up, direction_y_q4_back_up_up,
       scaled_r21_from_q1234_back_up_up, scaled_r22_from_q1234_back_up_up;
   if (radius_q4_back_up > 0.1) {
-    /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4_back_up_down = -r13_from_q123_back_up;
     direction_y_q4_back_up_down = r23_from_q1_back;
@@ -1176,7 +1176,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         + r32*sin_q23_back_up;
     scaled_r21_from_q1234_back_up_down = -sum_in_scaled_r21_from_q1234_back_up_down;
     scaled_r22_from_q1234_back_up_down = r11_from_q1_back*cos_q23_back_up + r31*sin_q23_back_up;
-    /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4_back_up_up = -direction_x_q4_back_up_down;
     direction_y_q4_back_up_up = -r23_from_q1_back;
@@ -1189,20 +1189,20 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double r21_from_q1_back = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back;
     const double r22_from_q1_back = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back;
     if (radius_q4_back_up > 1e-11) {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_up_down = -r13_from_q123_back_up;
       direction_y_q4_back_up_down = r23_from_q1_back;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_up_up = -direction_x_q4_back_up_down;
       direction_y_q4_back_up_up = -r23_from_q1_back;
     } else {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_up_down = cos_of_reference_a4;
       direction_y_q4_back_up_down = sin_of_reference_a4;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_up_up = cos_of_reference_a4;
       direction_y_q4_back_up_up = sin_of_reference_a4;

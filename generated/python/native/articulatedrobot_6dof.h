@@ -16,8 +16,9 @@
  * A6
  * rows of the Jacobian: x, y, z, turn x, turn y, turn z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_ARTICULATEDROBOT_6DOF_H
@@ -96,10 +97,10 @@ typedef struct {
   double warning_distance;
 } articulatedrobot_6dof_parameters;
 
-/** A machine: constants that `articulatedrobot_6dof_init` computes, and that nobody changes. */
+/** A machine: constants that `articulatedrobot_6dof_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[ARTICULATEDROBOT_6DOF_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_a4, highest_a4, mid_a4, lowest_a5, highest_a5, mid_a5, lowest_a6, highest_a6, mid_a6, d1, a1,
@@ -111,7 +112,7 @@ typedef struct {
   bool single_a1, single_a2, single_a3, single_a4, single_a5, single_a6;
 } articulatedrobot_6dof_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism articulatedrobot_6dof_mechanism;
 
 void articulatedrobot_6dof_defaults(articulatedrobot_6dof_parameters *parameters);
@@ -161,7 +162,7 @@ softkin_status articulatedrobot_6dof_branch(const articulatedrobot_6dof_machine 
     double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `articulatedrobot_6dof_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `articulatedrobot_6dof_branch`.
  *
  * @param statuses 8; axes: 8 times 6, without a meaning where a slot refuses
  */

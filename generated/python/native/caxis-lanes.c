@@ -14,7 +14,8 @@ void caxis_regular(const void *machine, const softkin_lanes *given,
     const double r11 = given->rotation[0][lane], r12 = given->rotation[1][lane],
         r21 = given->rotation[3][lane], r22 = given->rotation[4][lane], ref_c = given->reference[0][lane];
     double missed = misses[lane];
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */

@@ -7,8 +7,9 @@
  * configuration: turn of C
  * rows of the Jacobian: turn z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_CAXIS_H
@@ -43,16 +44,16 @@ typedef struct {
   double warning_distance;
 } caxis_parameters;
 
-/** A machine: constants that `caxis_init` computes, and that nobody changes. */
+/** A machine: constants that `caxis_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[CAXIS_LIMITS];
   double lowest_c, highest_c, mid_c, offset_c;
   bool single_c;
 } caxis_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism caxis_mechanism;
 
 void caxis_defaults(caxis_parameters *parameters);
@@ -99,7 +100,7 @@ softkin_status caxis_branch(const caxis_machine *machine, const softkin_frame *f
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `caxis_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `caxis_branch`.
  *
  * @param statuses 1; axes: 1 times 1, without a meaning where a slot refuses
  */

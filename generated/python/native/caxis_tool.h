@@ -9,8 +9,9 @@
  *
  * With an X or Y offset it can only be combined with a flange that keeps its orientation.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_CAXIS_TOOL_H
@@ -51,16 +52,16 @@ typedef struct {
   double warning_distance;
 } caxis_tool_parameters;
 
-/** A machine: constants that `caxis_tool_init` computes, and that nobody changes. */
+/** A machine: constants that `caxis_tool_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[CAXIS_TOOL_LIMITS];
   double lowest_c, highest_c, mid_c, tool_x, tool_y, tool_z, offset_c;
   bool single_c;
 } caxis_tool_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism caxis_tool_mechanism;
 
 void caxis_tool_defaults(caxis_tool_parameters *parameters);
@@ -108,7 +109,7 @@ softkin_status caxis_tool_branch(const caxis_tool_machine *machine, const softki
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `caxis_tool_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `caxis_tool_branch`.
  *
  * @param statuses 1; axes: 1 times 1, without a meaning where a slot refuses
  */

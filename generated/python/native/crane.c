@@ -137,11 +137,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double axis_r = k->offset_r + radius_phi;
   double direction_x_theta, direction_y_theta;
   if (radius_theta > k->machine_scale_times_free_angle) {
-    direction_x_theta = x; /* where it is singular: the angle of the reference */
+    direction_x_theta = x; /* at a singularity: the angle of the reference */
     direction_y_theta = y;
   } else {
     const double reference_theta = (ref_theta - k->offset_theta)*SOFTKIN_DEGREE;
-    direction_x_theta = cos(reference_theta); /* where it is singular: the angle of the reference */
+    direction_x_theta = cos(reference_theta); /* at a singularity: the angle of the reference */
     direction_y_theta = sin(reference_theta);
   }
   /* Theta: without a commanded turn, the value nearest to this */
@@ -153,14 +153,13 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       + softkin_angle_of(direction_y_theta, direction_x_theta)*SOFTKIN_RADIAN, near_theta);
   double direction_x_phi, direction_y_phi;
   if (radius_phi > k->machine_scale_times_free_angle) {
-    direction_x_phi = z; /* where it is singular: the angle of the reference */
+    direction_x_phi = z; /* at a singularity: the angle of the reference */
     direction_y_phi = radius_theta;
   } else {
     const double reference_phi = (ref_phi - k->offset_phi)*SOFTKIN_DEGREE;
     const double value_in_direction_y_phi = softkin_nearest_on_arc(reference_phi, 90.0*SOFTKIN_DEGREE,
         90.0*SOFTKIN_DEGREE);
-    /* where it is singular: the angle of the reference */
-    direction_x_phi = cos(value_in_direction_y_phi);
+    direction_x_phi = cos(value_in_direction_y_phi); /* at a singularity: the angle of the reference */
     direction_y_phi = sin(value_in_direction_y_phi);
   }
   const double axis_phi = k->offset_phi + softkin_angle_of(direction_y_phi, direction_x_phi)*SOFTKIN_RADIAN;
@@ -250,7 +249,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   /* polar coordinates: the radius at angle phi */
   const double radius_phi = sqrt(radius_theta*radius_theta + z*z);
   const double length_free_phi = k->one_by_machine_scale*radius_phi;
-  /* 0 where nothing determines the axis, else 1 or -1 */
+  /* 0 where no equation determines the axis, else 1 or -1 */
   const double margin_free_phi = length_free_phi > 1e-11 ? 1.0 : 0.0;
   margins[0] = sin_phi;
   margins[1] = margin_free_phi;

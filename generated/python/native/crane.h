@@ -11,8 +11,9 @@
  *
  * On the vertical the azimuth is the reference's; at the origin the polar angle is too.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_CRANE_H
@@ -63,17 +64,17 @@ typedef struct {
   double warning_distance;
 } crane_parameters;
 
-/** A machine: constants that `crane_init` computes, and that nobody changes. */
+/** A machine: constants that `crane_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[CRANE_LIMITS];
   double lowest_r, highest_r, lowest_theta, highest_theta, mid_theta, lowest_phi, highest_phi, offset_r,
       offset_theta, offset_phi, machine_scale_times_free_angle, one_by_machine_scale;
   bool single_theta;
 } crane_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism crane_mechanism;
 
 void crane_defaults(crane_parameters *parameters);
@@ -120,7 +121,7 @@ softkin_status crane_branch(const crane_machine *machine, const softkin_frame *f
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `crane_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `crane_branch`.
  *
  * @param statuses 1; axes: 1 times 3, without a meaning where a slot refuses
  */

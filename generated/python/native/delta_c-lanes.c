@@ -30,7 +30,8 @@ void delta_c_regular(const void *machine, const softkin_lanes *given,
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane],
         ref_a3 = given->reference[2][lane], ref_a4 = given->reference[3][lane];
     double missed = misses[lane];
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
@@ -50,7 +51,7 @@ void delta_c_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = arm_length_plus_effective_a1*arm_length_plus_effective_a1
         - third_square_a1;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -80,7 +81,7 @@ void delta_c_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = third_square_a2
         - half_effective_a2_minus_arm_length*half_effective_a2_minus_arm_length;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
@@ -105,7 +106,7 @@ void delta_c_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a3 = third_square_a3
         - half_effective_a3_minus_arm_length*half_effective_a3_minus_arm_length;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
     missed += sum_a3 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3;
@@ -190,7 +191,8 @@ void delta_c_regular_all(const void *machine, const softkin_lanes *given,
         ref_a2 = given->reference[1][lane], ref_a3 = given->reference[2][lane],
         ref_a4 = given->reference[3][lane];
     double missed = misses[lane];
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
@@ -210,7 +212,7 @@ void delta_c_regular_all(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = arm_length_plus_effective_a1*arm_length_plus_effective_a1
         - third_square_a1;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -240,7 +242,7 @@ void delta_c_regular_all(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = third_square_a2
         - half_effective_a2_minus_arm_length*half_effective_a2_minus_arm_length;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
@@ -265,7 +267,7 @@ void delta_c_regular_all(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a3 = third_square_a3
         - half_effective_a3_minus_arm_length*half_effective_a3_minus_arm_length;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
     missed += sum_a3 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3;

@@ -223,7 +223,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!softkin_are_reasonable((const double[]){x, y, z, ref_a1, ref_a2, ref_a3, ref_a4}, 7)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
-  /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+  /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+   * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
@@ -246,7 +247,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double arm_length_plus_effective_a1 = k->arm_length + effective_a1;
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a1 = arm_length_plus_effective_a1*arm_length_plus_effective_a1 - third_square_a1;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
   const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
@@ -284,7 +285,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = third_square_a2
       - half_effective_a2_minus_arm_length*half_effective_a2_minus_arm_length;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
   const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
   const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2;
@@ -317,7 +318,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a3 = third_square_a3
       - half_effective_a3_minus_arm_length*half_effective_a3_minus_arm_length;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
   const double divisor_of_cos_a3 = sum_a3 > 0.0 ? sum_a3 : 1.0;
   const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3;
@@ -739,7 +740,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       ref_a4 = reference[3];
   const double sum_in_span_2_y = 0.5*k->plate_radius*k->root_of_3 - 0.5*k->base_radius*k->root_of_3;
   const double arm_length_times_root_of_3_times_half_2 = 0.5*k->arm_length*k->root_of_3;
-  /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+  /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+   * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
@@ -760,7 +762,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double arm_length_plus_effective_a1 = k->arm_length + effective_a1;
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a1 = arm_length_plus_effective_a1*arm_length_plus_effective_a1 - third_square_a1;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
   const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
@@ -792,7 +794,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = third_square_a2
       - half_effective_a2_minus_arm_length*half_effective_a2_minus_arm_length;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
   const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
   const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2;
@@ -819,7 +821,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a3 = third_square_a3
       - half_effective_a3_minus_arm_length*half_effective_a3_minus_arm_length;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
   const double divisor_of_cos_a3 = sum_a3 > 0.0 ? sum_a3 : 1.0;
   const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3;

@@ -20,8 +20,9 @@
  * The plate stays parallel to the base, so the shaft and its universal joints hand the turn of A4 on
  * as it is.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_DELTA_C_H
@@ -87,10 +88,10 @@ typedef struct {
   double warning_distance;
 } delta_c_parameters;
 
-/** A machine: constants that `delta_c_init` computes, and that nobody changes. */
+/** A machine: constants that `delta_c_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[DELTA_C_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_a4, highest_a4, mid_a4, base_radius, arm_length, rod_length, plate_radius, offset_a1, offset_a2,
@@ -104,7 +105,7 @@ typedef struct {
   bool single_a1, single_a2, single_a3, single_a4;
 } delta_c_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism delta_c_mechanism;
 
 void delta_c_defaults(delta_c_parameters *parameters);
@@ -152,7 +153,7 @@ softkin_status delta_c_branch(const delta_c_machine *machine, const softkin_fram
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `delta_c_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `delta_c_branch`.
  *
  * @param statuses 8; axes: 8 times 4, without a meaning where a slot refuses
  */

@@ -55,7 +55,7 @@ void delta_p3c_type3_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1
         - third_square_a1;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -80,7 +80,7 @@ void delta_p3c_type3_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2
         - third_square_a2;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
@@ -105,7 +105,7 @@ void delta_p3c_type3_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3
         - third_square_a3;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
     missed += sum_a3 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3;
@@ -223,7 +223,7 @@ void delta_p3c_type3_regular_all(const void *machine, const softkin_lanes *given
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = effective_a1_plus_inner_arm_1*effective_a1_plus_inner_arm_1
         - third_square_a1;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -248,7 +248,7 @@ void delta_p3c_type3_regular_all(const void *machine, const softkin_lanes *given
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = effective_a2_plus_inner_arm_2*effective_a2_plus_inner_arm_2
         - third_square_a2;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
@@ -273,7 +273,7 @@ void delta_p3c_type3_regular_all(const void *machine, const softkin_lanes *given
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a3 = effective_a3_plus_inner_arm_3*effective_a3_plus_inner_arm_3
         - third_square_a3;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
     missed += sum_a3 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3;

@@ -13,8 +13,9 @@
  * configuration: knee_1, knee_2, knee_3, turn of A1, turn of A2, turn of A3
  * rows of the Jacobian: x, y, z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_DELTA_P3C_TYPE3_H
@@ -96,10 +97,10 @@ typedef struct {
   double warning_distance;
 } delta_p3c_type3_parameters;
 
-/** A machine: constants that `delta_p3c_type3_init` computes, and that nobody changes. */
+/** A machine: constants that `delta_p3c_type3_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[DELTA_P3C_TYPE3_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       base_radius_1, base_radius_2, base_radius_3, inner_arm_1, inner_arm_2, inner_arm_3, outer_arm_1,
@@ -123,7 +124,7 @@ typedef struct {
   bool single_a1, single_a2, single_a3;
 } delta_p3c_type3_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism delta_p3c_type3_mechanism;
 
 void delta_p3c_type3_defaults(delta_p3c_type3_parameters *parameters);
@@ -171,7 +172,7 @@ softkin_status delta_p3c_type3_branch(const delta_p3c_type3_machine *machine, co
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `delta_p3c_type3_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `delta_p3c_type3_branch`.
  *
  * @param statuses 8; axes: 8 times 3, without a meaning where a slot refuses
  */

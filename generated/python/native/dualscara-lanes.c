@@ -29,7 +29,8 @@ void dualscara_regular(const void *machine, const softkin_lanes *given,
         sigma_elbow_2 = given->signs[1][lane], ref_a1 = given->reference[0][lane],
         ref_a2 = given->reference[1][lane], ref_a4 = given->reference[3][lane];
     double missed = misses[lane];
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
@@ -46,7 +47,7 @@ void dualscara_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = (arm_length_1_minus_rod_length_1 + effective_a1)
         *(arm_length_1_plus_rod_length_1 + effective_a1);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -63,7 +64,7 @@ void dualscara_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (arm_length_2_minus_rod_length_2 + effective_a2)
         *(arm_length_2_plus_rod_length_2 + effective_a2);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
@@ -131,7 +132,8 @@ void dualscara_regular_all(const void *machine, const softkin_lanes *given,
         r22 = given->rotation[4][lane], ref_a1 = given->reference[0][lane],
         ref_a2 = given->reference[1][lane], ref_a4 = given->reference[3][lane];
     double missed = misses[lane];
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
@@ -148,7 +150,7 @@ void dualscara_regular_all(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = (arm_length_1_minus_rod_length_1 + effective_a1)
         *(arm_length_1_plus_rod_length_1 + effective_a1);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -165,7 +167,7 @@ void dualscara_regular_all(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (arm_length_2_minus_rod_length_2 + effective_a2)
         *(arm_length_2_plus_rod_length_2 + effective_a2);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;

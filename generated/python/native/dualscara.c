@@ -194,7 +194,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!softkin_are_reasonable((const double[]){x, y, z, ref_a1, ref_a2, ref_a4}, 6)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
-  /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+  /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+   * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
@@ -215,7 +216,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a1 = (k->arm_length_1_minus_rod_length_1 + effective_a1)
       *(k->arm_length_1_plus_rod_length_1 + effective_a1);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
   const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
@@ -239,7 +240,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = (k->arm_length_2_minus_rod_length_2 + effective_a2)
       *(k->arm_length_2_plus_rod_length_2 + effective_a2);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
   const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
   const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2;
@@ -544,7 +545,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2],
       r11 = frame->rotation[0][0], r12 = frame->rotation[0][1], r21 = frame->rotation[1][0],
       r22 = frame->rotation[1][1], ref_a1 = reference[0], ref_a2 = reference[1], ref_a4 = reference[3];
-  /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+  /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+   * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
@@ -563,7 +565,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a1 = (k->arm_length_1_minus_rod_length_1 + effective_a1)
       *(k->arm_length_1_plus_rod_length_1 + effective_a1);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
   const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
@@ -582,7 +584,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = (k->arm_length_2_minus_rod_length_2 + effective_a2)
       *(k->arm_length_2_plus_rod_length_2 + effective_a2);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
   const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
   const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2;

@@ -16,8 +16,9 @@
  *
  * A motor axis in common, base_distance 0, is a machine too: the two arms turn about Z.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_DUALSCARA_H
@@ -85,10 +86,10 @@ typedef struct {
   double warning_distance;
 } dualscara_parameters;
 
-/** A machine: constants that `dualscara_init` computes, and that nobody changes. */
+/** A machine: constants that `dualscara_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[DUALSCARA_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, lowest_a4,
       highest_a4, mid_a4, base_distance, arm_length_1, arm_length_2, offset_a1, offset_a2, offset_a3,
@@ -102,7 +103,7 @@ typedef struct {
   bool single_a1, single_a2, single_a4;
 } dualscara_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism dualscara_mechanism;
 
 void dualscara_defaults(dualscara_parameters *parameters);
@@ -150,7 +151,7 @@ softkin_status dualscara_branch(const dualscara_machine *machine, const softkin_
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `dualscara_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `dualscara_branch`.
  *
  * @param statuses 4; axes: 4 times 4, without a meaning where a slot refuses
  */

@@ -7,8 +7,9 @@
  * Y (linear, u): Carriage along Y
  * rows of the Jacobian: x, y
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_GANTRY2_H
@@ -49,15 +50,15 @@ typedef struct {
   double warning_distance;
 } gantry2_parameters;
 
-/** A machine: constants that `gantry2_init` computes, and that nobody changes. */
+/** A machine: constants that `gantry2_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[GANTRY2_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, offset_x, offset_y, machine_scale_times_plane;
 } gantry2_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism gantry2_mechanism;
 
 void gantry2_defaults(gantry2_parameters *parameters);
@@ -105,7 +106,7 @@ softkin_status gantry2_branch(const gantry2_machine *machine, const softkin_fram
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `gantry2_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `gantry2_branch`.
  *
  * @param statuses 1; axes: 1 times 2, without a meaning where a slot refuses
  */

@@ -8,8 +8,9 @@
  * Z (linear, u): Carriage along Z
  * rows of the Jacobian: x, y, z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_GANTRY3_H
@@ -56,15 +57,15 @@ typedef struct {
   double warning_distance;
 } gantry3_parameters;
 
-/** A machine: constants that `gantry3_init` computes, and that nobody changes. */
+/** A machine: constants that `gantry3_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[GANTRY3_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, offset_x, offset_y, offset_z;
 } gantry3_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism gantry3_mechanism;
 
 void gantry3_defaults(gantry3_parameters *parameters);
@@ -112,7 +113,7 @@ softkin_status gantry3_branch(const gantry3_machine *machine, const softkin_fram
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `gantry3_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `gantry3_branch`.
  *
  * @param statuses 1; axes: 1 times 3, without a meaning where a slot refuses
  */

@@ -10,8 +10,9 @@
  * configuration: turn of R
  * rows of the Jacobian: x, y, z, turn z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_GANTRYCUTTER3_H
@@ -66,17 +67,17 @@ typedef struct {
   double warning_distance;
 } gantrycutter3_parameters;
 
-/** A machine: constants that `gantrycutter3_init` computes, and that nobody changes. */
+/** A machine: constants that `gantrycutter3_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[GANTRYCUTTER3_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_r, highest_r, mid_r,
       direction_r, offset_x, offset_y, offset_z, offset_r;
   bool single_r;
 } gantrycutter3_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism gantrycutter3_mechanism;
 
 void gantrycutter3_defaults(gantrycutter3_parameters *parameters);
@@ -124,7 +125,7 @@ softkin_status gantrycutter3_branch(const gantrycutter3_machine *machine, const 
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `gantrycutter3_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `gantrycutter3_branch`.
  *
  * @param statuses 1; axes: 1 times 4, without a meaning where a slot refuses
  */

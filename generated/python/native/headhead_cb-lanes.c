@@ -25,7 +25,7 @@ void headhead_cb_regular(const void *machine, const softkin_lanes *given,
     const double sign_tilt = sigma_tilt; /* tilt: +1 positive, -1 negative */
     /* polar coordinates: angle c from the r13 and r23 equations */
     const double along_c = r13*sign_tilt;
-    const double cos_c = along_c/radius_c; /* where it is singular: the angle of the reference */
+    const double cos_c = along_c/radius_c; /* at a singularity: the angle of the reference */
     const double c_radius_of_b = radius_c*sign_tilt;
     const double sum_in_joint_x = fork_offset + head_offset*r33 - c_radius_of_b*pivot_length;
     /* joint_x from the x equation, which is linear in it */
@@ -90,8 +90,7 @@ void headhead_cb_regular_all(const void *machine, const softkin_lanes *given,
         + softkin_lane_angle(r23_by_radius_c, r13_by_radius_c)*SOFTKIN_RADIAN;
     const double quotient_in_axis_b_positive = softkin_lane_angle(radius_c, r33)*SOFTKIN_RADIAN;
     const double axis_b_positive = offset_b + quotient_in_axis_b_positive;
-    /* where it is singular: the angle of the reference */
-    const double cos_c_negative = -r13_by_radius_c;
+    const double cos_c_negative = -r13_by_radius_c; /* at a singularity: the angle of the reference */
     const double sum_in_joint_x_negative = fork_offset_plus_head_offset_times_r33
         + radius_c_times_pivot_length;
     /* joint_x from the x equation, which is linear in it */

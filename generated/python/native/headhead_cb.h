@@ -15,8 +15,9 @@
  *
  * The direction is that of the tool, from its tip to the spindle.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_HEADHEAD_CB_H
@@ -82,10 +83,10 @@ typedef struct {
   double warning_distance;
 } headhead_cb_parameters;
 
-/** A machine: constants that `headhead_cb_init` computes, and that nobody changes. */
+/** A machine: constants that `headhead_cb_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[HEADHEAD_CB_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_c, highest_c, mid_c, lowest_b,
       highest_b, mid_b, fork_offset, head_offset, pivot_length, offset_x, offset_y, offset_z, offset_c,
@@ -93,7 +94,7 @@ typedef struct {
   bool single_c, single_b;
 } headhead_cb_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism headhead_cb_mechanism;
 
 void headhead_cb_defaults(headhead_cb_parameters *parameters);
@@ -141,7 +142,7 @@ softkin_status headhead_cb_branch(const headhead_cb_machine *machine, const soft
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `headhead_cb_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `headhead_cb_branch`.
  *
  * @param statuses 2; axes: 2 times 5, without a meaning where a slot refuses
  */

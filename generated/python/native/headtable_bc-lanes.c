@@ -24,7 +24,7 @@ void headtable_bc_regular(const void *machine, const softkin_lanes *given,
     const double sign_tilt = sigma_tilt; /* tilt: +1 positive, -1 negative */
     /* polar coordinates: angle c from the r13 and r23 equations */
     const double along_c = r13*sign_tilt;
-    const double cos_c = along_c/radius_c; /* where it is singular: the angle of the reference */
+    const double cos_c = along_c/radius_c; /* at a singularity: the angle of the reference */
     const double across_c = -r23*sign_tilt;
     const double sin_c = across_c/radius_c;
     const double c_radius_of_b = radius_c*sign_tilt;
@@ -87,8 +87,7 @@ void headtable_bc_regular_all(const void *machine, const softkin_lanes *given,
     const double axis_b_positive = offset_b + quotient_in_axis_b_positive;
     const double axis_c_positive = offset_c
         + softkin_lane_angle(sin_c_positive, r13_by_radius_c)*SOFTKIN_RADIAN;
-    /* where it is singular: the angle of the reference */
-    const double cos_c_negative = -r13_by_radius_c;
+    const double cos_c_negative = -r13_by_radius_c; /* at a singularity: the angle of the reference */
     const double sum_in_joint_x_negative = head_offset_times_r33 + radius_c_times_pivot_length;
     /* joint_x and joint_y from the x and y equations, linear in both */
     const double joint_x_negative = (x - sum_in_joint_x_negative*cos_c_negative)*cos_c_negative

@@ -16,8 +16,9 @@
  * Positions are in the frame of the workpiece: its origin is where axis C leaves the table, and it
  * turns with the table. The direction is that of the tool, from its tip to the spindle.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_HEADTABLE_BC_H
@@ -81,17 +82,17 @@ typedef struct {
   double warning_distance;
 } headtable_bc_parameters;
 
-/** A machine: constants that `headtable_bc_init` computes, and that nobody changes. */
+/** A machine: constants that `headtable_bc_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[HEADTABLE_BC_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_b, highest_b, mid_b, lowest_c,
       highest_c, mid_c, head_offset, pivot_length, offset_x, offset_y, offset_z, offset_b, offset_c;
   bool single_b, single_c;
 } headtable_bc_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism headtable_bc_mechanism;
 
 void headtable_bc_defaults(headtable_bc_parameters *parameters);
@@ -139,7 +140,7 @@ softkin_status headtable_bc_branch(const headtable_bc_machine *machine, const so
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `headtable_bc_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `headtable_bc_branch`.
  *
  * @param statuses 2; axes: 2 times 5, without a meaning where a slot refuses
  */

@@ -30,8 +30,9 @@
  * is about the rod at the home pose. It does not test whether rods touch each other: exclude that by
  * the limits.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_HEXAGLIDE_H
@@ -231,10 +232,10 @@ typedef struct {
   double warning_distance;
 } hexaglide_parameters;
 
-/** A machine: constants that `hexaglide_init` computes, and that nobody changes. */
+/** A machine: constants that `hexaglide_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[HEXAGLIDE_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, lowest_a3, highest_a3, lowest_a4, highest_a4,
       lowest_a5, highest_a5, lowest_a6, highest_a6, rail_1_y, rail_1_z, rail_2_y, rail_2_z, rail_3_y,
@@ -267,7 +268,7 @@ typedef struct {
       half_by_rod_length_4, half_by_rod_length_5, half_by_rod_length_6;
 } hexaglide_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism hexaglide_mechanism;
 
 void hexaglide_defaults(hexaglide_parameters *parameters);
@@ -285,7 +286,7 @@ softkin_status hexaglide_init(hexaglide_machine *machine, const hexaglide_parame
 softkin_status hexaglide_forward(const hexaglide_machine *machine, const double *axes, softkin_frame *frame,
     int8_t *configuration, softkin_refusal *why);
 
-/** The same; the search for the frame begins at `start`, as the previous frame on a path. */
+/** The same call, whose iteration begins at `start`, for example at the previous frame of a path. */
 softkin_status hexaglide_forward_from(const hexaglide_machine *machine, const double *axes,
     const softkin_frame *start, softkin_frame *frame, int8_t *configuration, softkin_refusal *why);
 
@@ -319,7 +320,7 @@ softkin_status hexaglide_branch(const hexaglide_machine *machine, const softkin_
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `hexaglide_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `hexaglide_branch`.
  *
  * @param statuses 1; axes: 1 times 6, without a meaning where a slot refuses
  */

@@ -27,8 +27,9 @@
  * joints are in the middle of their range. It does not test whether legs touch each other: exclude
  * that by the limits.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_HEXAPOD_H
@@ -234,10 +235,10 @@ typedef struct {
   double warning_distance;
 } hexapod_parameters;
 
-/** A machine: constants that `hexapod_init` computes, and that nobody changes. */
+/** A machine: constants that `hexapod_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[HEXAPOD_LIMITS];
   double lowest_l1, highest_l1, lowest_l2, highest_l2, lowest_l3, highest_l3, lowest_l4, highest_l4,
       lowest_l5, highest_l5, lowest_l6, highest_l6, base_1_x, base_1_y, base_1_z, base_2_x, base_2_y,
@@ -257,7 +258,7 @@ typedef struct {
       one_by_machine_scale_squared;
 } hexapod_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism hexapod_mechanism;
 
 void hexapod_defaults(hexapod_parameters *parameters);
@@ -275,7 +276,7 @@ softkin_status hexapod_init(hexapod_machine *machine, const hexapod_parameters *
 softkin_status hexapod_forward(const hexapod_machine *machine, const double *axes, softkin_frame *frame,
     int8_t *configuration, softkin_refusal *why);
 
-/** The same; the search for the frame begins at `start`, as the previous frame on a path. */
+/** The same call, whose iteration begins at `start`, for example at the previous frame of a path. */
 softkin_status hexapod_forward_from(const hexapod_machine *machine, const double *axes,
     const softkin_frame *start, softkin_frame *frame, int8_t *configuration, softkin_refusal *why);
 
@@ -309,7 +310,7 @@ softkin_status hexapod_branch(const hexapod_machine *machine, const softkin_fram
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `hexapod_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `hexapod_branch`.
  *
  * @param statuses 1; axes: 1 times 6, without a meaning where a slot refuses
  */

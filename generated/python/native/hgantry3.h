@@ -8,8 +8,9 @@
  * Z (linear, u): Carriage along Z
  * rows of the Jacobian: x, y, z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_HGANTRY3_H
@@ -64,16 +65,16 @@ typedef struct {
   double warning_distance;
 } hgantry3_parameters;
 
-/** A machine: constants that `hgantry3_init` computes, and that nobody changes. */
+/** A machine: constants that `hgantry3_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[HGANTRY3_LIMITS];
   double lowest_a, highest_a, lowest_b, highest_b, lowest_z, highest_z, lowest_x, highest_x, lowest_y,
       highest_y, offset_a, offset_b, offset_z;
 } hgantry3_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism hgantry3_mechanism;
 
 void hgantry3_defaults(hgantry3_parameters *parameters);
@@ -121,7 +122,7 @@ softkin_status hgantry3_branch(const hgantry3_machine *machine, const softkin_fr
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `hgantry3_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `hgantry3_branch`.
  *
  * @param statuses 1; axes: 1 times 3, without a meaning where a slot refuses
  */

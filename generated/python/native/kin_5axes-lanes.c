@@ -32,7 +32,7 @@ void kin_5axes_regular(const void *machine, const softkin_lanes *given,
     const double wrist_z = z - r33*tool_length_times_tool_side;
     const double axis_z = offset_z + wrist_z;
     const double sign_roll = sigma_roll; /* roll: +1 positive, -1 negative */
-    /* polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     const double direction_x_a = r13_of_a*sign_roll;
     const double direction_y_a = r23_of_a*sign_roll;

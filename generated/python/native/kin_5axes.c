@@ -166,13 +166,13 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sign_roll = sigma_roll; /* roll: +1 positive, -1 negative */
   double direction_x_a, direction_y_a;
   if (radius_a > 1e-11) {
-    /* polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_a = r13_of_a*sign_roll;
     direction_y_a = r23_of_a*sign_roll;
   } else {
     const double reference_a = (ref_a - k->offset_a)*SOFTKIN_DEGREE;
-    /* polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_a = cos(reference_a);
     direction_y_a = sin(reference_a);
@@ -368,21 +368,21 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a);
   double direction_x_a_positive, direction_y_a_positive, direction_x_a_negative, direction_y_a_negative;
   if (radius_a > 1e-11) {
-    /* polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_a_positive = r13_of_a;
     direction_y_a_positive = r23_of_a;
-    /* polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_a_negative = -r13_of_a;
     direction_y_a_negative = -r23_of_a;
   } else {
     const double reference_a = (ref_a - k->offset_a)*SOFTKIN_DEGREE;
-    /* polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_a_positive = cos(reference_a);
     direction_y_a_positive = sin(reference_a);
-    /* polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_a_negative = direction_x_a_positive;
     direction_y_a_negative = direction_y_a_positive;

@@ -13,8 +13,9 @@
  * configuration: roll, turn of A, turn of B
  * rows of the Jacobian: x, y, z, tilt x, tilt y
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_KIN_5AXES_H
@@ -79,10 +80,10 @@ typedef struct {
   double warning_distance;
 } kin_5axes_parameters;
 
-/** A machine: constants that `kin_5axes_init` computes, and that nobody changes. */
+/** A machine: constants that `kin_5axes_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[KIN_5AXES_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_a, highest_a, mid_a, lowest_b,
       highest_b, mid_b, tool_length, tool_side, offset_x, offset_y, offset_z, offset_a, offset_b,
@@ -90,7 +91,7 @@ typedef struct {
   bool single_a, single_b;
 } kin_5axes_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism kin_5axes_mechanism;
 
 void kin_5axes_defaults(kin_5axes_parameters *parameters);
@@ -138,7 +139,7 @@ softkin_status kin_5axes_branch(const kin_5axes_machine *machine, const softkin_
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `kin_5axes_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `kin_5axes_branch`.
  *
  * @param statuses 2; axes: 2 times 5, without a meaning where a slot refuses
  */

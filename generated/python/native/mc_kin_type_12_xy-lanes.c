@@ -44,7 +44,7 @@ void mc_kin_type_12_xy_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = (link_length_1_plus_link_length_2 - effective_a1)
         *(effective_a1 - link_length_1_minus_link_length_2);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -72,7 +72,7 @@ void mc_kin_type_12_xy_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (link_length_4_plus_link_length_5 - effective_a2)
         *(effective_a2 - link_length_5_minus_link_length_4);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
@@ -153,7 +153,7 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = (link_length_1_plus_link_length_2 - effective_a1)
         *(effective_a1 - link_length_1_minus_link_length_2);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -186,7 +186,7 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2_left = (link_length_4_plus_link_length_5 - effective_a2_left)
         *(effective_a2_left - link_length_5_minus_link_length_4);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left;
     missed += sum_a2_left > 0.0 ? 0.0 : 1.0;
     const double sin_a1_right = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y)
@@ -206,7 +206,7 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2_right = (link_length_4_plus_link_length_5 - effective_a2_right)
         *(effective_a2_right - link_length_5_minus_link_length_4);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right;
     missed += sum_a2_right > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2_left = (one_plus_cos_a2_left - one_less_cos_a2_left)/sum_a2_left;

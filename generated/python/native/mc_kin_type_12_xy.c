@@ -214,7 +214,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a1 = (k->link_length_1_plus_link_length_2 - divisor_a1)
       *(divisor_a1 - k->link_length_1_minus_link_length_2);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
   const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
@@ -241,7 +241,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = (k->link_length_4_plus_link_length_5 - divisor_a2)
       *(divisor_a2 - k->link_length_5_minus_link_length_4);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
   const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
   const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2;
@@ -593,7 +593,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a1 = (k->link_length_1_plus_link_length_2 - divisor_a1)
       *(divisor_a1 - k->link_length_1_minus_link_length_2);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
   const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
@@ -627,7 +627,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2_left = (k->link_length_4_plus_link_length_5 - divisor_a2_left)
       *(divisor_a2_left - k->link_length_5_minus_link_length_4);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left;
   const double divisor_of_cos_a2_left = sum_a2_left > 0.0 ? sum_a2_left : 1.0;
   const double cos_swing_a2_left = (one_plus_cos_a2_left - one_less_cos_a2_left)/divisor_of_cos_a2_left;
@@ -682,7 +682,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2_right = (k->link_length_4_plus_link_length_5 - divisor_a2_right)
       *(divisor_a2_right - k->link_length_5_minus_link_length_4);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right;
   const double divisor_of_cos_a2_right = sum_a2_right > 0.0 ? sum_a2_right : 1.0;
   const double cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right)/divisor_of_cos_a2_right;

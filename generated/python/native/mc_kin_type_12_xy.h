@@ -10,8 +10,9 @@
  * configuration: t, w, turn of A1, turn of A2
  * rows of the Jacobian: x, y
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_MC_KIN_TYPE_12_XY_H
@@ -69,10 +70,10 @@ typedef struct {
   double warning_distance;
 } mc_kin_type_12_xy_parameters;
 
-/** A machine: constants that `mc_kin_type_12_xy_init` computes, and that nobody changes. */
+/** A machine: constants that `mc_kin_type_12_xy_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[MC_KIN_TYPE_12_XY_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, link_length_1, link_length_2,
       link_length_3, link_length_5, offset_a1, offset_a2, min_type2_margin, assembly_sign,
@@ -89,7 +90,7 @@ typedef struct {
   bool single_a1, single_a2, swap_xy;
 } mc_kin_type_12_xy_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism mc_kin_type_12_xy_mechanism;
 
 void mc_kin_type_12_xy_defaults(mc_kin_type_12_xy_parameters *parameters);
@@ -138,7 +139,7 @@ softkin_status mc_kin_type_12_xy_branch(const mc_kin_type_12_xy_machine *machine
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `mc_kin_type_12_xy_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `mc_kin_type_12_xy_branch`.
  *
  * @param statuses 4; axes: 4 times 2, without a meaning where a slot refuses
  */

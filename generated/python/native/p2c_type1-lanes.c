@@ -37,7 +37,7 @@ void p2c_type1_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1)
         *(effective_a1 - inner_arm_minus_outer_arm);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -55,7 +55,7 @@ void p2c_type1_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm)
         *(effective_a2 + inner_arm_plus_outer_arm);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
@@ -126,7 +126,7 @@ void p2c_type1_regular_all(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = (inner_arm_plus_outer_arm - effective_a1)
         *(effective_a1 - inner_arm_minus_outer_arm);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -144,7 +144,7 @@ void p2c_type1_regular_all(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm)
         *(effective_a2 + inner_arm_plus_outer_arm);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;

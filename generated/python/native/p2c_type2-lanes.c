@@ -36,7 +36,7 @@ void p2c_type2_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm)
         *(effective_a1 + inner_arm_plus_outer_arm);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -53,7 +53,7 @@ void p2c_type2_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm)
         *(effective_a2 + inner_arm_plus_outer_arm);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
@@ -123,7 +123,7 @@ void p2c_type2_regular_all(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = (effective_a1 + inner_arm_minus_outer_arm)
         *(effective_a1 + inner_arm_plus_outer_arm);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -140,7 +140,7 @@ void p2c_type2_regular_all(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (effective_a2 + inner_arm_minus_outer_arm)
         *(effective_a2 + inner_arm_plus_outer_arm);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;

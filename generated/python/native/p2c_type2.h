@@ -10,8 +10,9 @@
  * configuration: knee_1, knee_2, turn of A1, turn of A2
  * rows of the Jacobian: x, y
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_P2C_TYPE2_H
@@ -65,10 +66,10 @@ typedef struct {
   double warning_distance;
 } p2c_type2_parameters;
 
-/** A machine: constants that `p2c_type2_init` computes, and that nobody changes. */
+/** A machine: constants that `p2c_type2_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[P2C_TYPE2_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, inner_arm, offset_a1, offset_a2,
       min_type2_margin, assembly_sign, product_in_normal_divisor, twice_outer_arm,
@@ -79,7 +80,7 @@ typedef struct {
   bool single_a1, single_a2;
 } p2c_type2_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism p2c_type2_mechanism;
 
 void p2c_type2_defaults(p2c_type2_parameters *parameters);
@@ -127,7 +128,7 @@ softkin_status p2c_type2_branch(const p2c_type2_machine *machine, const softkin_
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `p2c_type2_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `p2c_type2_branch`.
  *
  * @param statuses 4; axes: 4 times 2, without a meaning where a slot refuses
  */

@@ -431,7 +431,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   /* characteristic length of the machine */
   const double machine_scale = p->arm_length_1 + p->arm_length_2;
-  /* squared distances closer than this are equal */
+  /* squared distances that differ by less are equal */
   const double tie = 1e-12*machine_scale*machine_scale;
   const double centre_1_to_2_y = p->rail_y_2 - p->rail_y_1;
   /* assembly mode of this machine: the sign of the determinant of its rods */

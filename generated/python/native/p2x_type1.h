@@ -10,8 +10,9 @@
  * configuration: carriage_1, carriage_2
  * rows of the Jacobian: x, y
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_P2X_TYPE1_H
@@ -69,10 +70,10 @@ typedef struct {
   double warning_distance;
 } p2x_type1_parameters;
 
-/** A machine: constants that `p2x_type1_init` computes, and that nobody changes. */
+/** A machine: constants that `p2x_type1_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[P2X_TYPE1_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, arm_length_1, arm_length_2, rail_y_1, rail_y_2,
       tcp_offset_1, tcp_offset_2, offset_a1, offset_a2, min_type2_margin, tie, centre_1_to_2_y,
@@ -83,7 +84,7 @@ typedef struct {
       quotient_in_margin_arms_aligned;
 } p2x_type1_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism p2x_type1_mechanism;
 
 void p2x_type1_defaults(p2x_type1_parameters *parameters);
@@ -131,7 +132,7 @@ softkin_status p2x_type1_branch(const p2x_type1_machine *machine, const softkin_
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `p2x_type1_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `p2x_type1_branch`.
  *
  * @param statuses 4; axes: 4 times 2, without a meaning where a slot refuses
  */

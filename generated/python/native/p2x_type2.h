@@ -7,8 +7,9 @@
  * A2 (linear, u): Carriage 2 along X
  * rows of the Jacobian: x, y
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_P2X_TYPE2_H
@@ -59,10 +60,10 @@ typedef struct {
   double warning_distance;
 } p2x_type2_parameters;
 
-/** A machine: constants that `p2x_type2_init` computes, and that nobody changes. */
+/** A machine: constants that `p2x_type2_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[P2X_TYPE2_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, arm_length, tcp_link_distance, offset_a1, offset_a2,
       min_type2_margin, assembly_sign, span_1_x, machine_scale_times_rounding,
@@ -70,7 +71,7 @@ typedef struct {
       machine_scale_times_free_angle, assembly_sign_by_arm_length, one_by_arm_length;
 } p2x_type2_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism p2x_type2_mechanism;
 
 void p2x_type2_defaults(p2x_type2_parameters *parameters);
@@ -118,7 +119,7 @@ softkin_status p2x_type2_branch(const p2x_type2_machine *machine, const softkin_
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `p2x_type2_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `p2x_type2_branch`.
  *
  * @param statuses 1; axes: 1 times 2, without a meaning where a slot refuses
  */

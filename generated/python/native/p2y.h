@@ -7,8 +7,9 @@
  * A2 (linear, u): Motor 2
  * rows of the Jacobian: x, y
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_P2Y_H
@@ -57,16 +58,16 @@ typedef struct {
   double warning_distance;
 } p2y_parameters;
 
-/** A machine: constants that `p2y_init` computes, and that nobody changes. */
+/** A machine: constants that `p2y_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[P2Y_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, lowest_x, highest_x, lowest_y, highest_y, offset_a1,
       offset_a2, machine_scale_times_plane;
 } p2y_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism p2y_mechanism;
 
 void p2y_defaults(p2y_parameters *parameters);
@@ -113,7 +114,7 @@ softkin_status p2y_branch(const p2y_machine *machine, const softkin_frame *frame
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `p2y_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `p2y_branch`.
  *
  * @param statuses 1; axes: 1 times 2, without a meaning where a slot refuses
  */

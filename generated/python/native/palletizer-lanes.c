@@ -29,7 +29,8 @@ void palletizer_regular(const void *machine, const softkin_lanes *given,
         ref_a2 = given->reference[1][lane], ref_a3 = given->reference[2][lane],
         ref_a4 = given->reference[3][lane];
     double missed = misses[lane];
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
@@ -55,8 +56,7 @@ void palletizer_regular(const void *machine, const softkin_lanes *given,
     missed += fabs(cos_swing_a3_from_a2) <= 1.0000000000005 ? 0.0 : 1.0;
     missed += radius_a1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
-    /* polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
-     * reference */
+    /* polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the reference */
     const double direction_x_a1 = sign_shoulder*x;
     const double direction_y_a1 = sign_shoulder*y;
     const double angle_a1 = softkin_lane_angle(direction_y_a1, direction_x_a1);
@@ -69,8 +69,7 @@ void palletizer_regular(const void *machine, const softkin_lanes *given,
     const double cos_a3_from_a2 = softkin_lane_root(sine_square_a3_from_a2)
         *half_by_link_length_1_by_link_length_2*sign_elbow;
     const double arm_across_a2 = link_length_2*cos_a3_from_a2;
-    /* rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
     const double direction_x_a2 = arm_across_a2*wrist_a1_radius + arm_along_a2*wrist_z;
     const double direction_y_a2 = arm_along_a2*wrist_a1_radius - arm_across_a2*wrist_z;
     const double angle_a2 = softkin_lane_angle(direction_y_a2, direction_x_a2);
@@ -117,7 +116,8 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
         ref_a2 = given->reference[1][lane], ref_a3 = given->reference[2][lane],
         ref_a4 = given->reference[3][lane];
     double missed = misses[lane];
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */

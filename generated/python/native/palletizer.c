@@ -183,7 +183,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!softkin_are_reasonable((const double[]){x, y, z, ref_a1, ref_a2, ref_a3, ref_a4}, 7)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
-  /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+  /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+   * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
@@ -215,14 +216,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   }
   double direction_x_a1, direction_y_a1;
   if (radius_a1 > k->machine_scale_times_free_angle) {
-    /* polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
-     * reference */
+    /* polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the reference */
     direction_x_a1 = sign_shoulder*x;
     direction_y_a1 = sign_shoulder*y;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
-     * reference */
+    /* polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the reference */
     direction_x_a1 = cos(reference_a1);
     direction_y_a1 = sin(reference_a1);
   }
@@ -242,14 +241,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (reach > k->machine_scale_times_free_angle) {
     const double arm_along_a2 = k->link_length_1 - k->link_length_2*cos_swing_a3_from_a2;
     const double arm_across_a2 = k->link_length_2*cos_a3_from_a2;
-    /* rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_a2 = arm_across_a2*wrist_a1_radius + arm_along_a2*wrist_z;
     direction_y_a2 = arm_along_a2*wrist_a1_radius - arm_across_a2*wrist_z;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    /* rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_a2 = cos(reference_a2);
     direction_y_a2 = sin(reference_a2);
   }
@@ -532,7 +529,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       r11 = frame->rotation[0][0], r12 = frame->rotation[0][1], r21 = frame->rotation[1][0],
       r22 = frame->rotation[1][1], ref_a1 = reference[0], ref_a2 = reference[1], ref_a3 = reference[2],
       ref_a4 = reference[3];
-  /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+  /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+   * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
@@ -558,22 +556,18 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const int refusal_front = fabs(cos_swing_a3_from_a2_front) <= 1.0000000000005 ? 0 : 3;
   double direction_x_a1_front, direction_y_a1_front, direction_x_a1_back, direction_y_a1_back;
   if (radius_a1 > k->machine_scale_times_free_angle) {
-    /* polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
-     * reference */
+    /* polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the reference */
     direction_x_a1_front = x;
     direction_y_a1_front = y;
-    /* polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
-     * reference */
+    /* polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the reference */
     direction_x_a1_back = -x;
     direction_y_a1_back = -y;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
-     * reference */
+    /* polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the reference */
     direction_x_a1_front = cos(reference_a1);
     direction_y_a1_front = sin(reference_a1);
-    /* polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
-     * reference */
+    /* polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the reference */
     direction_x_a1_back = direction_x_a1_front;
     direction_y_a1_back = direction_y_a1_front;
   }

@@ -16,8 +16,9 @@
  * A3 is the angle of the forearm against the base: where A2 alone moves, the forearm keeps its
  * direction.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_PALLETIZER_H
@@ -88,10 +89,10 @@ typedef struct {
   double warning_distance;
 } palletizer_parameters;
 
-/** A machine: constants that `palletizer_init` computes, and that nobody changes. */
+/** A machine: constants that `palletizer_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[PALLETIZER_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_a4, highest_a4, mid_a4, lowest_elbow, highest_elbow, base_height, shoulder_offset,
@@ -103,7 +104,7 @@ typedef struct {
   bool single_a1, single_a2, single_a3, single_a4;
 } palletizer_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism palletizer_mechanism;
 
 void palletizer_defaults(palletizer_parameters *parameters);
@@ -151,7 +152,7 @@ softkin_status palletizer_branch(const palletizer_machine *machine, const softki
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `palletizer_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `palletizer_branch`.
  *
  * @param statuses 4; axes: 4 times 4, without a meaning where a slot refuses
  */

@@ -44,8 +44,7 @@ void pcc_regular(const void *machine, const softkin_lanes *given,
     const double sin_a2_from_a1 = softkin_lane_root(sine_square_a2_from_a1)
         *half_by_link_length_1_by_link_length_2*sign_elbow;
     const double arm_across_a1 = link_length_2*sin_a2_from_a1;
-    /* rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
     const double direction_x_a1 = arm_across_a1*y + arm_along_a1*x;
     const double direction_y_a1 = arm_along_a1*y - arm_across_a1*x;
     const double angle_a1 = softkin_lane_angle(direction_y_a1, direction_x_a1);

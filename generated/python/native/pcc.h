@@ -11,8 +11,9 @@
  *
  * Angles are right-handed about +Z.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_PCC_H
@@ -63,10 +64,10 @@ typedef struct {
   double warning_distance;
 } pcc_parameters;
 
-/** A machine: constants that `pcc_init` computes, and that nobody changes. */
+/** A machine: constants that `pcc_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[PCC_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_elbow, highest_elbow,
       link_length_1, link_length_2, offset_a1, offset_a2, machine_scale_times_plane,
@@ -75,7 +76,7 @@ typedef struct {
   bool single_a1, single_a2;
 } pcc_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism pcc_mechanism;
 
 void pcc_defaults(pcc_parameters *parameters);
@@ -122,7 +123,7 @@ softkin_status pcc_branch(const pcc_machine *machine, const softkin_frame *frame
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `pcc_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `pcc_branch`.
  *
  * @param statuses 2; axes: 2 times 2, without a meaning where a slot refuses
  */

@@ -344,7 +344,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!softkin_are_reasonable((const double[]){x, y, z, ref_a1, ref_a2, ref_a3}, 6)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
-  /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+  /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+   * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
@@ -375,7 +376,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a1 = (k->arm_length_1_minus_rod_length_1 + effective_a1)
       *(k->arm_length_1_plus_rod_length_1 + effective_a1);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
   const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
@@ -402,7 +403,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = (k->arm_length_2_minus_rod_length_2 + effective_a2)
       *(k->arm_length_2_plus_rod_length_2 + effective_a2);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
   const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
   const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2;
@@ -429,7 +430,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a3 = (k->arm_length_3_minus_rod_length_3 + effective_a3)
       *(k->arm_length_3_plus_rod_length_3 + effective_a3);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
   const double divisor_of_cos_a3 = sum_a3 > 0.0 ? sum_a3 : 1.0;
   const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3;
@@ -758,7 +759,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       r22 = frame->rotation[1][1], ref_a1 = reference[0], ref_a2 = reference[1], ref_a3 = reference[2];
   const double quotient_in_determinant_right_right_right = 1.0
       /(k->rod_length_1*k->rod_length_2*k->rod_length_3);
-  /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+  /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+   * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   const double heading_length = sqrt(heading_across*heading_across + heading_along*heading_along);
@@ -779,7 +781,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a1 = (k->arm_length_1_minus_rod_length_1 + divisor_a1)
       *(k->arm_length_1_plus_rod_length_1 + divisor_a1);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
   const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
@@ -811,7 +813,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = (k->arm_length_2_minus_rod_length_2 + divisor_a2)
       *(k->arm_length_2_plus_rod_length_2 + divisor_a2);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
   const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
   const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2;
@@ -843,7 +845,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a3 = (k->arm_length_3_minus_rod_length_3 + divisor_a3)
       *(k->arm_length_3_plus_rod_length_3 + divisor_a3);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
   const double divisor_of_cos_a3 = sum_a3 > 0.0 ? sum_a3 : 1.0;
   const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3;
@@ -1100,7 +1102,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* 1 + cosine, times the scale */
   const double home_one_plus_cos_a1 = (p->arm_length_1 + home_divisor_a1 + p->rod_length_1)
       *(p->arm_length_1 + home_divisor_a1 - p->rod_length_1);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double home_sum_a1 = home_one_less_cos_a1 + home_one_plus_cos_a1;
   const double home_divisor_of_cos_a1 = home_sum_a1 > 0.0 ? home_sum_a1 : 1.0;
   const double home_cos_swing_a1 = (home_one_plus_cos_a1 - home_one_less_cos_a1)/home_divisor_of_cos_a1;
@@ -1124,7 +1126,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* 1 + cosine, times the scale */
   const double home_one_plus_cos_a2 = (p->arm_length_2 + home_divisor_a2 + p->rod_length_2)
       *(p->arm_length_2 + home_divisor_a2 - p->rod_length_2);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double home_sum_a2 = home_one_less_cos_a2 + home_one_plus_cos_a2;
   const double home_divisor_of_cos_a2 = home_sum_a2 > 0.0 ? home_sum_a2 : 1.0;
   const double home_cos_swing_a2 = (home_one_plus_cos_a2 - home_one_less_cos_a2)/home_divisor_of_cos_a2;
@@ -1148,7 +1150,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* 1 + cosine, times the scale */
   const double home_one_plus_cos_a3 = (p->arm_length_3 + home_divisor_a3 + p->rod_length_3)
       *(p->arm_length_3 + home_divisor_a3 - p->rod_length_3);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double home_sum_a3 = home_one_less_cos_a3 + home_one_plus_cos_a3;
   const double home_divisor_of_cos_a3 = home_sum_a3 > 0.0 ? home_sum_a3 : 1.0;
   const double home_cos_swing_a3 = (home_one_plus_cos_a3 - home_one_less_cos_a3)/home_divisor_of_cos_a3;

@@ -28,8 +28,9 @@
  * Initialize refuses a home pose that the legs do not reach, and one that is singular: there the rods
  * do not hold the platform.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_PLANAR_3RRR_H
@@ -127,10 +128,10 @@ typedef struct {
   double warning_distance;
 } planar_3rrr_parameters;
 
-/** A machine: constants that `planar_3rrr_init` computes, and that nobody changes. */
+/** A machine: constants that `planar_3rrr_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[PLANAR_3RRR_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       base_1_x, base_1_y, base_2_x, base_2_y, base_3_x, base_3_y, platform_1_x, platform_1_y, platform_2_x,
@@ -145,7 +146,7 @@ typedef struct {
   bool single_a1, single_a2, single_a3;
 } planar_3rrr_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism planar_3rrr_mechanism;
 
 void planar_3rrr_defaults(planar_3rrr_parameters *parameters);
@@ -163,7 +164,7 @@ softkin_status planar_3rrr_init(planar_3rrr_machine *machine, const planar_3rrr_
 softkin_status planar_3rrr_forward(const planar_3rrr_machine *machine, const double *axes,
     softkin_frame *frame, int8_t *configuration, softkin_refusal *why);
 
-/** The same; the search for the frame begins at `start`, as the previous frame on a path. */
+/** The same call, whose iteration begins at `start`, for example at the previous frame of a path. */
 softkin_status planar_3rrr_forward_from(const planar_3rrr_machine *machine, const double *axes,
     const softkin_frame *start, softkin_frame *frame, int8_t *configuration, softkin_refusal *why);
 
@@ -197,7 +198,7 @@ softkin_status planar_3rrr_branch(const planar_3rrr_machine *machine, const soft
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `planar_3rrr_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `planar_3rrr_branch`.
  *
  * @param statuses 8; axes: 8 times 3, without a meaning where a slot refuses
  */

@@ -111,11 +111,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double radius_c = sqrt(x*x + y*y); /* polar coordinates: the radius at angle c */
   double direction_x_c, direction_y_c;
   if (radius_c > k->machine_scale_times_free_angle) {
-    direction_x_c = x; /* where it is singular: the angle of the reference */
+    direction_x_c = x; /* at a singularity: the angle of the reference */
     direction_y_c = y;
   } else {
     const double reference_c = (ref_c - k->offset_c)*SOFTKIN_DEGREE;
-    direction_x_c = cos(reference_c); /* where it is singular: the angle of the reference */
+    direction_x_c = cos(reference_c); /* at a singularity: the angle of the reference */
     direction_y_c = sin(reference_c);
   }
   /* C: without a commanded turn, the value nearest to this */
@@ -188,7 +188,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double y = r*sin_c;
   const double radius_c = sqrt(x*x + y*y); /* polar coordinates: the radius at angle c */
   const double length_free_c = k->one_by_machine_scale*radius_c;
-  /* 0 where nothing determines the axis, else 1 or -1 */
+  /* 0 where no equation determines the axis, else 1 or -1 */
   const double margin_free_c = length_free_c > 1e-11 ? 1.0 : 0.0;
   margins[0] = margin_free_c;
   return SOFTKIN_OK;

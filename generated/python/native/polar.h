@@ -12,8 +12,9 @@
  *
  * The centre is a singularity: the direction of the arm is then the reference's.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_POLAR_H
@@ -56,17 +57,17 @@ typedef struct {
   double warning_distance;
 } polar_parameters;
 
-/** A machine: constants that `polar_init` computes, and that nobody changes. */
+/** A machine: constants that `polar_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[POLAR_LIMITS];
   double lowest_c, highest_c, mid_c, lowest_r, highest_r, offset_c, offset_r, machine_scale_times_plane,
       machine_scale_times_free_angle, one_by_machine_scale;
   bool single_c;
 } polar_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism polar_mechanism;
 
 void polar_defaults(polar_parameters *parameters);
@@ -113,7 +114,7 @@ softkin_status polar_branch(const polar_machine *machine, const softkin_frame *f
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `polar_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `polar_branch`.
  *
  * @param statuses 1; axes: 1 times 2, without a meaning where a slot refuses
  */

@@ -13,8 +13,9 @@
  *
  * The centre is a singularity: the direction of the arm is then the reference's.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_POLAR_Z_H
@@ -63,17 +64,17 @@ typedef struct {
   double warning_distance;
 } polar_z_parameters;
 
-/** A machine: constants that `polar_z_init` computes, and that nobody changes. */
+/** A machine: constants that `polar_z_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[POLAR_Z_LIMITS];
   double lowest_c, highest_c, mid_c, lowest_r, highest_r, lowest_z, highest_z, offset_c, offset_r, offset_z,
       machine_scale_times_free_angle, one_by_machine_scale;
   bool single_c;
 } polar_z_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism polar_z_mechanism;
 
 void polar_z_defaults(polar_z_parameters *parameters);
@@ -121,7 +122,7 @@ softkin_status polar_z_branch(const polar_z_machine *machine, const softkin_fram
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `polar_z_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `polar_z_branch`.
  *
  * @param statuses 1; axes: 1 times 3, without a meaning where a slot refuses
  */

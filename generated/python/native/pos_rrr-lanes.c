@@ -47,14 +47,14 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     const double one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
     missed += sum_q3 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3;
     /* q3: out of reach */
     missed += fabs(cos_swing_q3) <= 1.0000000000005 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/distance_q1_squared;
     const double sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/distance_q1_squared;
     const double axis_a1 = offset_a1
@@ -65,8 +65,7 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     const double sin_swing_q3 = -2.0*softkin_lane_root(sine_square_q3)*sign_elbow/sum_q3;
     const double arm_along_q2 = -effective_q3_2*sin_swing_q3;
     const double arm_across_q2 = a2 + effective_q3_2*cos_swing_q3;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
     const double direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1;
     const double direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1;
     const double axis_a2 = offset_a2 + softkin_lane_angle(direction_y_q2, direction_x_q2)*SOFTKIN_RADIAN;
@@ -129,7 +128,7 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2)
         *(a2_minus_effective_q3_2 + reach_front);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
     missed += sum_q3_front > 0.0 ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
@@ -145,7 +144,7 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2)
         *(a2_minus_effective_q3_2 + reach_back);
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
     missed += sum_q3_back > 0.0 ? 0.0 : 1.0;
     missed += reach_back > machine_scale_times_free_angle ? 0.0 : 1.0;
@@ -154,7 +153,7 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
     const double d3_times_y = d3*y;
     const double ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3_front*x;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)
         /distance_q1_squared;
     const double d3_times_x = d3*x;
@@ -184,7 +183,7 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/sum_q3_back;
     /* q3: out of reach */
     const double refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)
         /distance_q1_squared;
     const double sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_front_times_y)

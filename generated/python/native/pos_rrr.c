@@ -171,12 +171,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double ahead_q1_before_q1_for_q3 = softkin_root(ahead_squared_q1)*sign_arm;
   double cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3;
   if (distance_q1 > k->machine_scale_times_free_angle) {
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - k->d3*y)/distance_q1_squared;
     sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + k->d3*x)/distance_q1_squared;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3 = cos(reference_a1);
     sin_q1_before_q1_for_q3 = sin(reference_a1);
   }
@@ -234,7 +234,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double one_less_cos_q3 = (k->a2_plus_effective_q3_2 + reach)*(k->a2_plus_effective_q3_2 - reach);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3 = (reach - k->a2_minus_effective_q3_2)*(k->a2_minus_effective_q3_2 + reach);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
   const double divisor_of_cos_q3 = sum_q3 > 0.0 ? sum_q3 : 1.0;
   const double cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3;
@@ -258,14 +258,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (reach > k->machine_scale_times_free_angle) {
     const double arm_along_q2 = -k->effective_q3_2*sin_swing_q3;
     const double arm_across_q2 = k->a2 + k->effective_q3_2*cos_swing_q3;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1;
     direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    /* rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_q2 = cos(reference_a2);
     direction_y_q2 = sin(reference_a2);
   }
@@ -485,7 +483,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3_front = (reach_front - k->a2_minus_effective_q3_2)
       *(k->a2_minus_effective_q3_2 + reach_front);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
   const double divisor_of_cos_q3_front = sum_q3_front > 0.0 ? sum_q3_front : 1.0;
   const double cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/divisor_of_cos_q3_front;
@@ -496,23 +494,23 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (distance_q1 > k->machine_scale_times_free_angle) {
     const double d3_times_y = k->d3*y;
     const double ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3_front*x;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)
         /distance_q1_squared;
     const double d3_times_x = k->d3*x;
     const double ahead_q1_before_q1_for_q3_front_times_y = ahead_q1_before_q1_for_q3_front*y;
     sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_y + d3_times_x)
         /distance_q1_squared;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)
         /distance_q1_squared;
     sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_front_times_y)/distance_q1_squared;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3_front = cos(reference_a1);
     sin_q1_before_q1_for_q3_front = sin(reference_a1);
-    /* rotation by q1 that points the arm at the point; where it is singular: the angle of the reference */
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front;
     sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front;
   }
@@ -552,7 +550,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3_back = (reach_back - k->a2_minus_effective_q3_2)
       *(k->a2_minus_effective_q3_2 + reach_back);
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
   const double divisor_of_cos_q3_back = sum_q3_back > 0.0 ? sum_q3_back : 1.0;
   const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back;

@@ -11,8 +11,9 @@
  * configuration: arm, elbow, turn of A1, turn of A2, turn of A3
  * rows of the Jacobian: x, y, z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_POS_RRR_H
@@ -71,10 +72,10 @@ typedef struct {
   double warning_distance;
 } pos_rrr_parameters;
 
-/** A machine: constants that `pos_rrr_init` computes, and that nobody changes. */
+/** A machine: constants that `pos_rrr_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[POS_RRR_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3, d1, a1,
       a2, d3, a3, d4, offset_a1, offset_a2, offset_a3, effective_q3_2, rounding_q1, size_q1_for_q3_2,
@@ -84,7 +85,7 @@ typedef struct {
   bool single_a1, single_a2, single_a3;
 } pos_rrr_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism pos_rrr_mechanism;
 
 void pos_rrr_defaults(pos_rrr_parameters *parameters);
@@ -132,7 +133,7 @@ softkin_status pos_rrr_branch(const pos_rrr_machine *machine, const softkin_fram
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `pos_rrr_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `pos_rrr_branch`.
  *
  * @param statuses 4; axes: 4 times 3, without a meaning where a slot refuses
  */

@@ -143,14 +143,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (reach > k->machine_scale_times_free_angle) {
     const double arm_along_a1 = k->arm_length_1 + k->arm_length_2*cos_a2;
     const double arm_across_a1 = k->arm_length_2*sin_a2;
-    /* rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_a1 = arm_across_a1*y + arm_along_a1*x;
     direction_y_a1 = arm_along_a1*y - arm_across_a1*x;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_a1 = cos(reference_a1);
     direction_y_a1 = sin(reference_a1);
   }

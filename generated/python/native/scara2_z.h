@@ -10,8 +10,9 @@
  * configuration: elbow, turn of A1, turn of A2
  * rows of the Jacobian: x, y, z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_SCARA2_Z_H
@@ -62,10 +63,10 @@ typedef struct {
   double warning_distance;
 } scara2_z_parameters;
 
-/** A machine: constants that `scara2_z_init` computes, and that nobody changes. */
+/** A machine: constants that `scara2_z_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[SCARA2_Z_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_z, highest_z, arm_length_1,
       arm_length_2, offset_a1, offset_a2, offset_z, arm_length_1_minus_arm_length_2,
@@ -74,7 +75,7 @@ typedef struct {
   bool single_a1, single_a2;
 } scara2_z_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism scara2_z_mechanism;
 
 void scara2_z_defaults(scara2_z_parameters *parameters);
@@ -122,7 +123,7 @@ softkin_status scara2_z_branch(const scara2_z_machine *machine, const softkin_fr
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `scara2_z_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `scara2_z_branch`.
  *
  * @param statuses 2; axes: 2 times 3, without a meaning where a slot refuses
  */

@@ -10,8 +10,9 @@
  * configuration: elbow, turn of A1, turn of A2
  * rows of the Jacobian: x, y, z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_SCARA3_CCZ_H
@@ -62,10 +63,10 @@ typedef struct {
   double warning_distance;
 } scara3_ccz_parameters;
 
-/** A machine: constants that `scara3_ccz_init` computes, and that nobody changes. */
+/** A machine: constants that `scara3_ccz_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[SCARA3_CCZ_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, link_length_1,
       link_length_2, offset_a1, offset_a2, offset_a3, link_length_1_minus_link_length_2,
@@ -74,7 +75,7 @@ typedef struct {
   bool single_a1, single_a2;
 } scara3_ccz_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism scara3_ccz_mechanism;
 
 void scara3_ccz_defaults(scara3_ccz_parameters *parameters);
@@ -122,7 +123,7 @@ softkin_status scara3_ccz_branch(const scara3_ccz_machine *machine, const softki
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `scara3_ccz_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `scara3_ccz_branch`.
  *
  * @param statuses 2; axes: 2 times 3, without a meaning where a slot refuses
  */

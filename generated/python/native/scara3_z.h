@@ -14,8 +14,9 @@
  * As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset
  * interface.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_SCARA3_Z_H
@@ -74,10 +75,10 @@ typedef struct {
   double warning_distance;
 } scara3_z_parameters;
 
-/** A machine: constants that `scara3_z_init` computes, and that nobody changes. */
+/** A machine: constants that `scara3_z_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[SCARA3_Z_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_z, highest_z, arm_length_1, arm_length_2, arm_length_3, offset_a1, offset_a2, offset_a3,
@@ -86,7 +87,7 @@ typedef struct {
   bool single_a1, single_a2, single_a3;
 } scara3_z_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism scara3_z_mechanism;
 
 void scara3_z_defaults(scara3_z_parameters *parameters);
@@ -134,7 +135,7 @@ softkin_status scara3_z_branch(const scara3_z_machine *machine, const softkin_fr
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `scara3_z_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `scara3_z_branch`.
  *
  * @param statuses 2; axes: 2 times 4, without a meaning where a slot refuses
  */

@@ -16,8 +16,9 @@
  * With a third link, the elbow of the offset interface is that of the line from axis A3 to the point,
  * also where the offset is zero.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_SCARA3_ZCCC_H
@@ -76,10 +77,10 @@ typedef struct {
   double warning_distance;
 } scara3_zccc_parameters;
 
-/** A machine: constants that `scara3_zccc_init` computes, and that nobody changes. */
+/** A machine: constants that `scara3_zccc_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[SCARA3_ZCCC_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3, lowest_a4,
       highest_a4, mid_a4, link_length_1, link_length_2, link_length_3, offset_a1, offset_a2, offset_a3,
@@ -88,7 +89,7 @@ typedef struct {
   bool single_a2, single_a3, single_a4;
 } scara3_zccc_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism scara3_zccc_mechanism;
 
 void scara3_zccc_defaults(scara3_zccc_parameters *parameters);
@@ -136,7 +137,7 @@ softkin_status scara3_zccc_branch(const scara3_zccc_machine *machine, const soft
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `scara3_zccc_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `scara3_zccc_branch`.
  *
  * @param statuses 2; axes: 2 times 4, without a meaning where a slot refuses
  */

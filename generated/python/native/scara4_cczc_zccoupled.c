@@ -159,11 +159,13 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   }
   double heading_along, heading_across;
   if (k->flange_down) {
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     heading_along = r11 - r22;
     heading_across = r12 + r21;
   } else {
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     heading_along = r11 + r22;
     heading_across = r21 - r12;
   }
@@ -194,14 +196,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (reach > k->machine_scale_times_free_angle) {
     const double arm_along_a1 = k->link_length_1 + k->link_length_2*cos_a2;
     const double arm_across_a1 = k->link_length_2*sin_a2;
-    /* rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_a1 = arm_across_a1*y + arm_along_a1*x;
     direction_y_a1 = arm_along_a1*y - arm_across_a1*x;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_a1 = cos(reference_a1);
     direction_y_a1 = sin(reference_a1);
   }
@@ -380,11 +380,13 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       r22 = frame->rotation[1][1], ref_a1 = reference[0], ref_a2 = reference[1], ref_a4 = reference[3];
   double heading_along, heading_across;
   if (k->flange_down) {
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     heading_along = r11 - r22;
     heading_across = r12 + r21;
   } else {
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     heading_along = r11 + r22;
     heading_across = r21 - r12;
   }

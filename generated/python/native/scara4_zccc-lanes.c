@@ -26,7 +26,8 @@ void scara4_zccc_regular(const void *machine, const softkin_lanes *given,
         ref_a2 = given->reference[1][lane], ref_a3 = given->reference[2][lane],
         ref_a4 = given->reference[3][lane];
     double missed = misses[lane];
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
@@ -58,8 +59,7 @@ void scara4_zccc_regular(const void *machine, const softkin_lanes *given,
     const double sine_square_a3 = one_less_cos_a3*one_plus_cos_a3;
     const double sin_a3 = softkin_lane_root(sine_square_a3)*half_by_link_length_1_by_link_length_2*sign_elbow;
     const double arm_across_a2 = link_length_2*sin_a3;
-    /* rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
     const double direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x;
     const double direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x;
     const double angle_a2 = softkin_lane_angle(direction_y_a2, direction_x_a2);
@@ -101,7 +101,8 @@ void scara4_zccc_regular_all(const void *machine, const softkin_lanes *given,
         r22 = given->rotation[4][lane], ref_a2 = given->reference[1][lane],
         ref_a3 = given->reference[2][lane], ref_a4 = given->reference[3][lane];
     double missed = misses[lane];
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */

@@ -150,7 +150,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!softkin_are_reasonable((const double[]){x, y, z, ref_a1, ref_a2, ref_a4}, 6)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
-  /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+  /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+   * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
@@ -180,14 +181,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (reach > k->machine_scale_times_free_angle) {
     const double arm_along_a1 = k->link_length_1 + k->link_length_2*cos_a2;
     const double arm_across_a1 = k->link_length_2*sin_a2;
-    /* rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_a1 = arm_across_a1*y + arm_along_a1*x;
     direction_y_a1 = arm_along_a1*y - arm_across_a1*x;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_a1 = cos(reference_a1);
     direction_y_a1 = sin(reference_a1);
   }
@@ -364,7 +363,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2],
       r11 = frame->rotation[0][0], r12 = frame->rotation[0][1], r21 = frame->rotation[1][0],
       r22 = frame->rotation[1][1], ref_a1 = reference[0], ref_a2 = reference[1], ref_a4 = reference[3];
-  /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+  /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+   * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {

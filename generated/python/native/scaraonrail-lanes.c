@@ -25,7 +25,8 @@ void scaraonrail_regular(const void *machine, const softkin_lanes *given,
         ref_e1 = given->reference[0][lane], ref_a1 = given->reference[1][lane],
         ref_a2 = given->reference[2][lane], ref_a4 = given->reference[4][lane];
     double missed = misses[lane];
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
@@ -51,8 +52,7 @@ void scaraonrail_regular(const void *machine, const softkin_lanes *given,
     const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
     const double sin_a2 = softkin_lane_root(sine_square_a2)*half_by_link_length_1_by_link_length_2*sign_elbow;
     const double arm_across_a1 = link_length_2*sin_a2;
-    /* rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
     const double direction_x_a1 = arm_across_a1*y + arm_along_a1*wrist_x;
     const double direction_y_a1 = arm_along_a1*y - arm_across_a1*wrist_x;
     const double angle_a1 = softkin_lane_angle(direction_y_a1, direction_x_a1);
@@ -96,7 +96,8 @@ void scaraonrail_regular_all(const void *machine, const softkin_lanes *given,
         ref_a1 = given->reference[1][lane], ref_a2 = given->reference[2][lane],
         ref_a4 = given->reference[4][lane];
     double missed = misses[lane];
-    /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+    /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+     * kept */
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */

@@ -16,8 +16,9 @@
  * for the other axes. Margins tell how far these are from a singular pose; the Jacobian has a column
  * for every axis.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_SCARAONRAIL_H
@@ -80,10 +81,10 @@ typedef struct {
   double warning_distance;
 } scaraonrail_parameters;
 
-/** A machine: constants that `scaraonrail_init` computes, and that nobody changes. */
+/** A machine: constants that `scaraonrail_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[SCARAONRAIL_LIMITS];
   double lowest_e1, highest_e1, lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3,
       highest_a3, lowest_a4, highest_a4, mid_a4, link_length_1, link_length_2, offset_e1, offset_a1,
@@ -92,7 +93,7 @@ typedef struct {
   bool single_a1, single_a2, single_a4;
 } scaraonrail_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism scaraonrail_mechanism;
 
 void scaraonrail_defaults(scaraonrail_parameters *parameters);
@@ -140,7 +141,7 @@ softkin_status scaraonrail_branch(const scaraonrail_machine *machine, const soft
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `scaraonrail_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `scaraonrail_branch`.
  *
  * @param statuses 2; axes: 2 times 5, without a meaning where a slot refuses
  */

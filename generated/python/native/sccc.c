@@ -154,7 +154,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!softkin_are_reasonable((const double[]){x, y, z, ref_a1, ref_a2, ref_a3}, 6)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
-  /* nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept */
+  /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+   * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
@@ -197,14 +198,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (reach > k->machine_scale_times_free_angle) {
     const double arm_along_a1 = k->link_length_1 + k->link_length_2*cos_a2;
     const double arm_across_a1 = k->link_length_2*sin_a2;
-    /* rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x;
     direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
-     * reference */
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
     direction_x_a1 = cos(reference_a1);
     direction_y_a1 = sin(reference_a1);
   }

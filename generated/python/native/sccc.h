@@ -18,8 +18,9 @@
  * With a third link, the elbow of the offset interface is that of the line from joint 2 to the point,
  * also where the offset is zero.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_SCCC_H
@@ -86,10 +87,10 @@ typedef struct {
   double warning_distance;
 } sccc_parameters;
 
-/** A machine: constants that `sccc_init` computes, and that nobody changes. */
+/** A machine: constants that `sccc_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[SCCC_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_joint_2, highest_joint_2, lowest_joint_3, highest_joint_3, link_length_1, link_length_2,
@@ -101,7 +102,7 @@ typedef struct {
   bool single_a1, single_a2, single_a3;
 } sccc_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism sccc_mechanism;
 
 void sccc_defaults(sccc_parameters *parameters);
@@ -148,7 +149,7 @@ softkin_status sccc_branch(const sccc_machine *machine, const softkin_frame *fra
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `sccc_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `sccc_branch`.
  *
  * @param statuses 2; axes: 2 times 3, without a meaning where a slot refuses
  */

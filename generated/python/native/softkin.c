@@ -668,7 +668,7 @@ bool softkin_refuse_all(softkin_status status, softkin_status *statuses, int cou
   return true;
 }
 
-/* Every branch on open turns together; false where each has to be solved by itself. */
+/* Every branch with automatic turns together; false where each has to be solved by itself. */
 static bool together(const softkin_mechanism *kind, const void *machine, const asked *given,
     softkin_status *statuses, double *axes) {
   return kind->every_branch != NULL && softkin_are_reasonable(given->frame.position, 3)

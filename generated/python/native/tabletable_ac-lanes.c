@@ -25,7 +25,7 @@ void tabletable_ac_regular(const void *machine, const softkin_lanes *given,
     const double sign_tilt = sigma_tilt; /* tilt: +1 positive, -1 negative */
     /* polar coordinates: angle c from the r23 and r13 equations */
     const double along_c = r23*sign_tilt;
-    const double cos_c = along_c/radius_c; /* where it is singular: the angle of the reference */
+    const double cos_c = along_c/radius_c; /* at a singularity: the angle of the reference */
     const double across_c = r13*sign_tilt;
     const double sin_c = across_c/radius_c;
     const double x_from_c = x*cos_c - y*sin_c;

@@ -163,12 +163,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (radius_c > 1e-11) {
     /* polar coordinates: angle c from the r23 and r13 equations */
     const double along_c = r23*sign_tilt;
-    cos_c = along_c/radius_c; /* where it is singular: the angle of the reference */
+    cos_c = along_c/radius_c; /* at a singularity: the angle of the reference */
     const double across_c = r13*sign_tilt;
     sin_c = across_c/radius_c;
   } else {
     const double reference_c = (ref_c - k->offset_c)*SOFTKIN_DEGREE;
-    cos_c = cos(reference_c); /* where it is singular: the angle of the reference */
+    cos_c = cos(reference_c); /* at a singularity: the angle of the reference */
     sin_c = sin(reference_c);
   }
   const double x_from_c = x*cos_c - y*sin_c;
@@ -360,15 +360,15 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double radius_c = sqrt(r13*r13 + r23*r23); /* polar coordinates: the radius at angle c */
   double cos_c_positive, sin_c_positive, cos_c_negative, sin_c_negative;
   if (radius_c > 1e-11) {
-    cos_c_positive = r23/radius_c; /* where it is singular: the angle of the reference */
+    cos_c_positive = r23/radius_c; /* at a singularity: the angle of the reference */
     sin_c_positive = r13/radius_c;
-    cos_c_negative = -cos_c_positive; /* where it is singular: the angle of the reference */
+    cos_c_negative = -cos_c_positive; /* at a singularity: the angle of the reference */
     sin_c_negative = -sin_c_positive;
   } else {
     const double reference_c = (ref_c - k->offset_c)*SOFTKIN_DEGREE;
-    cos_c_positive = cos(reference_c); /* where it is singular: the angle of the reference */
+    cos_c_positive = cos(reference_c); /* at a singularity: the angle of the reference */
     sin_c_positive = sin(reference_c);
-    cos_c_negative = cos_c_positive; /* where it is singular: the angle of the reference */
+    cos_c_negative = cos_c_positive; /* at a singularity: the angle of the reference */
     sin_c_negative = sin_c_positive;
   }
   const double x_from_c_positive = x*cos_c_positive - y*sin_c_positive;

@@ -16,8 +16,9 @@
  * Positions are in the frame of the workpiece: its origin is where axis C leaves the table, and it
  * turns with the table. The direction is that of the tool, from its tip to the spindle.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_TABLETABLE_AC_H
@@ -83,17 +84,17 @@ typedef struct {
   double warning_distance;
 } tabletable_ac_parameters;
 
-/** A machine: constants that `tabletable_ac_init` computes, and that nobody changes. */
+/** A machine: constants that `tabletable_ac_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[TABLETABLE_AC_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_a, highest_a, mid_a, lowest_c,
       highest_c, mid_c, pivot_y, pivot_z, tool_length, offset_x, offset_y, offset_z, offset_a, offset_c;
   bool single_a, single_c;
 } tabletable_ac_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism tabletable_ac_mechanism;
 
 void tabletable_ac_defaults(tabletable_ac_parameters *parameters);
@@ -141,7 +142,7 @@ softkin_status tabletable_ac_branch(const tabletable_ac_machine *machine, const 
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `tabletable_ac_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `tabletable_ac_branch`.
  *
  * @param statuses 2; axes: 2 times 5, without a meaning where a slot refuses
  */

@@ -7,8 +7,9 @@
  * B (linear, u): Belt drive B
  * rows of the Jacobian: x, y
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_TGANTRY2_H
@@ -57,16 +58,16 @@ typedef struct {
   double warning_distance;
 } tgantry2_parameters;
 
-/** A machine: constants that `tgantry2_init` computes, and that nobody changes. */
+/** A machine: constants that `tgantry2_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[TGANTRY2_LIMITS];
   double lowest_a, highest_a, lowest_b, highest_b, lowest_x, highest_x, lowest_y, highest_y, offset_a,
       offset_b, machine_scale_times_plane;
 } tgantry2_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism tgantry2_mechanism;
 
 void tgantry2_defaults(tgantry2_parameters *parameters);
@@ -114,7 +115,7 @@ softkin_status tgantry2_branch(const tgantry2_machine *machine, const softkin_fr
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `tgantry2_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `tgantry2_branch`.
  *
  * @param statuses 1; axes: 1 times 2, without a meaning where a slot refuses
  */

@@ -7,8 +7,9 @@
  *
  * A tool that is also turned against the flange is set by SMC_GroupSetTool.
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_TOOL_H
@@ -43,13 +44,13 @@ typedef struct {
   double warning_distance;
 } tool_parameters;
 
-/** A machine: constants that `tool_init` computes, and that nobody changes. */
+/** A machine: constants that `tool_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
   double tool_x, tool_y, tool_z;
 } tool_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism tool_mechanism;
 
 void tool_defaults(tool_parameters *parameters);
@@ -96,7 +97,7 @@ softkin_status tool_branch(const tool_machine *machine, const softkin_frame *fra
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `tool_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `tool_branch`.
  *
  * @param statuses 1; axes: 1 times 0, without a meaning where a slot refuses
  */

@@ -792,7 +792,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   /* characteristic length of the machine */
   const double machine_scale = p->arm_length + p->inner_radius + p->outer_radius;
-  /* squared distances closer than this are equal */
+  /* squared distances that differ by less are equal */
   const double tie = 1e-12*machine_scale*machine_scale;
   const double sin_rail_angle = sin(SOFTKIN_DEGREE*p->rail_angle);
   const double cos_rail_angle = cos(SOFTKIN_DEGREE*p->rail_angle);

@@ -12,8 +12,9 @@
  * configuration: carriage_1, carriage_2, carriage_3
  * rows of the Jacobian: x, y, z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_TRIPOD_LINEAR_H
@@ -77,10 +78,10 @@ typedef struct {
   double warning_distance;
 } tripod_linear_parameters;
 
-/** A machine: constants that `tripod_linear_init` computes, and that nobody changes. */
+/** A machine: constants that `tripod_linear_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[TRIPOD_LINEAR_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, lowest_a3, highest_a3, outer_radius, inner_radius,
       arm_length, offset_a1, offset_a2, offset_a3, min_type2_margin, tie, sin_rail_angle, cos_rail_angle,
@@ -95,7 +96,7 @@ typedef struct {
       sum_in_radicand_a2, quotient_in_margin_rods_coplanar, twice_sin_rail_angle, sum_in_slope_1_by_x;
 } tripod_linear_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism tripod_linear_mechanism;
 
 void tripod_linear_defaults(tripod_linear_parameters *parameters);
@@ -143,7 +144,7 @@ softkin_status tripod_linear_branch(const tripod_linear_machine *machine, const 
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `tripod_linear_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `tripod_linear_branch`.
  *
  * @param statuses 8; axes: 8 times 3, without a meaning where a slot refuses
  */

@@ -658,7 +658,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   /* characteristic length of the machine */
   const double machine_scale = p->arm_length + p->tcp_displacement;
-  /* squared distances closer than this are equal */
+  /* squared distances that differ by less are equal */
   const double tie = 1e-12*machine_scale*machine_scale;
   const double pivot_1_y = p->rail_y_1
       - p->rail_y_1*p->tcp_displacement/sqrt(p->rail_x_1*p->rail_x_1 + p->rail_y_1*p->rail_y_1);

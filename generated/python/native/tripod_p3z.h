@@ -13,8 +13,9 @@
  * configuration: carriage_1, carriage_2, carriage_3
  * rows of the Jacobian: x, y, z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_TRIPOD_P3Z_H
@@ -82,10 +83,10 @@ typedef struct {
   double warning_distance;
 } tripod_p3z_parameters;
 
-/** A machine: constants that `tripod_p3z_init` computes, and that nobody changes. */
+/** A machine: constants that `tripod_p3z_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[TRIPOD_P3Z_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, lowest_a3, highest_a3, arm_length, offset_a1,
       offset_a2, offset_a3, min_type2_margin, tie, pivot_1_y, pivot_2_y, centre_1_to_2_y, pivot_3_y,
@@ -99,7 +100,7 @@ typedef struct {
       product_in_slope_2_by_x, product_in_slope_2_by_y, product_in_slope_3_by_x, product_in_slope_3_by_y;
 } tripod_p3z_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism tripod_p3z_mechanism;
 
 void tripod_p3z_defaults(tripod_p3z_parameters *parameters);
@@ -147,7 +148,7 @@ softkin_status tripod_p3z_branch(const tripod_p3z_machine *machine, const softki
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `tripod_p3z_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `tripod_p3z_branch`.
  *
  * @param statuses 8; axes: 8 times 3, without a meaning where a slot refuses
  */

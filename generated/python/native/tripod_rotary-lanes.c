@@ -46,7 +46,7 @@ void tripod_rotary_regular(const void *machine, const softkin_lanes *given,
     const double one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1;
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -69,7 +69,7 @@ void tripod_rotary_regular(const void *machine, const softkin_lanes *given,
     const double one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2;
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
@@ -88,7 +88,7 @@ void tripod_rotary_regular(const void *machine, const softkin_lanes *given,
     const double one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3;
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
     missed += sum_a3 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3;
@@ -191,7 +191,7 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     const double one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1;
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
     missed += sum_a1 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
@@ -214,7 +214,7 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     const double one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2;
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2;
@@ -233,7 +233,7 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     const double one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3;
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3;
-    /* twice the scale, as the sum of both: then cosine and sine agree */
+    /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
     missed += sum_a3 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3;

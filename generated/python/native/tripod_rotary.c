@@ -233,7 +233,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1;
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
   const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
@@ -268,7 +268,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2;
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
   const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
   const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2;
@@ -302,7 +302,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3;
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
   const double divisor_of_cos_a3 = sum_a3 > 0.0 ? sum_a3 : 1.0;
   const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3;
@@ -741,7 +741,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1;
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a1 = scaled_cosine_a1 + twice_arm_length_1_times_effective_a1;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
   const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
@@ -766,7 +766,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2;
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = arm_length_1_times_effective_a2 + scaled_cosine_a2;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
   const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
   const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2;
@@ -787,7 +787,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3;
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a3 = arm_length_1_times_effective_a3 + scaled_cosine_a3;
-  /* twice the scale, as the sum of both: then cosine and sine agree */
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
   const double divisor_of_cos_a3 = sum_a3 > 0.0 ? sum_a3 : 1.0;
   const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3;

@@ -13,8 +13,9 @@
  * configuration: knee_1, knee_2, knee_3, turn of A1, turn of A2, turn of A3
  * rows of the Jacobian: x, y, z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_TRIPOD_ROTARY_H
@@ -78,10 +79,10 @@ typedef struct {
   double warning_distance;
 } tripod_rotary_parameters;
 
-/** A machine: constants that `tripod_rotary_init` computes, and that nobody changes. */
+/** A machine: constants that `tripod_rotary_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[TRIPOD_ROTARY_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       arm_length_1, arm_length_2, arm_1_radius, offset_a1, offset_a2, offset_a3, min_type2_margin,
@@ -95,7 +96,7 @@ typedef struct {
   bool single_a1, single_a2, single_a3;
 } tripod_rotary_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism tripod_rotary_mechanism;
 
 void tripod_rotary_defaults(tripod_rotary_parameters *parameters);
@@ -143,7 +144,7 @@ softkin_status tripod_rotary_branch(const tripod_rotary_machine *machine, const 
     const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `tripod_rotary_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `tripod_rotary_branch`.
  *
  * @param statuses 8; axes: 8 times 3, without a meaning where a slot refuses
  */

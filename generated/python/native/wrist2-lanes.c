@@ -23,7 +23,7 @@ void wrist2_regular(const void *machine, const softkin_lanes *given,
     const double radius_a = softkin_lane_root(r13_of_a*r13_of_a + r23_of_a*r23_of_a);
     missed += radius_a > 1e-11 ? 0.0 : 1.0;
     const double sign_roll = sigma_roll; /* roll: +1 positive, -1 negative */
-    /* polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+    /* polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     const double direction_x_a = r13_of_a*sign_roll;
     const double direction_y_a = r23_of_a*sign_roll;

@@ -10,8 +10,9 @@
  * configuration: roll, turn of A, turn of B
  * rows of the Jacobian: tilt x, tilt y
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_WRIST2_H
@@ -63,17 +64,17 @@ typedef struct {
   double warning_distance;
 } wrist2_parameters;
 
-/** A machine: constants that `wrist2_init` computes, and that nobody changes. */
+/** A machine: constants that `wrist2_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[WRIST2_LIMITS];
   double lowest_a, highest_a, mid_a, lowest_b, highest_b, mid_b, roll_axis_offset_x, roll_axis_offset_y,
       roll_axis_offset_z, tool_side, offset_a, offset_b, tool_length_times_tool_side, one_by_tool_side;
   bool single_a, single_b;
 } wrist2_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism wrist2_mechanism;
 
 void wrist2_defaults(wrist2_parameters *parameters);
@@ -121,7 +122,7 @@ softkin_status wrist2_branch(const wrist2_machine *machine, const softkin_frame 
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `wrist2_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `wrist2_branch`.
  *
  * @param statuses 2; axes: 2 times 2, without a meaning where a slot refuses
  */

@@ -23,7 +23,7 @@ void wrist3_regular(const void *machine, const softkin_lanes *given,
     const double radius_c = softkin_lane_root(r31*r31 + r32*r32);
     missed += radius_c > 1e-11 ? 0.0 : 1.0;
     const double sign_hand = sigma_hand; /* hand: +1 down, -1 up */
-    /* polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+    /* polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
      * reference */
     const double direction_x_c = r31*sign_hand;
     const double direction_y_c = -r32*sign_hand;

@@ -141,13 +141,13 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sign_hand = sigma_hand; /* hand: +1 down, -1 up */
   double direction_x_c, direction_y_c;
   if (radius_c > 1e-11) {
-    /* polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+    /* polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
      * reference */
     direction_x_c = r31*sign_hand;
     direction_y_c = -r32*sign_hand;
   } else {
     const double reference_c = (ref_c - k->offset_c)*SOFTKIN_DEGREE;
-    /* polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+    /* polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
      * reference */
     direction_x_c = cos(reference_c);
     direction_y_c = sin(reference_c);
@@ -308,21 +308,21 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double radius_c = sqrt(r31*r31 + r32*r32); /* polar coordinates: the radius at angle c */
   double direction_x_c_down, direction_y_c_down, direction_x_c_up, direction_y_c_up;
   if (radius_c > 1e-11) {
-    /* polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+    /* polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
      * reference */
     direction_x_c_down = r31;
     direction_y_c_down = -r32;
-    /* polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+    /* polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
      * reference */
     direction_x_c_up = -r31;
     direction_y_c_up = -direction_y_c_down;
   } else {
     const double reference_c = (ref_c - k->offset_c)*SOFTKIN_DEGREE;
-    /* polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+    /* polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
      * reference */
     direction_x_c_down = cos(reference_c);
     direction_y_c_down = sin(reference_c);
-    /* polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+    /* polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
      * reference */
     direction_x_c_up = direction_x_c_down;
     direction_y_c_up = direction_y_c_down;

@@ -10,8 +10,9 @@
  * configuration: hand, turn of A, turn of B, turn of C
  * rows of the Jacobian: turn x, turn y, turn z
  *
- * Lengths and linear axes in the user's unit (u), rotary axes in degrees. What each call does, and which
- * statuses it has, stands in softkin.h, at the call of the same name. Every `why` may be NULL.
+ * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
+ * and
+ * its statuses, at the call of the same name. Every `why` may be NULL.
  */
 
 #ifndef SOFTKIN_WRIST3_H
@@ -64,17 +65,17 @@ typedef struct {
   double warning_distance;
 } wrist3_parameters;
 
-/** A machine: constants that `wrist3_init` computes, and that nobody changes. */
+/** A machine: constants that `wrist3_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges that hold, infinite where there is no limit. */
+  /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[WRIST3_LIMITS];
   double lowest_a, highest_a, mid_a, lowest_b, highest_b, mid_b, lowest_c, highest_c, mid_c, tool_offset_x,
       tool_offset_y, tool_offset_z, offset_a, offset_b, offset_c;
   bool single_a, single_b, single_c;
 } wrist3_machine;
 
-/** The machine as data, for what works with any machine. */
+/** The machine as data, for code that works with any machine. */
 extern const softkin_mechanism wrist3_mechanism;
 
 void wrist3_defaults(wrist3_parameters *parameters);
@@ -122,7 +123,7 @@ softkin_status wrist3_branch(const wrist3_machine *machine, const softkin_frame 
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch on open turns, for inner loops, with input as in `wrist3_branch`.
+ * Every branch with automatic turns, for inner loops, with input as in `wrist3_branch`.
  *
  * @param statuses 2; axes: 2 times 3, without a meaning where a slot refuses
  */

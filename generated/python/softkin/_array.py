@@ -78,7 +78,7 @@ class Programs(ABC):
     """The programs of a mechanism that run on arrays."""
 
     VALUES: int
-    """The values that the inverse computes of one row, inputs and results among them."""
+    """The number of values that the inverse computes for one row, including inputs and results."""
     JACOBIAN_ROWS: ClassVar[tuple[int, ...]]
     """The rows of the twist that the Jacobian has, where it has no program of its own."""
 
@@ -180,7 +180,7 @@ def require(status: Codes, condition: Truth, otherwise: Status) -> None:
 
 
 def reasonable(*values: Real) -> Truth:
-    """The rows in which all values are numbers of reasonable size, at most 1e9."""
+    """The rows in which the size of all values is at most 1e9."""
     found: Truth = True
     for value in values:
         # Nearly always all of them are; the least and the greatest value decide.

@@ -34,13 +34,13 @@ if TYPE_CHECKING:
 CHUNK = 8192
 """The rows that are computed together."""
 EVERY_SLOT = 3 * CHUNK
-"""The rows times slots that are computed together where all slots are: many values are the same for several slots."""
+"""The largest number of rows times slots computed together where all slots are computed, since slots share values."""
 FEWEST, FEWEST_SEARCHED = 512, 96
-"""The rows that are computed together at least, unless there are fewer; and where a root scan has many trials a row."""
+"""The least number of rows computed together, unless there are fewer; also taken for a root scan with many trials."""
 MANY = 100_000
-"""From here on what is computed on the way must take little memory, also of a root scan."""
+"""From this size of a result on, intermediate values must take little memory, also those of a root scan."""
 SHARE = 0.25
-"""The share of the memory of the result that it takes."""
+"""The share of the result's memory that intermediate values take."""
 _UNTRIED = 255
 """The status of rows for which no slot was tried."""
 
@@ -148,9 +148,9 @@ def inverse_all(
 
 
 def _rows_together(values: int, rows: int, slots: int, width: int) -> int:
-    """The rows that are computed together where all slots are: few enough that the values on the way need little.
+    """The number of rows computed together where all slots are computed: so few that intermediate values stay small.
 
-    values: those of one row, of which some are separate for every slot.
+    values: the number of values of one row, some of them separate for every slot.
     """
     on_the_way = 8.0 * (slots * width + 1.35 * values + 16.0)
     least = FEWEST if values < 120000 else FEWEST_SEARCHED if rows < MANY else 1

@@ -68,8 +68,9 @@ TWIST = ("x", "y", "z", "turn x", "turn y", "turn z")
 """The rows of a twist: along and about the axes of the machine."""
 FIXED, WHOLE, TURN, DIRECTION, PITCH = "fixed", "whole", "turn", "direction", "pitch"
 ONE_AXIS, SEVERAL_AXES = "one axis", "several axes"
-"""What the flange follows: it keeps its rotation; all of the commanded one; the turn about one axis; the direction of
-the tool; its pitch, which depends on the position; the position alone, which turns it about one axis, or several."""
+"""The rotation of the flange: it is constant; or it follows the whole commanded rotation, the turn about one axis, the
+direction of the tool, or its pitch, which depends on the position; or the position alone turns the flange, about one
+axis or several."""
 _IDENTITY: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 _STATUSES = tuple(Status)
@@ -81,7 +82,7 @@ _OneBranch: TypeAlias = Callable[[Signs], Reals | Diagnosis]
 
 
 NOTHING = (None,) * len(_STATUSES)
-"""For each status None."""
+"""None for each status."""
 _NUMBERS = tuple(map(int, _STATUSES))
 
 
@@ -129,8 +130,8 @@ class Mechanism(Value, ABC):
     """Forward and inverse kinematics of a mechanism.
 
     Positions are in the user's length unit, axis values in that unit or in degrees, the Jacobian per radian.
-    A call without an answer raises `KinematicsError`. Instances never change: one may serve several threads. They are
-    equal where class and parameters are, and every parameter is an attribute.
+    A call without an answer raises `KinematicsError`. Instances never change: one may serve several threads. Instances
+    with equal class and parameters are equal, and every parameter is an attribute.
     """
 
     __slots__ = ("_machine", "checks_limits", "parameters")
@@ -138,7 +139,7 @@ class Mechanism(Value, ABC):
     NAME: str
     """The name of the function block and of the entry in `catalogue()`."""
     KEY = ""
-    """What the class and its C have in common: empty where there is none."""
+    """The digest that the class and its machine in C have in common; empty where there is no C."""
     AXES: tuple[Axis, ...]
     PARAMETERS: tuple[Parameter, ...]
     CONFIGURATION: tuple[ConfigurationByte, ...]
@@ -172,10 +173,10 @@ class Mechanism(Value, ABC):
     _is_native = False
     """Whether the native core answers the calls of the class."""
     _machine: Any
-    """The machine in C, where it does."""
+    """The machine in C, where the native core answers."""
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Where the native core has the machine of a class, it answers its calls."""
+        """If the native core has the machine of a class, it answers the calls of the class."""
         super().__init_subclass__(**options)
         if "KEY" in vars(cls):
             cls._is_native = _native.take_over(cls)
@@ -234,7 +235,7 @@ class Mechanism(Value, ABC):
         return Window(low - tolerance, high + tolerance, single, middle)
 
     def _one_sided_window(self, key: str, low: float, high: float, otherwise: tuple[float, float] | None) -> Window:
-        """The range of an axis of which one end is not limited; where it always has limits, these are that end."""
+        """The range of an axis with one limited end; where the axis always has limits, these are the other end."""
         tolerance = 1e-9 + sum([1e-9 * abs(end) for end in (low, high) if isfinite(end)])
         if otherwise is not None:
             low, high = max(low, otherwise[0]), min(high, otherwise[1])
@@ -411,7 +412,7 @@ class Mechanism(Value, ABC):
         """The configuration with these branches and turns: `robot.configuration(elbow="left", A4=2)`.
 
         A branch is given by its name or as a byte (1, 2; 0 automatic; 3, read as automatic), the turn of an axis as a
-        number: 1 contains 0 degrees, 2 the next turn, -1 the one before; 0 leaves it open. What is not given is as in
+        number: 1 contains 0 degrees, 2 the next turn, -1 the one before; 0 is automatic. What is not given is as in
         `DEFAULT_CONFIGURATION`. The name of a byte with spaces is given with underscores.
         Raises BAD_INPUT for an unknown name, with the known ones.
         """
@@ -466,7 +467,7 @@ class Mechanism(Value, ABC):
         return self.path((start, goal), configuration, reference, samples=samples, singular=singular)
 
     def in_radians(self) -> Self:
-        """The same machine with radians for degrees: axes, references, offsets, limits, what `diagnose` says.
+        """The same machine with radians for degrees: axes, references, offsets, limits, the amounts of `diagnose`.
 
         Its calls are those of this machine, batches included; the Jacobian is per radian in both. A pitch stays per
         turn, a gear per degree. It is not an instance of this class; `in_degrees()` of it is this machine.
@@ -588,10 +589,10 @@ class Mechanism(Value, ABC):
         return mounted(self, tool=tool)
 
     def with_base(self, base: FrameLike) -> Mounted:
-        """This machine on a base: the same calls, for frames that are seen from where the base is seen from.
+        """This machine on a base: the same calls, for frames in the coordinates in which the base is given.
 
-        base: the frame of the machine, as seen from there. Bases compose: the machine with its first base stands on the
-        second one.
+        base: the frame of the machine in these coordinates. Bases compose: the machine with its first base stands on
+        the second one.
         """
         from softkin._mounted import mounted
 
@@ -669,17 +670,17 @@ class Mechanism(Value, ABC):
     def _every_solution(
         self, position: Vector, rotation: Rotation, reference: Reals
     ) -> Iterable[tuple[Signs, Reals | Diagnosis]]:
-        """The axes of every branch on open turns, or why it has none; limits are not tested."""
+        """The axes of every branch with automatic turns, or its status where it has none; limits are not tested."""
         every, turns = slots((AUTOMATIC,) * self.BRANCHES), (0,) * len(self.PERIOD_AXES)
         solve: Branches | None = getattr(self, "_all_trusted", None)
         if solve is not None and getattr(self, "_finish", None) is not None and reasonable(*position, *reference):
             found = solve((position, rotation), reference)
-            if any(found):  # else why there is none
+            if any(found):  # else the status of the branch
                 return [(signs, axes) for (_, signs), axes in zip(every, found, strict=True) if axes is not None]
         return [(signs, self._branch(position, rotation, signs, turns, reference)) for _, signs in every]
 
     def _has_one_solution_a_branch(self) -> bool:
-        """Whether a branch has one solution at most, but for turns."""
+        """Whether a branch has at most one solution, apart from turns."""
         return True
 
     def _ranges(self) -> tuple[tuple[float, float], ...]:
@@ -689,11 +690,11 @@ class Mechanism(Value, ABC):
         return tuple(found)
 
     def _quantities(self, axes: Reals) -> Reals | Status:
-        """The quantities beside the axes that have limits, in the unit of these."""
+        """The quantities other than axes that have limits, in the unit of these limits."""
         return ()
 
     def _limited_values(self, axes: Reals) -> Reals:
-        """These quantities, of axes that have been solved for."""
+        """The quantities with limits, computed from solved axes."""
         found = self._quantities(axes)
         return () if isinstance(found, Status) else found
 
@@ -782,7 +783,7 @@ class Mechanism(Value, ABC):
         return tuple(map(branch_byte, margins)) + self._periods(axes)
 
     def _turn_sizes(self) -> Reals:
-        """How many turns a joint makes in one of its axis, of every axis with a period byte."""
+        """The turns of the joint per turn of its axis, for every axis with a period byte."""
         return (1.0,) * len(self.PERIOD_AXES)
 
     def _periods(self, axes: Reals) -> Configuration:
@@ -875,14 +876,12 @@ class Mechanism(Value, ABC):
         return type(self)._twist is not Mechanism._twist
 
     def _follows(self) -> str:
-        """What of a commanded rotation the flange follows: see `_tools`."""
+        """The part of a commanded rotation that the flange follows: see `_tools`."""
         if self.FREEDOM == "zero":
             return FIXED
         if not self.READS_ROTATION:
             return ONE_AXIS if self.FREEDOM == "one" else SEVERAL_AXES
-        if len(self.JACOBIAN_ROWS) != len(self.AXES) - len(
-            self.HELD
-        ):  # more rows than a task: what is met is not known
+        if len(self.JACOBIAN_ROWS) != len(self.AXES) - len(self.HELD):  # with more rows it is not known
             return SEVERAL_AXES
         if "pitch" in self.JACOBIAN_ROWS:
             return PITCH

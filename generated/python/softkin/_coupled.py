@@ -122,7 +122,7 @@ class Coupled(Mechanism):
         return {axis.name: first.limits[axis.name] for axis in first.AXES} | own | first.limits
 
     def changed(self, **parameters: Any) -> Self:
-        """The same coupling of other parts: `position=` and `orientation=`."""
+        """A coupling of this kind with other parts: `position=` and `orientation=`."""
         made: Self = super().changed(**parameters)
         return made
 
@@ -239,7 +239,7 @@ class Coupled(Mechanism):
     def _position_first(
         self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
     ) -> Reals | Diagnosis | Status:
-        """The axes where the position axes turn the flange: in a pair that is allowed these come first."""
+        """The axes where the position axes turn the flange: in an allowed pair the position axes are solved first."""
         if self._tool is not None:
             return self._with_tool(position, rotation, carrier, *self._tool)
         shift = self.orientation_part._end_point_shift(rotation, *self._axis)
@@ -257,7 +257,7 @@ class Coupled(Mechanism):
     def _with_tool(
         self, position: Vector, rotation: Rotation, carrier: _Choice, end: Vector, turn: Rotation
     ) -> Reals | Diagnosis:
-        """The axes of the position part where the commanded rotation says how these turn the flange."""
+        """The axes of the position part where the commanded rotation determines how they turn the flange."""
         wanted = product(rotation, transposed(turn))
         flange = self.position_part._nearest_flange(wanted)
         shift = _ORIGIN if isinstance(flange, Status) else turned(flange, end)  # refused below, with the reason
@@ -273,7 +273,7 @@ class Coupled(Mechanism):
         return SEVERAL_AXES if follows == TURN and self.FREEDOM == "three" else follows
 
     def _nearest_flange(self, rotation: Rotation) -> Rotation | Status:
-        """The nearest rotation of the tool, where the commanded one says the turn of the flange."""
+        """The nearest rotation of the tool, where the commanded rotation determines the turn of the flange."""
         if self._tool is not None:
             _, turn = self._tool
             flange = self.position_part._nearest_flange(product(rotation, transposed(turn)))
@@ -366,7 +366,7 @@ def _check(position: Mechanism, orientation: Mechanism) -> None:
 
 
 def _commands_the_flange(position: Mechanism, orientation: OrientationKinematics) -> bool:
-    """Whether the commanded rotation says how the position axes turn the flange: then any tool may be there."""
+    """Whether the commanded rotation determines how the position axes turn the flange: then any tool is allowed."""
     return position._follows() == TURN and not orientation.AXES
 
 

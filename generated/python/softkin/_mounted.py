@@ -52,9 +52,9 @@ NOT_MET = "no rotation of the flange meets the position with this tool"
 class Mounted(Mechanism):
     """A machine on a base, with a tool at its flange: what `Mechanism.with_base` and `Mechanism.with_tool` return.
 
-    It has the axes, the configuration, the limits and the singularities of the bare machine; its frames are those of
-    the tool, as seen from where the base is seen from. Of a rotation that the flange cannot take, it takes what the
-    bare machine takes; the position of the tool is met or refused.
+    It has the axes, the configuration, the limits and the singularities of the bare machine. Its frames are those of
+    the tool, in the coordinates in which the base is given. A rotation that the flange cannot take is projected as the
+    bare machine does; the position of the tool is met or refused.
     The Jacobian has the rows of the bare machine, unless the base or the tool turns these into others: then all six.
     Parameters, `project` and the offset interface are those of the bare machine: `bare.parameters`, `bare.project`.
     """
@@ -106,7 +106,7 @@ class Mounted(Mechanism):
         return self.bare.limits
 
     def changed(self, **parameters: Any) -> Self:
-        """The same with other parameters of the bare machine, or with `base=` and `tool=` in the place of its own."""
+        """A copy with other parameters of the bare machine, or with another `base=` or `tool=`."""
         base, tool = parameters.pop("base", self.base), parameters.pop("tool", self.tool)
         return cast("Self", mounted(self.bare.changed(**parameters), base, tool))
 
@@ -207,7 +207,7 @@ class Mounted(Mechanism):
     def _seen_from_base(self, position: Vector, rotation: Rotation) -> tuple[Vector, Rotation]:
         """The position of the tool and the rotation of the flange, in the frame of the bare machine.
 
-        A position that is no number of reasonable size stays one, whatever the base subtracts from it.
+        A position that is NaN or too large is not changed by the base, so that it is refused.
         """
         place = NOWHERE
         if reasonable(*position):
@@ -222,7 +222,7 @@ class Mounted(Mechanism):
             return plus(place, self._shift, -1.0), rotation
         nearest = self.bare._nearest_flange(rotation) if self._kind == TURN else rotation
         if isinstance(nearest, Status):
-            return place, rotation  # the bare machine refuses the rotation, with its reason
+            return place, rotation  # the bare machine refuses the rotation and gives the reason
         return plus(place, turned(nearest, self.tool.position), -1.0), rotation
 
     def _branch(

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 CHOICE = "SOFTKIN_CORE"
 """The variable of the environment that chooses `python`, or `native`: an error where there is no extension."""
-SOURCES = "b38b68541d21c4cc"
+SOURCES = "dd80190f1e1142f3"
 """The digest of what all machines share in C: an extension that was made of other sources is not used."""
 _ASKED_FOR = f"{CHOICE} is native, but the extension _softkin_native"
 _STATUSES = tuple(Status)
@@ -58,7 +58,7 @@ CORE = "python" if _NATIVE is None else "native"
 
 
 def machine_of(robot: Mechanism) -> Any:
-    """The machine in C, which the calls ask: one that answers nothing where a subclass has programs of its own."""
+    """The machine in C that the calls use; where a subclass has programs of its own, it answers nothing."""
     assert _NATIVE is not None
     own: Any = next(cls for cls in type(robot).__mro__ if "KEY" in vars(cls))
     is_changed = any(getattr(type(robot), name) is not getattr(own, name) for name in _PROGRAMS)
@@ -222,6 +222,6 @@ _CALLS: dict[str, Callable[[_Call], _Call]] = {
     "_jacobian": _jacobian,
     "_singularity": _margins,
 }
-"""The calls that the native core answers, and what makes of each the one that asks it first."""
+"""The calls that the native core answers, each with the function that makes the call ask the core first."""
 _PROGRAMS = ("_branch", "_forward", "_jacobian", "_limits", "_singularity")
-"""The programs of a machine: where a subclass has one of its own, all calls are Python's."""
+"""The programs of a machine: where a subclass overrides one of them, Python answers all calls."""

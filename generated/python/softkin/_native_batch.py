@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 THREADS = "SOFTKIN_THREADS"
 """The variable of the environment that limits the threads of a call; without it there are as many as processors."""
 FEWEST = 1024
-"""The rows of a piece at least: to start a thread takes as long as some hundred rows."""
+"""The least number of rows in a piece: to start a thread takes as long as some hundred rows."""
 _PIECES = 4
-"""The pieces for each thread: one that is slow leaves its next piece to another."""
+"""The number of pieces for each thread: a slow thread leaves its next piece to another."""
 
 
 def forward(robot: Mechanism, axes: ArrayLike) -> tuple[Array, Array, Bytes, Codes]:
@@ -77,7 +77,7 @@ def jacobian(robot: Mechanism, axes: ArrayLike) -> tuple[Array, Codes]:
 
 
 def threads() -> int:
-    """The threads of a call at most. Raises ValueError for a limit that is no positive whole number."""
+    """The largest number of threads of a call. Raises ValueError for a limit that is no positive whole number."""
     limit = os.environ.get(THREADS, "")
     if limit and not (limit.isdecimal() and int(limit) > 0):
         raise ValueError(f"{THREADS} must be a whole number of at least 1, not {limit!r}")

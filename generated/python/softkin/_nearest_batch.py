@@ -36,7 +36,7 @@ def nearest_batch(
 
 
 def _chunk(robot: Mechanism, poses: Poses, metric: Metric) -> tuple[Array, Codes]:
-    """The rows of a chunk: all at once where every axis finds its turn by itself, else those that remain one by one."""
+    """The rows of a chunk: all at once where every axis finds its turn by itself; the other rows one by one."""
     near = _table(poses.reference, (poses.count,))
     refused = np.broadcast_to(poses.refused, poses.count).copy()
     refused[(refused == Status.OK) & ~(np.abs(near) <= 1e9).all(axis=1)] = Status.BAD_INPUT
@@ -62,7 +62,7 @@ def _table(columns: Reals, shape: tuple[int, ...]) -> Array:
 
 
 def _turning(robot: Mechanism, poses: Poses, near: Array, status: Codes, refused: Codes) -> Turning | None:
-    """What turns do, measured at the first pose that is reached; None where none is."""
+    """The effect of turns, measured at the first pose that is reached; None where no pose is reached."""
     solved = np.argwhere(((status == Status.OK) & (refused == Status.OK)).T)
     if not len(solved):
         return None
@@ -119,7 +119,7 @@ def _inside(robot: Mechanism, near: Array) -> NDArray[np.bool_]:
 
 
 def _nearest_values(value: Array, centre: Array, step: float, ends: tuple[float, float]) -> Array:
-    """As `_nearest._nearest_value`."""
+    """`_nearest._nearest_value` on arrays."""
     lowest, highest = ends
     turned = value - step * np.floor((value - centre) / step + (0.5 + 1e-9 / 360.0))
     turned = turned - step * np.maximum(np.ceil((turned - highest) / step), 0.0)

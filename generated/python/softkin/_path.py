@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _SMOOTH = 1.0 / 36.0
 """A share of a full turn: where an axis turns further in one step, the step is halved."""
 _SHORTEST = 1e-9
-"""The share of a line that is halved no more: an axis that still turns as far jumps."""
+"""A step of this share of a line is not halved: an axis that still turns too far in it jumps."""
 _APART = 1e-5
 """The share of a line over which the speed of the axes is measured."""
 
@@ -32,7 +32,7 @@ class Stop(NamedTuple):
     frame: Frame
     """The last frame that is reached."""
     refusal: Diagnosis
-    """Why there is no way on: as `diagnose` says it, or the axis that jumps."""
+    """Why the path cannot go on: the reason that `diagnose` gives, or the axis that jumps."""
 
 
 class Stretch(NamedTuple):
@@ -57,7 +57,7 @@ class Path:
     signs: Signs
     """The branch on which it stays."""
     places: Reals
-    """Of every sample, the number of its line, from 0, plus the share of this line."""
+    """For every sample, the number of its line, from 0, plus the share of this line that is passed."""
     frames: tuple[Frame, ...]
     """The frame of every sample."""
     axes: tuple[Reals, ...]
@@ -100,7 +100,7 @@ class Path:
         return tuple(found)
 
     def fastest(self, duration: float = 1.0) -> Reals:
-        """The highest speed of each axis at the samples, without its sense: see `velocities`."""
+        """The highest speed of each axis at the samples, as a positive number: see `velocities`."""
         columns = zip(*self.velocities(duration), strict=True)
         return tuple([max(map(abs, column)) for column in columns])
 
@@ -171,7 +171,7 @@ def _first(
 
 
 class _Follower:
-    """Goes along the lines on one branch, with halved steps where the axes turn far, until there is no way on."""
+    """Follows the lines on one branch, with halved steps where the axes turn far, until it cannot go on."""
 
     def __init__(self, robot: Mechanism, corners: tuple[Frame, ...], signs: Signs) -> None:
         self.robot, self.corners, self.signs = robot, corners, signs
@@ -201,7 +201,7 @@ class _Follower:
         return axes if isinstance(axes, Diagnosis) else self.robot._beyond_limits(axes) or axes
 
     def _walk(self, start: float, axes: Reals, goal: float) -> tuple[float, Reals, Diagnosis | None]:
-        """How far the way from place to place is free, the axes there, and why it is not free beyond."""
+        """The last place that the path from place to place reaches, the axes there, and the reason why it stops."""
         found = self.solve(goal, axes)
         refused = found if isinstance(found, Diagnosis) else self._jump(axes, found)
         if refused is None and not isinstance(found, Diagnosis):

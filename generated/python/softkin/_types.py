@@ -129,7 +129,7 @@ class Singularity(NamedTuple):
     """The distances of a pose from all singularities."""
 
     is_singular: bool
-    """Whether some margin is smaller than the parameter `warning_distance` in size, or the axes allow no pose."""
+    """Whether a margin is smaller in size than the parameter `warning_distance`, or the axes allow no pose."""
     margins: Mapping[str, float]
     """Dimensionless and signed, by name; NaN where the axes allow no pose.
 
@@ -155,12 +155,12 @@ class Axis:
 
     name: str
     kind: str
-    """`rotary`, `linear`, or `helical`: it turns, and moves another axis along by its pitch."""
+    """`rotary`, `linear`, or `helical`: a helical axis turns, and moves another axis along by its pitch."""
     unit: str
     """`deg`, or `u`: the user's length unit."""
     meaning: str
     multi_turn: bool
-    """Whether the configuration has a period number for it."""
+    """Whether the configuration has a period number for the axis."""
 
 
 _USUAL: dict[str, dict[str, Any]] = {
@@ -176,7 +176,7 @@ _USUAL: dict[str, dict[str, Any]] = {
     "sign": {"unit": "", "low": -1.0, "high": 1.0, "low_is_open": False, "default": 1.0},
     "angle": {"unit": "deg", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
 }
-"""The values that an entry of a parameter does not state, by the kind of the parameter."""
+"""For each kind of parameter, the values that its parameters have unless they state others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,7 +227,7 @@ class ConfigurationByte:
     """A byte of the configuration.
 
     The byte of a branch is 1 or 2; 0 is automatic, and 3 says that both coincide. The byte of a period is the signed
-    number of the turn; 0 leaves it open, see `Mechanism.inverse`.
+    number of the turn; 0 is automatic, see `Mechanism.inverse`.
     """
 
     name: str

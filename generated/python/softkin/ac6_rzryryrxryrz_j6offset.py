@@ -17,24 +17,25 @@ Configuration:
     elbow: 1 = up, 2 = down, 0 = automatic, 3 = both coincide
     wrist: 1 = positive, 2 = negative, 0 = automatic, 3 = both coincide
     crossing: 1 = rising, 2 = falling, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = open: see `inverse`
-    period of A2: signed number of the turn, 0 = open: see `inverse`
-    period of A3: signed number of the turn, 0 = open: see `inverse`
-    period of A4: signed number of the turn, 0 = open: see `inverse`
-    period of A5: signed number of the turn, 0 = open: see `inverse`
-    period of A6: signed number of the turn, 0 = open: see `inverse`
+    period of A1: signed number of the turn, 0 = automatic: see `inverse`
+    period of A2: signed number of the turn, 0 = automatic: see `inverse`
+    period of A3: signed number of the turn, 0 = automatic: see `inverse`
+    period of A4: signed number of the turn, 0 = automatic: see `inverse`
+    period of A5: signed number of the turn, 0 = automatic: see `inverse`
+    period of A6: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     determinant: type 1
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 142 additions, 207 multiplications, 6 divisions, 0 square roots, 14 sines
     inverse: 109805 additions, 164285 multiplications, 8609 divisions, 3994 square roots, 6048 sines
-    inverse, all 16 branches open: 1757153 additions, 2628656 multiplications, 137744 divisions, 63904 square
+    inverse, all 16 branches: 1757153 additions, 2628656 multiplications, 137744 divisions, 63904 square
     roots, 96768 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 28 additions, 50 multiplications, 11 divisions, 3 square roots, 12
-    sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
+    12 sines
     root scan along A6: at most 760 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
@@ -114,7 +115,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset e5957ecfb02b3e68"
+    KEY = "ac6_rzryryrxryrz_j6offset 8e5420feaa78e7fa"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -314,7 +315,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
         slope_wrist_x_tried = j6_offset_x * (goal_r12 * cos_q6_tried + goal_r11 * sin_q6_tried)
         slope_wrist_y_tried = j6_offset_x * (goal_r22 * cos_q6_tried + goal_r21 * sin_q6_tried)
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
             along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
             if distance_q1_tried > machine_scale_times_free_angle:
@@ -362,7 +363,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sum_in_one_plus_cos_q3_tried_2 = a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = -sum_in_one_plus_cos_q3_tried * sum_in_one_plus_cos_q3_tried_2
-        # twice the scale, as the sum of both: then cosine and sine agree
+        # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
@@ -422,7 +423,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_sin_q3_tried = (
             a3_by_effective_q3_tried * slope_sin_swing_q3_tried - d4_by_effective_q3_tried * slope_cos_swing_q3_tried
         )
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if reach_tried > machine_scale_times_free_angle and freed != 1:
             arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
             arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
@@ -557,7 +558,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * j6_offset_x - d6 * goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if distance_q1_tried > machine_scale_times_free_angle and freed != 0:
             along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
             length_q1_tried = distance_q1_tried if distance_q1_tried > machine_scale_times_free_angle else 1.0
@@ -582,7 +583,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         one_plus_cos_q3_tried = (reach_tried - a2_minus_effective_q3_tried) * (
             a2_minus_effective_q3_tried + reach_tried
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
+        # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         divisor_of_cos_q3_tried = sum_q3_tried if sum_q3_tried > 0.0 else 1.0
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
@@ -598,7 +599,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if reach_tried > machine_scale_times_free_angle and freed != 1:
             arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
             arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
@@ -1332,7 +1333,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         one_plus_cos_q3_closed = (reach_closed - a2_minus_effective_q3_tried) * (
             a2_minus_effective_q3_tried + reach_closed
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
+        # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
         divisor_of_cos_q3_closed = sum_q3_closed if sum_q3_closed > 0.0 else 1.0
         cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
@@ -1387,7 +1388,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q5 = found_q5
             q6 = found_q6
         else:
-            # where it is singular: the angle of the reference
+            # at a singularity: the angle of the reference
             if distance_q1_closed > machine_scale_times_free_angle:
                 along_q1_closed = sigma_shoulder * wrist_x_closed  # rotation by q1 that points the arm at the point
                 cos_q1_closed = along_q1_closed / distance_q1_closed
@@ -1405,7 +1406,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 * sigma_elbow
                 / divisor_of_cos_q3_closed
             )
-            # where it is singular: the angle of the reference
+            # at a singularity: the angle of the reference
             if reach_closed > machine_scale_times_free_angle:
                 arm_along_q2_closed = effective_q3_tried * sin_swing_q3_closed
                 arm_across_q2_closed = a2 + effective_q3_tried * cos_swing_q3_closed
@@ -1441,7 +1442,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             radius_q4_closed = sqrt(
                 r23_from_q1_closed * r23_from_q1_closed + r33_from_q123_closed * r33_from_q123_closed
             )
-            # polar coordinates: angle q4 from the r33 and r23 equations; where it is singular: the angle of the
+            # polar coordinates: angle q4 from the r33 and r23 equations; at a singularity: the angle of the
             # reference
             if radius_q4_closed > 1e-11:
                 direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
@@ -1726,7 +1727,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         return self._constants.searched
 
     def _all_joints(self, given: Values) -> list[Reals]:
-        """The joints at every root of a search."""
+        """The joints at every root of a root scan."""
         (
             goal_r11,
             goal_r12,

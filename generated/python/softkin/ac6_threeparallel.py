@@ -15,25 +15,26 @@ Configuration:
     shoulder: 1 = left, 2 = right, 0 = automatic, 3 = both coincide
     elbow: 1 = up, 2 = down, 0 = automatic, 3 = both coincide
     wrist: 1 = down, 2 = up, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = open: see `inverse`
-    period of A2: signed number of the turn, 0 = open: see `inverse`
-    period of A3: signed number of the turn, 0 = open: see `inverse`
-    period of A4: signed number of the turn, 0 = open: see `inverse`
-    period of A5: signed number of the turn, 0 = open: see `inverse`
-    period of A6: signed number of the turn, 0 = open: see `inverse`
+    period of A1: signed number of the turn, 0 = automatic: see `inverse`
+    period of A2: signed number of the turn, 0 = automatic: see `inverse`
+    period of A3: signed number of the turn, 0 = automatic: see `inverse`
+    period of A4: signed number of the turn, 0 = automatic: see `inverse`
+    period of A5: signed number of the turn, 0 = automatic: see `inverse`
+    period of A6: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     wrist_on_axis_1: type 1
     elbow: type 1
     a4_parallel_a6: type 1
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 51 additions, 59 multiplications, 0 divisions, 0 square roots, 13 sines
     inverse: 80 additions, 79 multiplications, 10 divisions, 5 square roots, 6 sines
-    inverse, all 8 branches open: 503 additions, 380 multiplications, 44 divisions, 19 square roots, 32 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 101 additions, 154 multiplications, 17 divisions, 10 square roots, 22
-    sines
+    inverse, all 8 branches: 503 additions, 380 multiplications, 44 divisions, 19 square roots, 32 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, in addition: 101 additions, 154 multiplications, 17 divisions, 10 square
+    roots, 22 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -116,7 +117,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel a6756aae3a62ac8e"
+    KEY = "ac6_threeparallel 88f089974c50f240"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -429,7 +430,7 @@ class Ac6ThreeParallel(Mechanism):
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_shoulder
-        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d4 * wrist_y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d4 * wrist_x) / distance_q1_squared
@@ -712,7 +713,7 @@ class Ac6ThreeParallel(Mechanism):
         radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
         q6_radius_of_q5 = sigma_wrist * radius_q6
         q6_radius_of_q5_times_r33 = q6_radius_of_q5 * r33
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_q6 > 1e-11:
             along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6 / radius_q6
@@ -840,7 +841,7 @@ class Ac6ThreeParallel(Mechanism):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_sin_q3
-        # rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3 * cos_q3

@@ -13,19 +13,21 @@ Axes:
 
 Configuration:
     wrist: 1 = upright, 2 = flipped, 0 = automatic, 3 = both coincide
-    period of A4: signed number of the turn, 0 = open: see `inverse`
-    period of A5: signed number of the turn, 0 = open: see `inverse`
-    period of A6: signed number of the turn, 0 = open: see `inverse`
+    period of A4: signed number of the turn, 0 = automatic: see `inverse`
+    period of A5: signed number of the turn, 0 = automatic: see `inverse`
+    period of A6: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     a4_parallel_a6: type 1
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 28 additions, 29 multiplications, 0 divisions, 0 square roots, 6 sines
     inverse: 37 additions, 30 multiplications, 3 divisions, 1 square roots, 3 sines
-    inverse, all 2 branches open: 75 additions, 52 multiplications, 6 divisions, 1 square roots, 6 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
+    inverse, all 2 branches: 75 additions, 52 multiplications, 6 divisions, 1 square roots, 6 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, in addition: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2
+    sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -78,7 +80,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_TXTYTZRYRXRZ"
-    KEY = "ac6_txtytzryrxrz e801c4ab943b5c77"
+    KEY = "ac6_txtytzryrxrz f058f79895d9b30e"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),
@@ -310,7 +312,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
         axis_a3 = offset_a3 + wrist_z
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
-        # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+        # polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
         # reference
         if radius_a4 > 1e-11:
             direction_x_a4 = sigma_wrist * r33

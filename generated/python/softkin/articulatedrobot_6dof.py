@@ -15,24 +15,26 @@ Configuration:
     arm: 1 = front, 2 = back, 0 = automatic, 3 = both coincide
     elbow: 1 = down, 2 = up, 0 = automatic, 3 = both coincide
     hand: 1 = down, 2 = up, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = open: see `inverse`
-    period of A2: signed number of the turn, 0 = open: see `inverse`
-    period of A3: signed number of the turn, 0 = open: see `inverse`
-    period of A4: signed number of the turn, 0 = open: see `inverse`
-    period of A5: signed number of the turn, 0 = open: see `inverse`
-    period of A6: signed number of the turn, 0 = open: see `inverse`
+    period of A1: signed number of the turn, 0 = automatic: see `inverse`
+    period of A2: signed number of the turn, 0 = automatic: see `inverse`
+    period of A3: signed number of the turn, 0 = automatic: see `inverse`
+    period of A4: signed number of the turn, 0 = automatic: see `inverse`
+    period of A5: signed number of the turn, 0 = automatic: see `inverse`
+    period of A6: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     wrist_on_axis_1: type 1
     elbow: type 1
     a4_parallel_a6: type 1
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 59 additions, 73 multiplications, 0 divisions, 0 square roots, 14 sines
     inverse: 82 additions, 89 multiplications, 12 divisions, 6 square roots, 6 sines
-    inverse, all 8 branches open: 463 additions, 375 multiplications, 52 divisions, 17 square roots, 34 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 12 additions, 11 multiplications, 2 divisions, 1 square roots, 6 sines
+    inverse, all 8 branches: 463 additions, 375 multiplications, 52 divisions, 17 square roots, 34 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, in addition: 12 additions, 11 multiplications, 2 divisions, 1 square roots, 6
+    sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -109,7 +111,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof 99ef33ce85ecb202"
+    KEY = "articulatedrobot_6dof c6cd1abe0a74d131"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -440,7 +442,7 @@ class ArticulatedRobot6DOF(Mechanism):
         wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
-        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d3 * wrist_y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d3 * wrist_x) / distance_q1_squared
@@ -502,8 +504,7 @@ class ArticulatedRobot6DOF(Mechanism):
         one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
@@ -517,7 +518,7 @@ class ArticulatedRobot6DOF(Mechanism):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3 * sin_swing_q3
             arm_across_q2 = a2 + effective_q3 * cos_swing_q3
@@ -554,7 +555,7 @@ class ArticulatedRobot6DOF(Mechanism):
         r23_from_q1 = r23 * cos_q1 - r13 * sin_q1
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+        # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
         # reference
         if radius_q4 > 1e-11:
             direction_x_q4 = -sigma_hand * r13_from_q123

@@ -7,15 +7,16 @@ Axes:
     C (rotary, deg): Turn about the flange's Z
 
 Configuration:
-    period of C: signed number of the turn, 0 = open: see `inverse`
+    period of C: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     none
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 4 additions, 2 multiplications, 0 divisions, 0 square roots, 2 sines
     inverse: 10 additions, 4 multiplications, 1 divisions, 0 square roots, 1 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -60,7 +61,7 @@ class CAxis(OrientationKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_CAxis"
-    KEY = "caxis f85f004fa0145e84"
+    KEY = "caxis 6a044c817afdb1e0"
     AXES = (Axis(name="C", kind="rotary", unit="deg", meaning="Turn about the flange's Z", multi_turn=True),)
     PARAMETERS = (
         Parameter.of("angle", "offset_c", "C: axis value at the kinematic zero position"),
@@ -153,7 +154,8 @@ class CAxis(OrientationKinematics, TwistChoice):
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= ref_c <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -219,7 +221,8 @@ class CAxis(OrientationKinematics, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -239,7 +242,8 @@ class CAxis(OrientationKinematics, TwistChoice):
         _, ((r11, r12, _), (r21, r22, _), _) = frame
         k = self._constants
         offset_c = k.offset_c
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way

@@ -7,15 +7,16 @@ Axes:
     C (rotary, deg): Turn about the flange's Z
 
 Configuration:
-    period of C: signed number of the turn, 0 = open: see `inverse`
+    period of C: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     none
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 6 additions, 6 multiplications, 0 divisions, 0 square roots, 2 sines
     inverse: 10 additions, 4 multiplications, 1 divisions, 0 square roots, 1 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
 
 With an X or Y offset it can only be combined with a flange that keeps its orientation.
 
@@ -50,7 +51,7 @@ class Constants:
         p = machine.parameters
         tool_x, tool_y, tool_z, offset_c = p["tool_x"], p["tool_y"], p["tool_z"], p["offset_c"]
         self.lowest_c, self.highest_c, self.single_c, self.mid_c = machine._window("c")
-        # offsets up to this are not noticed
+        # offsets up to this length count as zero
         unnoticed_shift = 1e-9 * abs(tool_x) + 1e-9 * abs(tool_y) + 1e-9 * abs(tool_z)
         # part of the tool in directions that are not commanded
         unmet_offset = sqrt(tool_x * tool_x + tool_y * tool_y)
@@ -67,7 +68,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_CAxis_Tool"
-    KEY = "caxis_tool 91d155728d045d52"
+    KEY = "caxis_tool d5a0b1334a903bbb"
     AXES = (Axis(name="C", kind="rotary", unit="deg", meaning="Turn about the flange's Z", multi_turn=True),)
     PARAMETERS = (
         Parameter.of("distance", "tool_x", "Flange to the tool, along the turned X"),
@@ -174,7 +175,8 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= ref_c <= 1e9):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -267,7 +269,8 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -287,7 +290,8 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         _, ((r11, r12, _), (r21, r22, _), _) = frame
         k = self._constants
         offset_c = k.offset_c
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way

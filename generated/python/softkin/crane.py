@@ -9,17 +9,19 @@ Axes:
     Phi (rotary, deg): Polar angle, from +Z
 
 Configuration:
-    period of Theta: signed number of the turn, 0 = open: see `inverse`
+    period of Theta: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     free_theta: type 1
-    free_phi: type 1; 0 within 1e-11 of the unit of length from where an axis is not determined, else 1: the
+    free_phi: type 1; 0 within 1e-11 units of length of a pose where an axis is not determined, else 1: the
     machine has no length with which this distance could be compared
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 6 additions, 7 multiplications, 0 divisions, 0 square roots, 4 sines
     inverse: 13 additions, 9 multiplications, 2 divisions, 2 square roots, 2 sines
-    a branch at a singular pose, more: 7 additions, 6 multiplications, 0 divisions, 0 square roots, 4 sines
+    a branch at a singular pose, in addition: 7 additions, 6 multiplications, 0 divisions, 0 square roots, 4
+    sines
 
 On the vertical the azimuth is the reference's; at the origin the polar angle is too.
 
@@ -72,7 +74,7 @@ class Crane(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Crane"
-    KEY = "crane 61942987bc3af810"
+    KEY = "crane 9c9415ef7d797f1c"
     AXES = (
         Axis(name="R", kind="linear", unit="u", meaning="Length of the boom", multi_turn=False),
         Axis(name="Theta", kind="rotary", unit="deg", meaning="Azimuth, from X", multi_turn=True),
@@ -204,7 +206,7 @@ class Crane(OffsetKinematics):
         radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
         radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
         axis_r = offset_r + radius_phi
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
             direction_y_theta = y
@@ -219,7 +221,7 @@ class Crane(OffsetKinematics):
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0) * RADIAN
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
             direction_y_phi = radius_theta
@@ -274,7 +276,7 @@ class Crane(OffsetKinematics):
         radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
         radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
         length_free_phi = one_by_machine_scale * radius_phi
-        # 0 where nothing determines the axis, else 1 or -1
+        # 0 where no equation determines the axis, else 1 or -1
         margin_free_phi = 1.0 if length_free_phi > 1e-11 else 0.0
         return (sin_phi, margin_free_phi)
 
@@ -332,7 +334,7 @@ class Crane(OffsetKinematics):
         # polar coordinates: the radius at angle phi
         radius_phi = sqrt(flange_z * flange_z + radius_theta * radius_theta)
         axis_r = offset_r + radius_phi
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = flange_x
             direction_y_theta = flange_y
@@ -347,7 +349,7 @@ class Crane(OffsetKinematics):
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0) * RADIAN
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = flange_z
             direction_y_phi = radius_theta
@@ -389,7 +391,7 @@ class Crane(OffsetKinematics):
         offset_r, offset_theta = k.offset_r, k.offset_theta
         radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
         radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
             direction_y_theta = y
@@ -397,7 +399,7 @@ class Crane(OffsetKinematics):
             reference_theta = (ref_theta - offset_theta) * DEGREE
             direction_x_theta = cos(reference_theta)
             direction_y_theta = sin(reference_theta)
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
             direction_y_phi = radius_theta

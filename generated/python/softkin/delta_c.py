@@ -14,10 +14,10 @@ Configuration:
     knee_1: 1 = outward, 2 = inward, 0 = automatic, 3 = both coincide
     knee_2: 1 = outward, 2 = inward, 0 = automatic, 3 = both coincide
     knee_3: 1 = outward, 2 = inward, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = open: see `inverse`
-    period of A2: signed number of the turn, 0 = open: see `inverse`
-    period of A3: signed number of the turn, 0 = open: see `inverse`
-    period of A4: signed number of the turn, 0 = open: see `inverse`
+    period of A1: signed number of the turn, 0 = automatic: see `inverse`
+    period of A2: signed number of the turn, 0 = automatic: see `inverse`
+    period of A3: signed number of the turn, 0 = automatic: see `inverse`
+    period of A4: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     stretched_1: type 1
@@ -25,11 +25,12 @@ Singularities:
     stretched_3: type 1
     rods_coplanar: type 2
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 60 additions, 75 multiplications, 1 divisions, 1 square roots, 8 sines
     inverse: 86 additions, 77 multiplications, 16 divisions, 6 square roots, 4 sines
-    inverse, all 8 branches open: 256 additions, 214 multiplications, 28 divisions, 9 square roots, 7 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    inverse, all 8 branches: 256 additions, 214 multiplications, 28 divisions, 9 square roots, 7 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
 
 Arm 1 points to +X, arm 2 to 120 degrees from it, arm 3 to 240. The origin is the centre of the motor axes,
 and Z points up. The frame is that of the tool in the plate's centre, in the plane of the joints of the rods.
@@ -129,7 +130,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Delta_C"
-    KEY = "delta_c dffe651f7f26e38f"
+    KEY = "delta_c 07b0bfefce9134d8"
     AXES = (
         Axis(
             name="A1",
@@ -477,7 +478,8 @@ class DeltaC(OffsetKinematics, TwistChoice):
         single_a2, single_a3, single_a4, sum_in_pivot_2_y = k.single_a2, k.single_a3, k.single_a4, k.sum_in_pivot_2_y
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -495,8 +497,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
         arm_length_plus_effective_a1 = arm_length + effective_a1
         # 1 + cosine, times the scale
         one_plus_cos_a1 = arm_length_plus_effective_a1 * arm_length_plus_effective_a1 - third_square_a1
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -536,8 +537,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
         half_effective_a2_minus_arm_length = half_effective_a2 - arm_length
         # 1 + cosine, times the scale
         one_plus_cos_a2 = third_square_a2 - half_effective_a2_minus_arm_length * half_effective_a2_minus_arm_length
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
@@ -573,8 +573,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
         half_effective_a3_minus_arm_length = half_effective_a3 - arm_length
         # 1 + cosine, times the scale
         one_plus_cos_a3 = third_square_a3 - half_effective_a3_minus_arm_length * half_effective_a3_minus_arm_length
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
@@ -921,7 +920,8 @@ class DeltaC(OffsetKinematics, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -973,8 +973,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
         arm_length_plus_effective_a1 = arm_length + effective_a1
         # 1 + cosine, times the scale
         one_plus_cos_a1 = arm_length_plus_effective_a1 * arm_length_plus_effective_a1 - third_square_a1
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -1014,8 +1013,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
         half_effective_a2_minus_arm_length = half_effective_a2 - arm_length
         # 1 + cosine, times the scale
         one_plus_cos_a2 = third_square_a2 - half_effective_a2_minus_arm_length * half_effective_a2_minus_arm_length
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
@@ -1051,8 +1049,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
         half_effective_a3_minus_arm_length = half_effective_a3 - arm_length
         # 1 + cosine, times the scale
         one_plus_cos_a3 = third_square_a3 - half_effective_a3_minus_arm_length * half_effective_a3_minus_arm_length
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach

@@ -13,20 +13,21 @@ Axes:
 Configuration:
     elbow_1: 1 = outward, 2 = inward, 0 = automatic, 3 = both coincide
     elbow_2: 1 = outward, 2 = inward, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = open: see `inverse`
-    period of A2: signed number of the turn, 0 = open: see `inverse`
-    period of A4: signed number of the turn, 0 = open: see `inverse`
+    period of A1: signed number of the turn, 0 = automatic: see `inverse`
+    period of A2: signed number of the turn, 0 = automatic: see `inverse`
+    period of A4: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     stretched_1: type 1
     stretched_2: type 1
     rods_aligned: type 2
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 31 additions, 31 multiplications, 1 divisions, 2 square roots, 6 sines
     inverse: 51 additions, 40 multiplications, 11 divisions, 4 square roots, 3 sines
-    inverse, all 4 branches open: 113 additions, 83 multiplications, 19 divisions, 6 square roots, 5 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    inverse, all 4 branches: 113 additions, 83 multiplications, 19 divisions, 6 square roots, 5 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
 
 The origin is the middle between the motor axes, which stand on the X axis. Front is the side of +Y.
 
@@ -150,7 +151,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_DualScara"
-    KEY = "dualscara 7fd78556bc29dc3c"
+    KEY = "dualscara 20abe42b74ded443"
     AXES = (
         Axis(
             name="A1",
@@ -434,7 +435,8 @@ class DualScara(OffsetKinematics, TwistChoice):
         single_a2, single_a4 = k.single_a2, k.single_a4
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -454,8 +456,7 @@ class DualScara(OffsetKinematics, TwistChoice):
         one_plus_cos_a1 = (arm_length_1_minus_rod_length_1 + effective_a1) * (
             arm_length_1_plus_rod_length_1 + effective_a1
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -477,8 +478,7 @@ class DualScara(OffsetKinematics, TwistChoice):
         one_plus_cos_a2 = (arm_length_2_minus_rod_length_2 + effective_a2) * (
             arm_length_2_plus_rod_length_2 + effective_a2
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
@@ -707,7 +707,8 @@ class DualScara(OffsetKinematics, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -759,8 +760,7 @@ class DualScara(OffsetKinematics, TwistChoice):
         one_plus_cos_a1 = (arm_length_1_minus_rod_length_1 + effective_a1) * (
             arm_length_1_plus_rod_length_1 + effective_a1
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -782,8 +782,7 @@ class DualScara(OffsetKinematics, TwistChoice):
         one_plus_cos_a2 = (arm_length_2_minus_rod_length_2 + effective_a2) * (
             arm_length_2_plus_rod_length_2 + effective_a2
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach

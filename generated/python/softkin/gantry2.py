@@ -13,7 +13,8 @@ Configuration:
 Singularities:
     none
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 2 additions, 0 multiplications, 0 divisions, 0 square roots, 0 sines
     inverse: 3 additions, 0 multiplications, 0 divisions, 0 square roots, 0 sines
 
@@ -62,7 +63,7 @@ class Gantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Gantry2"
-    KEY = "gantry2 db3fa568cef7d19d"
+    KEY = "gantry2 18e4a2282eed064b"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),

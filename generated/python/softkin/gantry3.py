@@ -14,7 +14,8 @@ Configuration:
 Singularities:
     none
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 3 additions, 0 multiplications, 0 divisions, 0 square roots, 0 sines
     inverse: 4 additions, 0 multiplications, 0 divisions, 0 square roots, 0 sines
 
@@ -62,7 +63,7 @@ class Gantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Gantry3"
-    KEY = "gantry3 1144ef47c42eb6ea"
+    KEY = "gantry3 ff6a1d86b03eaaf7"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),

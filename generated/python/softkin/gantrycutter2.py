@@ -10,15 +10,16 @@ Axes:
     R (rotary, deg): Knife about Z
 
 Configuration:
-    period of R: signed number of the turn, 0 = open: see `inverse`
+    period of R: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     none
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 6 additions, 3 multiplications, 0 divisions, 0 square roots, 2 sines
     inverse: 12 additions, 5 multiplications, 1 divisions, 0 square roots, 1 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -68,7 +69,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_GantryCutter2"
-    KEY = "gantrycutter2 5cb5ffe004fa122f"
+    KEY = "gantrycutter2 26a81c8fd0b0aa43"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),
@@ -200,7 +201,8 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         offset_r, offset_x, offset_y, single_r = k.offset_r, k.offset_x, k.offset_y, k.single_r
         if not reasonable(x, y, z, ref_r):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -264,7 +266,8 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -322,7 +325,8 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         k = self._constants
         direction_r, machine_scale_times_plane, offset_r = k.direction_r, k.machine_scale_times_plane, k.offset_r
         offset_x, offset_y = k.offset_x, k.offset_y
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way

@@ -11,15 +11,16 @@ Axes:
     R (rotary, deg): Knife about Z
 
 Configuration:
-    period of R: signed number of the turn, 0 = open: see `inverse`
+    period of R: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     none
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 7 additions, 3 multiplications, 0 divisions, 0 square roots, 2 sines
     inverse: 13 additions, 5 multiplications, 1 divisions, 0 square roots, 1 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -69,7 +70,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_GantryCutter3"
-    KEY = "gantrycutter3 dab8986eb6fe3258"
+    KEY = "gantrycutter3 639cff5eabd7f8e2"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),
@@ -216,7 +217,8 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         offset_z, single_r = k.offset_z, k.single_r
         if not reasonable(x, y, z, ref_r):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -279,7 +281,8 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -335,7 +338,8 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         k = self._constants
         direction_r, offset_r, offset_x, offset_y = k.direction_r, k.offset_r, k.offset_x, k.offset_y
         offset_z = k.offset_z
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way

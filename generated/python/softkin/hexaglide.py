@@ -25,10 +25,11 @@ Singularities:
     meet_a6: type 1
     rods_dependent: type 2
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 4298 additions, 6026 multiplications, 280 divisions, 140 square roots, 120 sines
     inverse: 230 additions, 301 multiplications, 6 divisions, 8 square roots, 2 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     Newton's method: every pass improves the pose until all legs fit: at most 20 passes, all of which are
     counted
 
@@ -490,7 +491,7 @@ class Hexaglide(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Hexaglide"
-    KEY = "hexaglide dd16133af821fb6b"
+    KEY = "hexaglide 72e4ccfa86b2267f"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="X of carriage 1", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="X of carriage 2", multi_turn=False),

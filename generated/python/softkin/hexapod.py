@@ -18,10 +18,11 @@ Configuration:
 Singularities:
     rods_dependent: type 2
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 4280 additions, 6002 multiplications, 280 divisions, 140 square roots, 120 sines
     inverse: 224 additions, 317 multiplications, 7 divisions, 8 square roots, 2 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     Newton's method: every pass improves the pose until all legs fit: at most 20 passes, all of which are
     counted
 
@@ -358,7 +359,7 @@ class Hexapod(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Hexapod"
-    KEY = "hexapod 5a267ad7b3c2cc1e"
+    KEY = "hexapod 85175cc7d4b50314"
     AXES = (
         Axis(name="L1", kind="linear", unit="u", meaning="Length of leg 1, between its joints", multi_turn=False),
         Axis(name="L2", kind="linear", unit="u", meaning="Length of leg 2, between its joints", multi_turn=False),

@@ -14,7 +14,8 @@ Configuration:
 Singularities:
     none
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 4 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
     inverse: 9 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
 
@@ -65,7 +66,7 @@ class HGantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_HGantry2"
-    KEY = "hgantry2 30b0924c047d4b11"
+    KEY = "hgantry2 1a6f375def1749bc"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

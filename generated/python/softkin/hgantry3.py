@@ -15,7 +15,8 @@ Configuration:
 Singularities:
     none
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 5 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
     inverse: 10 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
 
@@ -65,7 +66,7 @@ class HGantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_HGantry3"
-    KEY = "hgantry3 9eb9c44fd9537a4d"
+    KEY = "hgantry3 2972dd9e2b96d7fd"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

@@ -11,18 +11,19 @@ Axes:
 Configuration:
     t: 1 = left, 2 = right, 0 = automatic, 3 = both coincide
     w: 1 = left, 2 = right, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = open: see `inverse`
-    period of A2: signed number of the turn, 0 = open: see `inverse`
+    period of A1: signed number of the turn, 0 = automatic: see `inverse`
+    period of A2: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     stretched_1: type 1
     stretched_2: type 1
     arms_aligned: type 2
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 26 additions, 37 multiplications, 1 divisions, 2 square roots, 4 sines
     inverse: 46 additions, 43 multiplications, 10 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 144 additions, 117 multiplications, 27 divisions, 9 square roots, 6 sines
+    inverse, all 4 branches: 144 additions, 117 multiplications, 27 divisions, 9 square roots, 6 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -166,7 +167,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
-    KEY = "mc_kin_type_12_xy 5f799896e83af5fc"
+    KEY = "mc_kin_type_12_xy 9b8d2f5400a80d95"
     AXES = (
         Axis(
             name="A1",
@@ -421,8 +422,7 @@ class KinType12XY(OffsetKinematics):
         one_plus_cos_a1 = (link_length_1_plus_link_length_2 - divisor_a1) * (
             divisor_a1 - link_length_1_minus_link_length_2
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
@@ -447,8 +447,7 @@ class KinType12XY(OffsetKinematics):
         one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
             divisor_a2 - link_length_5_minus_link_length_4
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
@@ -780,8 +779,7 @@ class KinType12XY(OffsetKinematics):
         one_plus_cos_a1 = (link_length_1_plus_link_length_2 - divisor_a1) * (
             divisor_a1 - link_length_1_minus_link_length_2
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
@@ -806,8 +804,7 @@ class KinType12XY(OffsetKinematics):
         one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
             divisor_a2 - link_length_5_minus_link_length_4
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale

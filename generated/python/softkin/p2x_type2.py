@@ -15,7 +15,8 @@ Singularities:
     meet_a2: type 1
     flat: type 2
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 7 additions, 4 multiplications, 0 divisions, 1 square roots, 0 sines
     inverse: 8 additions, 3 multiplications, 0 divisions, 1 square roots, 0 sines
 
@@ -80,7 +81,7 @@ class P2XType2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_P2X_Type2"
-    KEY = "p2x_type2 02c260cafbf93ff1"
+    KEY = "p2x_type2 33b71e03d41171c7"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),

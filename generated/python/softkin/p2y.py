@@ -13,7 +13,8 @@ Configuration:
 Singularities:
     none
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 4 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
     inverse: 9 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
 
@@ -64,7 +65,7 @@ class P2Y(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_P2Y"
-    KEY = "p2y e2a53b2d58bd0b55"
+    KEY = "p2y 0333cbb4aa9f1cab"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Motor 1", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Motor 2", multi_turn=False),

@@ -14,21 +14,23 @@ Axes:
 Configuration:
     shoulder: 1 = front, 2 = back, 0 = automatic, 3 = both coincide
     elbow: 1 = up, 2 = down, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = open: see `inverse`
-    period of A2: signed number of the turn, 0 = open: see `inverse`
-    period of A3: signed number of the turn, 0 = open: see `inverse`
-    period of A4: signed number of the turn, 0 = open: see `inverse`
+    period of A1: signed number of the turn, 0 = automatic: see `inverse`
+    period of A2: signed number of the turn, 0 = automatic: see `inverse`
+    period of A3: signed number of the turn, 0 = automatic: see `inverse`
+    period of A4: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     axis_a4_on_a1: type 1
     elbow: type 1
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 30 additions, 28 multiplications, 0 divisions, 0 square roots, 9 sines
     inverse: 48 additions, 38 multiplications, 4 divisions, 3 square roots, 4 sines
-    inverse, all 4 branches open: 163 additions, 111 multiplications, 11 divisions, 7 square roots, 11 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 4 sines
+    inverse, all 4 branches: 163 additions, 111 multiplications, 11 divisions, 7 square roots, 11 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, in addition: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 4
+    sines
 
 A3 is the angle of the forearm against the base: where A2 alone moves, the forearm keeps its direction.
 
@@ -117,7 +119,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer"
-    KEY = "palletizer 8ed4c0e29c54268b"
+    KEY = "palletizer 94d8623e19e36997"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),
@@ -350,7 +352,8 @@ class Palletizer(OffsetKinematics, TwistChoice):
         single_a2, single_a3, single_a4 = k.single_a2, k.single_a3, k.single_a4
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -375,7 +378,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         if not (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
-        # polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
+        # polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the
         # reference
         if radius_a1 > machine_scale_times_free_angle:
             direction_x_a1 = sigma_shoulder * x
@@ -398,7 +401,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        # rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2
@@ -563,7 +566,8 @@ class Palletizer(OffsetKinematics, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -619,7 +623,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         # commanded point, in the frame of the last moving joint
         tool_x = wrist_offset_x + point_x * cos_a4 - point_y * sin_a4
         shoulder_offset_plus_tool_x = shoulder_offset + tool_x
-        # rotation by a1 that points the arm at the point; where it is singular: the angle of the reference
+        # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_a1 > machine_scale_times_free_angle:
             cos_a1_before_a1_for_a3_from_a2 = (ahead_a1_before_a1_for_a3_from_a2 * x + tool_y * y) / distance_a1_squared
             sin_a1_before_a1_for_a3_from_a2 = (ahead_a1_before_a1_for_a3_from_a2 * y - tool_y * x) / distance_a1_squared
@@ -712,7 +716,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        # rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_2 * cos_a3_from_a2

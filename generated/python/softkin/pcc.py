@@ -10,17 +10,19 @@ Axes:
 
 Configuration:
     elbow: 1 = right, 2 = left, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = open: see `inverse`
-    period of A2: signed number of the turn, 0 = open: see `inverse`
+    period of A1: signed number of the turn, 0 = automatic: see `inverse`
+    period of A2: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     elbow: type 1
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 11 additions, 8 multiplications, 0 divisions, 0 square roots, 5 sines
     inverse: 28 additions, 25 multiplications, 2 divisions, 2 square roots, 2 sines
-    inverse, all 2 branches open: 56 additions, 43 multiplications, 4 divisions, 3 square roots, 4 sines
-    a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
+    inverse, all 2 branches: 56 additions, 43 multiplications, 4 divisions, 3 square roots, 4 sines
+    a branch at a singular pose, in addition: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2
+    sines
 
 Angles are right-handed about +Z.
 
@@ -83,7 +85,7 @@ class PCC(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_PCC"
-    KEY = "pcc c52d8d87409dd1fd"
+    KEY = "pcc 782aa33b9d41e415"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Inner arm about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Outer arm about Z, its absolute angle", multi_turn=True),
@@ -248,7 +250,7 @@ class PCC(OffsetKinematics):
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
@@ -398,7 +400,7 @@ class PCC(OffsetKinematics):
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1

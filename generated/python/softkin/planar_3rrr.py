@@ -13,9 +13,9 @@ Configuration:
     elbow_1: 1 = right, 2 = left, 0 = automatic, 3 = both coincide
     elbow_2: 1 = right, 2 = left, 0 = automatic, 3 = both coincide
     elbow_3: 1 = right, 2 = left, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = open: see `inverse`
-    period of A2: signed number of the turn, 0 = open: see `inverse`
-    period of A3: signed number of the turn, 0 = open: see `inverse`
+    period of A1: signed number of the turn, 0 = automatic: see `inverse`
+    period of A2: signed number of the turn, 0 = automatic: see `inverse`
+    period of A3: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     stretched_1: type 1
@@ -23,11 +23,12 @@ Singularities:
     stretched_3: type 1
     rods_dependent: type 2
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 1024 additions, 1347 multiplications, 200 divisions, 80 square roots, 52 sines
     inverse: 84 additions, 90 multiplications, 20 divisions, 7 square roots, 3 sines
-    inverse, all 8 branches open: 737 additions, 744 multiplications, 160 divisions, 56 square roots, 24 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    inverse, all 8 branches: 737 additions, 744 multiplications, 160 divisions, 56 square roots, 24 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     Newton's method: every pass improves the pose until all legs fit: at most 20 passes, all of which are
     counted
 
@@ -138,7 +139,7 @@ class Constants:
         home_one_plus_cos_a1 = (arm_length_1 + home_divisor_a1 + rod_length_1) * (
             arm_length_1 + home_divisor_a1 - rod_length_1
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
+        # sum of both, twice the scale: cosine² + sine² is then 1
         home_sum_a1 = home_one_less_cos_a1 + home_one_plus_cos_a1
         home_divisor_of_cos_a1 = home_sum_a1 if home_sum_a1 > 0.0 else 1.0
         home_cos_swing_a1 = (home_one_plus_cos_a1 - home_one_less_cos_a1) / home_divisor_of_cos_a1
@@ -160,7 +161,7 @@ class Constants:
         home_one_plus_cos_a2 = (arm_length_2 + home_divisor_a2 + rod_length_2) * (
             arm_length_2 + home_divisor_a2 - rod_length_2
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
+        # sum of both, twice the scale: cosine² + sine² is then 1
         home_sum_a2 = home_one_less_cos_a2 + home_one_plus_cos_a2
         home_divisor_of_cos_a2 = home_sum_a2 if home_sum_a2 > 0.0 else 1.0
         home_cos_swing_a2 = (home_one_plus_cos_a2 - home_one_less_cos_a2) / home_divisor_of_cos_a2
@@ -182,7 +183,7 @@ class Constants:
         home_one_plus_cos_a3 = (arm_length_3 + home_divisor_a3 + rod_length_3) * (
             arm_length_3 + home_divisor_a3 - rod_length_3
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
+        # sum of both, twice the scale: cosine² + sine² is then 1
         home_sum_a3 = home_one_less_cos_a3 + home_one_plus_cos_a3
         home_divisor_of_cos_a3 = home_sum_a3 if home_sum_a3 > 0.0 else 1.0
         home_cos_swing_a3 = (home_one_plus_cos_a3 - home_one_less_cos_a3) / home_divisor_of_cos_a3
@@ -324,7 +325,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Planar_3RRR"
-    KEY = "planar_3rrr 7721263b7913ad22"
+    KEY = "planar_3rrr a5e72c18c115c262"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z, from +X", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z, from +X", multi_turn=True),
@@ -778,7 +779,8 @@ class Planar3RRR(IterativeForward, TwistChoice):
         single_a3 = k.single_a3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -807,8 +809,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         one_plus_cos_a1 = (arm_length_1_minus_rod_length_1 + effective_a1) * (
             arm_length_1_plus_rod_length_1 + effective_a1
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -833,8 +834,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         one_plus_cos_a2 = (arm_length_2_minus_rod_length_2 + effective_a2) * (
             arm_length_2_plus_rod_length_2 + effective_a2
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
@@ -859,8 +859,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         one_plus_cos_a3 = (arm_length_3_minus_rod_length_3 + effective_a3) * (
             arm_length_3_plus_rod_length_3 + effective_a3
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
@@ -1073,7 +1072,8 @@ class Planar3RRR(IterativeForward, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way

@@ -8,16 +8,18 @@ Axes:
     R (linear, u): Radius, never negative
 
 Configuration:
-    period of C: signed number of the turn, 0 = open: see `inverse`
+    period of C: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
-    free_c: type 1; 0 within 1e-11 of the unit of length from where an axis is not determined, else 1: the
+    free_c: type 1; 0 within 1e-11 units of length of a pose where an axis is not determined, else 1: the
     machine has no length with which this distance could be compared
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 5 additions, 4 multiplications, 0 divisions, 0 square roots, 2 sines
     inverse: 10 additions, 6 multiplications, 1 divisions, 1 square roots, 1 sines
-    a branch at a singular pose, more: 1 additions, 1 multiplications, 0 divisions, 0 square roots, 2 sines
+    a branch at a singular pose, in addition: 1 additions, 1 multiplications, 0 divisions, 0 square roots, 2
+    sines
 
 As CODESYS's own block it has no orientation mode "Axis": a point beside the arm has two radii.
 
@@ -71,7 +73,7 @@ class Polar(Mechanism):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Polar"
-    KEY = "polar a35fdbd7a27f9581"
+    KEY = "polar 39da0655b73125ee"
     AXES = (
         Axis(name="C", kind="rotary", unit="deg", meaning="Arm about Z", multi_turn=True),
         Axis(name="R", kind="linear", unit="u", meaning="Radius, never negative", multi_turn=False),
@@ -195,7 +197,7 @@ class Polar(Mechanism):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y
@@ -241,7 +243,8 @@ class Polar(Mechanism):
         y = r * sin_c
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
         length_free_c = one_by_machine_scale * radius_c
-        margin_free_c = 1.0 if length_free_c > 1e-11 else 0.0  # 0 where nothing determines the axis, else 1 or -1
+        # 0 where no equation determines the axis, else 1 or -1
+        margin_free_c = 1.0 if length_free_c > 1e-11 else 0.0
         return (margin_free_c,)
 
     def _twist(self, axes: Reals) -> Matrix | Status:
@@ -280,7 +283,7 @@ class Polar(Mechanism):
         if not (abs(z) <= machine_scale_times_plane):
             return None
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_c > machine_scale_times_free_angle:
             direction_x_c = x
             direction_y_c = y

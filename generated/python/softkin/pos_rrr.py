@@ -11,19 +11,21 @@ Axes:
 Configuration:
     arm: 1 = front, 2 = back, 0 = automatic, 3 = both coincide
     elbow: 1 = down, 2 = up, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = open: see `inverse`
-    period of A2: signed number of the turn, 0 = open: see `inverse`
-    period of A3: signed number of the turn, 0 = open: see `inverse`
+    period of A1: signed number of the turn, 0 = automatic: see `inverse`
+    period of A2: signed number of the turn, 0 = automatic: see `inverse`
+    period of A3: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     point_on_axis_1: type 1
     elbow: type 1
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 26 additions, 30 multiplications, 0 divisions, 0 square roots, 8 sines
     inverse: 42 additions, 39 multiplications, 7 divisions, 4 square roots, 3 sines
-    inverse, all 4 branches open: 145 additions, 117 multiplications, 20 divisions, 9 square roots, 10 sines
-    a branch at a singular pose, more: 11 additions, 11 multiplications, 2 divisions, 1 square roots, 4 sines
+    inverse, all 4 branches: 145 additions, 117 multiplications, 20 divisions, 9 square roots, 10 sines
+    a branch at a singular pose, in addition: 11 additions, 11 multiplications, 2 divisions, 1 square roots, 4
+    sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -100,7 +102,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr 28e561ae93eb8b52"
+    KEY = "pos_rrr 0bd9804e7347f0f6"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -312,7 +314,7 @@ class PosRRR(OffsetKinematics):
         wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
-        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - d3 * y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + d3 * x) / distance_q1_squared
@@ -376,8 +378,7 @@ class PosRRR(OffsetKinematics):
         one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
@@ -391,7 +392,7 @@ class PosRRR(OffsetKinematics):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        # rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3_2 * sin_swing_q3
@@ -552,7 +553,7 @@ class PosRRR(OffsetKinematics):
         wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
         ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
-        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - tool_z * y) / distance_q1_squared
             sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + tool_z * x) / distance_q1_squared
@@ -618,8 +619,7 @@ class PosRRR(OffsetKinematics):
         a2_minus_effective_q3 = a2 - effective_q3
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
@@ -636,7 +636,7 @@ class PosRRR(OffsetKinematics):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = (tool_x * cos_swing_q3 + tool_y * sin_swing_q3) / effective_q3
         sin_q3 = (tool_x * sin_swing_q3 - tool_y * cos_swing_q3) / effective_q3
-        # rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = tool_y * cos_q3 + tool_x * sin_q3

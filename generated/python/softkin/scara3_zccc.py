@@ -11,19 +11,21 @@ Axes:
 
 Configuration:
     elbow: 1 = right, 2 = left, 0 = automatic, 3 = both coincide
-    period of A2: signed number of the turn, 0 = open: see `inverse`
-    period of A3: signed number of the turn, 0 = open: see `inverse`
-    period of A4: signed number of the turn, 0 = open: see `inverse`
+    period of A2: signed number of the turn, 0 = automatic: see `inverse`
+    period of A3: signed number of the turn, 0 = automatic: see `inverse`
+    period of A4: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     elbow: type 1
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 19 additions, 12 multiplications, 0 divisions, 0 square roots, 7 sines
     inverse: 39 additions, 30 multiplications, 5 divisions, 3 square roots, 3 sines
-    inverse, all 2 branches open: 79 additions, 53 multiplications, 7 divisions, 4 square roots, 5 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
+    inverse, all 2 branches: 79 additions, 53 multiplications, 7 divisions, 4 square roots, 5 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, in addition: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2
+    sines
 
 The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
 
@@ -94,7 +96,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_ZCCC"
-    KEY = "scara3_zccc 56b535d5118b248c"
+    KEY = "scara3_zccc 47b8f0281edb2664"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Column along Z, up", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
@@ -267,7 +269,8 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         single_a2, single_a3, single_a4 = k.single_a2, k.single_a3, k.single_a4
         if not reasonable(x, y, z, ref_a2, ref_a3, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -295,7 +298,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        # rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2 * cos_a3
@@ -393,7 +396,8 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -440,8 +444,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         one_less_cos_a3 = (effective_a3 + link_length_1_minus_reach) * (effective_a3 + link_length_1_plus_reach)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (link_length_1_plus_reach - effective_a3) * (effective_a3 - link_length_1_minus_reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
@@ -455,7 +458,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (tool_x * cos_swing_a3 + tool_y * sin_swing_a3) / effective_a3
         sin_a3 = (tool_x * sin_swing_a3 - tool_y * cos_swing_a3) / effective_a3
-        # rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + tool_x * cos_a3 - tool_y * sin_a3

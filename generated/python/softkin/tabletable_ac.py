@@ -14,18 +14,20 @@ Axes:
 
 Configuration:
     tilt: 1 = positive, 2 = negative, 0 = automatic, 3 = both coincide
-    period of A: signed number of the turn, 0 = open: see `inverse`
-    period of C: signed number of the turn, 0 = open: see `inverse`
+    period of A: signed number of the turn, 0 = automatic: see `inverse`
+    period of C: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     tool_along_c: type 1
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 20 additions, 18 multiplications, 0 divisions, 0 square roots, 4 sines
     inverse: 26 additions, 21 multiplications, 4 divisions, 1 square roots, 2 sines
-    inverse, all 2 branches open: 59 additions, 42 multiplications, 8 divisions, 1 square roots, 4 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
+    inverse, all 2 branches: 59 additions, 42 multiplications, 8 divisions, 1 square roots, 4 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, in addition: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2
+    sines
 
 Positions are in the frame of the workpiece: its origin is where axis C leaves the table, and it turns with
 the table. The direction is that of the tool, from its tip to the spindle.
@@ -78,7 +80,7 @@ class TableTableAC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_TableTable_AC"
-    KEY = "tabletable_ac 1e84d7ba1edd4996"
+    KEY = "tabletable_ac 21ee2856e0099ee9"
     AXES = (
         Axis(
             name="X",
@@ -292,7 +294,7 @@ class TableTableAC(Mechanism):
         if not reasonable(x, y, z, ref_a, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_c > 1e-11:
             along_c = sigma_tilt * r23  # polar coordinates: angle c from the r23 and r13 equations
             cos_c = along_c / radius_c

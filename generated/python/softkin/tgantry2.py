@@ -14,7 +14,8 @@ Configuration:
 Singularities:
     none
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 4 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
     inverse: 9 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
 
@@ -65,7 +66,7 @@ class TGantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_TGantry2"
-    KEY = "tgantry2 9c1e4aeab9a6e112"
+    KEY = "tgantry2 3ee4dc2e975fe6e3"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

@@ -15,7 +15,8 @@ Configuration:
 Singularities:
     none
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 5 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
     inverse: 10 additions, 2 multiplications, 0 divisions, 0 square roots, 0 sines
 
@@ -65,7 +66,7 @@ class TGantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_TGantry3"
-    KEY = "tgantry3 48cadb366c866205"
+    KEY = "tgantry3 b94d0121a1b25c80"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

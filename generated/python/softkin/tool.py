@@ -12,7 +12,8 @@ Configuration:
 Singularities:
     none
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 0 sines
     inverse: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 0 sines
 
@@ -44,7 +45,7 @@ class Constants:
         """machine: its parameters are in their ranges. Raises NOT_INITIALIZED where they contradict each other."""
         p = machine.parameters
         tool_x, tool_y, tool_z = p["tool_x"], p["tool_y"], p["tool_z"]
-        # offsets up to this are not noticed
+        # offsets up to this length count as zero
         unnoticed_shift = 1e-9 * abs(tool_x) + 1e-9 * abs(tool_y) + 1e-9 * abs(tool_z)
         self.tool_x, self.tool_y, self.tool_z, self.unnoticed_shift = tool_x, tool_y, tool_z, unnoticed_shift
 
@@ -58,7 +59,7 @@ class Tool(OrientationKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Tool"
-    KEY = "tool 487bf993b464fc8a"
+    KEY = "tool f1d30a62645c257d"
     AXES = ()
     PARAMETERS = (
         Parameter.of("distance", "tool_x", "Flange to the tool, along X"),

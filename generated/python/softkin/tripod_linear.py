@@ -20,10 +20,11 @@ Singularities:
     square_3: type 1
     rods_coplanar: type 2
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 49 additions, 63 multiplications, 1 divisions, 1 square roots, 0 sines
     inverse: 55 additions, 53 multiplications, 3 divisions, 5 square roots, 2 sines
-    inverse, all 8 branches open: 232 additions, 186 multiplications, 24 divisions, 22 square roots, 16 sines
+    inverse, all 8 branches: 232 additions, 186 multiplications, 24 divisions, 22 square roots, 16 sines
 
 Verified at 120 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -67,7 +68,7 @@ class Constants:
         self.lowest_a2, self.highest_a2, *_ = machine._window("a2")
         self.lowest_a3, self.highest_a3, *_ = machine._window("a3")
         machine_scale = arm_length + inner_radius + outer_radius  # characteristic length of the machine
-        tie = 1e-12 * machine_scale * machine_scale  # squared distances closer than this are equal
+        tie = 1e-12 * machine_scale * machine_scale  # squared distances that differ by less are equal
         sin_rail_angle = sin(DEGREE * rail_angle)
         cos_rail_angle = cos(DEGREE * rail_angle)
         # assembly mode of this machine: the sign of the determinant of its rods
@@ -140,7 +141,7 @@ class TripodLinear(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Linear"
-    KEY = "tripod_linear 4c01909d4f80d944"
+    KEY = "tripod_linear 0f65a4f87c0ced7d"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1; positive goes down its rail", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2; positive goes down its rail", multi_turn=False),

@@ -10,18 +10,20 @@ Axes:
 
 Configuration:
     roll: 1 = positive, 2 = negative, 0 = automatic, 3 = both coincide
-    period of A: signed number of the turn, 0 = open: see `inverse`
-    period of B: signed number of the turn, 0 = open: see `inverse`
+    period of A: signed number of the turn, 0 = automatic: see `inverse`
+    period of B: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     tool_along_a: type 1
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 13 additions, 16 multiplications, 0 divisions, 0 square roots, 4 sines
     inverse: 16 additions, 15 multiplications, 2 divisions, 1 square roots, 2 sines
-    inverse, all 2 branches open: 40 additions, 28 multiplications, 4 divisions, 1 square roots, 4 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
+    inverse, all 2 branches: 40 additions, 28 multiplications, 4 divisions, 1 square roots, 4 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, in addition: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2
+    sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -57,7 +59,7 @@ class Constants:
         tool_side, offset_a, offset_b = p["tool_side"], p["offset_a"], p["offset_b"]
         self.lowest_a, self.highest_a, self.single_a, self.mid_a = machine._window("a")
         self.lowest_b, self.highest_b, self.single_b, self.mid_b = machine._window("b")
-        # offsets up to this are not noticed
+        # offsets up to this length count as zero
         unnoticed_shift = (
             1e-9 * abs(roll_axis_offset_x)
             + 1e-9 * abs(roll_axis_offset_y)
@@ -85,7 +87,7 @@ class Wrist2(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist2"
-    KEY = "wrist2 27b2f76e9440e3f8"
+    KEY = "wrist2 7ebb3b77cdc6cf93"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Yaw about Z", multi_turn=True),
         Axis(
@@ -258,7 +260,7 @@ class Wrist2(OrientationKinematics):
         r13_of_a = one_by_tool_side * r13
         r23_of_a = one_by_tool_side * r23
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
-        # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+        # polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
         # reference
         if radius_a > 1e-11:
             direction_x_a = sigma_roll * r13_of_a

@@ -10,19 +10,21 @@ Axes:
 
 Configuration:
     hand: 1 = down, 2 = up, 0 = automatic, 3 = both coincide
-    period of A: signed number of the turn, 0 = open: see `inverse`
-    period of B: signed number of the turn, 0 = open: see `inverse`
-    period of C: signed number of the turn, 0 = open: see `inverse`
+    period of A: signed number of the turn, 0 = automatic: see `inverse`
+    period of B: signed number of the turn, 0 = automatic: see `inverse`
+    period of C: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
     a_parallel_c: type 1
 
-Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
+counted together):
     forward: 22 additions, 29 multiplications, 0 divisions, 0 square roots, 6 sines
     inverse: 25 additions, 21 multiplications, 3 divisions, 1 square roots, 3 sines
-    inverse, all 2 branches open: 63 additions, 43 multiplications, 6 divisions, 1 square roots, 6 sines
-    repair of a frame, more: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, more: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2 sines
+    inverse, all 2 branches: 63 additions, 43 multiplications, 6 divisions, 1 square roots, 6 sines
+    repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
+    a branch at a singular pose, in addition: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2
+    sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -71,7 +73,7 @@ class Wrist3(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist3"
-    KEY = "wrist3 5834051e02e6b1bb"
+    KEY = "wrist3 9f89bd3a09fe5c70"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Turn about Z", multi_turn=True),
         Axis(name="B", kind="rotary", unit="deg", meaning="Turn about the turned -Y", multi_turn=True),
@@ -250,7 +252,7 @@ class Wrist3(OrientationKinematics):
         if not reasonable(ref_a, ref_b, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
-        # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+        # polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
         # reference
         if radius_c > 1e-11:
             direction_x_c = sigma_hand * r31

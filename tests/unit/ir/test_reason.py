@@ -9,7 +9,8 @@ import sympy as sp
 
 from derive.ir.passes import hoist, normalise, untold, with_inputs
 from derive.ir.primitives import Select
-from derive.ir.program import Let, Output, Program, Require, Status, reads, rewritten, told
+from derive.ir.program import Let, Output, Program, Require, Status, reads, rewritten
+from derive.ir.program import reason_expressions as told
 from derive.ir.reason import Kind, OtherTurn, Reason, Subject, Unit, Why, about, about_joint
 from derive.ir.symbols import real
 from derive.ir.verify import BrokenProgram

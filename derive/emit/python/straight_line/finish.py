@@ -13,7 +13,7 @@ from derive.optimize.without_periods import turns_that_count
 
 @dataclass(frozen=True)
 class Function:
-    """A function or a method: its name, arguments and result, what it says of itself, its statements."""
+    """A function or a method: its name, arguments and result, its docstring, its statements."""
 
     name: str
     arguments: str
@@ -21,14 +21,14 @@ class Function:
     summary: str
     body: list[str]
     constants: list[str]
-    """What it reads of the machine."""
+    """The constants of the machine that it reads."""
 
 
 def finish(kin: Kinematics, trusted: Program) -> Function | None:
-    """What makes answers of the axes that trusted input gives.
+    """The function that turns axes from trusted input into answers: it chooses turns and tests limits.
 
-    trusted: one branch for such input. None where an axis alone does not know its turn or its limits: with gear
-    coupling the reference is compared joint by joint, and a limited quantity is one of several axes.
+    trusted: one branch for such input. None where an axis value alone determines neither its turn nor its limits: with
+    gear coupling the reference is compared joint by joint, and a limited quantity depends on several axes.
     """
     if kin.limited or any(joint.coupling != 0 or joint.is_geared for joint in kin.period_joints):
         return None
@@ -44,7 +44,7 @@ def finish(kin: Kinematics, trusted: Program) -> Function | None:
 
 
 def _near(kin: Kinematics, open_joints: list[Joint]) -> list[str]:
-    """What the turns are nearest to: where one value is inside the limits, the middle of these."""
+    """The values next to which turns are chosen: the reference, or the middle of limits that hold one value."""
     if not open_joints:
         return []
     targets = [joint.reference.name if joint in open_joints else "_" for joint in kin.mechanism.joints]

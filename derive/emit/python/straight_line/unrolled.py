@@ -54,24 +54,24 @@ from derive.optimize.joining import joined
 from derive.optimize.without_periods import without_chosen_turns
 
 NO_OFFSETS = "no_offsets"
-"""Whether all axes have their zero where the joints have it: then nothing is added to them."""
+"""Whether all axes have their zero where the joints have it, so that no offset is added."""
 _SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True, is_trusted=True)
 _FRAME = Argument("frame", "PlainFrame", (POSITION, ROTATION))
 _REFUSED = "refused"
-"""What stands for a refusal, by the number of its status: None, unless somebody asks for the status."""
+"""The value in place of a refusal, by the number of its status: None, unless a caller asks for the status."""
 _WHERE_REFUSED = Argument(_REFUSED, "Sequence[Any] = NOTHING", ())
 
 
 @dataclass(frozen=True)
 class Unrolled:
-    """What the templates need: the functions, the constants that they read, the primitives that they call."""
+    """The values for the templates: the functions, the constants that they read, the primitives that they call."""
 
     functions: tuple[Function, ...]
     taken: list[str]
-    """The statements that take the constants."""
+    """The statements that read the constants into local names."""
     constants: list[str]
     parts: list[str]
-    """The statements that compute what depends on constants alone."""
+    """The statements that compute values from constants alone."""
     primitives: list[str]
 
     @property
@@ -81,7 +81,7 @@ class Unrolled:
 
     @property
     def of_turns(self) -> list[str]:
-        """What the last of them reads of configurations."""
+        """The names of the configuration that the last function reads."""
         names = ("FIRST_TURN", "SECOND_TURN", "UNREACHABLE")
         return [n for n in names if self.can_finish and any(n in line for line in self.functions[-1].body)]
 
@@ -97,8 +97,8 @@ def is_trusted(kin: Kinematics) -> bool:
 
 
 def unrolled(kin: Kinematics) -> Unrolled:
-    """The functions on plain numbers. Near a fold they have no answer, an empty tuple: one branch
-    after the other has.
+    """The functions on plain numbers. Near a fold they have no answer and return an empty tuple: there the branches are
+    solved one after the other.
     """
     lines_of, kin = straight_lines(kin), away_from_folds(kin)
     methods, parts = _methods(kin, lines_of), lines_of.parts
@@ -120,7 +120,7 @@ def unrolled(kin: Kinematics) -> Unrolled:
 
 
 def trusted_branch(kin: Kinematics) -> Function:
-    """The one branch of a machine without branches and folds, for input that is trusted: a method."""
+    """The method for trusted input of a machine without branches and folds."""
     kin = replace(kin, branch=untold(kin.branch))
     method = _single(kin, without_chosen_turns(trusted(kin)))
     written = _Written.of(method, kin.setup.lets())
@@ -159,7 +159,7 @@ def _optional(kin: Kinematics) -> Argument:
 
 
 def _refusals(answer: Callable[[Status], str]) -> Refusals:
-    """As the answer says, and nothing near a fold."""
+    """Refusals that return the given answer, and an empty tuple near a fold."""
     return Refusals(lambda status: "()" if status is Status.OK else answer(status))
 
 
@@ -174,7 +174,7 @@ def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Functi
 
 
 def _direction(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
-    """One branch; its return once more without the offsets, read by it or in constants, where all of them are zero."""
+    """One branch; where all offsets are zero, a second return statement leaves them out."""
     written = _Written.of(method, known)
     lines = item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)
     zero = {joint.offset: sp.Integer(0) for joint in kin.mechanism.joints}
@@ -191,7 +191,7 @@ def _texts(values: Iterable[sp.Expr]) -> str:
 
 @dataclass(frozen=True)
 class _Written:
-    """A method as it is written down: with a name for what is read more than once."""
+    """A method as it is written: with a name for every value that is read more than once."""
 
     method: Method
     items: tuple[Item, ...]
@@ -200,7 +200,7 @@ class _Written:
 
     @classmethod
     def of(cls, method: Method, known: Sequence[Let]) -> _Written:
-        """known: what the constants are that it reads."""
+        """known: the bindings of the constants that it reads."""
         method = replace(method, program=without_conversions(method.program))
         wanted = [o.value for o in method.program.outputs]
         items = joined(scheduled(guarded(method.program.body, known), wanted), wanted)
@@ -215,7 +215,7 @@ class _Written:
 
 
 def _slots(kin: Kinematics, values: Mapping[str, sp.Expr]) -> str:
-    """The axes of every slot, or what stands for its refusal."""
+    """The axes of every slot, or the value in place of its refusal."""
     slots = []
     for choice in choices(len(kin.branches)):
         refusal = values[suffixed(REFUSAL, signs(kin), choice)]

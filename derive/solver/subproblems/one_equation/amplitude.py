@@ -1,4 +1,4 @@
-"""The amplitude of a cos u + b sin u = e: h = |(a, b)| as a product, and what is known of it."""
+"""The amplitude of a cos u + b sin u = e: h = |(a, b)| as a product, and its properties."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ class Amplitude:
     is_fixed: bool = False
     """Whether h never vanishes, so that it divides as it is."""
     told: sp.Expr | None = None
-    """(h - e)(h + e) made of lengths, where the factors are not: what is missing is read off it."""
+    """(h - e)(h + e) made of lengths, where the factors are not: the amount of the reason is computed from it."""
     aimable: sp.Basic | None = None
     """Whether h is long enough to determine the angle, where joints can make it vanish; else None."""
     left: sp.Expr = sp.Integer(0)
-    """e where h is too short to be divided by: then it has to vanish."""
+    """e where h is too short to be a divisor: e then has to vanish."""
     square: sp.Expr | None = None
     """The square of h, where it has no unit; else None."""
 
@@ -53,7 +53,7 @@ def amplitude_of(problem: Problem, equation: Equation, angle: sp.Symbol, row: Ro
     naming = Naming(problem, equation.lets)
     determinant = a * sine(angle) - b * cosine(angle)
     shared = sp.Mul.make_args(sp.factor(sp.gcd(a, b)))
-    common = sp.Mul(*[f for f in shared if f.is_positive])  # it divides, and keeps every sign
+    common = sp.Mul(*[f for f in shared if f.is_positive])  # dividing by it keeps every sign
     along, across = cancelled(a / common), cancelled(b / common)
     is_fixed = common.is_number or problem.is_never_zero(common)
     if along.is_number and across.is_number:
@@ -134,7 +134,7 @@ def _vanishing(
     effective: sp.Expr, sizes: tuple[sp.Expr, sp.Expr], angle: sp.Symbol, *, is_moved: bool
 ) -> tuple[sp.Symbol, sp.Basic | None, tuple[Statement, ...]]:
     """The effective length as a divisor, where it can vanish; the condition that it determines the angle, where joints
-    make it vanish; the statements. An arm of parameters that is too short to aim is refused.
+    make it vanish; the statements. An arm of parameters that is too short to be aimed is refused.
     """
     common, unit = sizes
     divisor = real(f"divisor_{angle.name}")
@@ -153,8 +153,8 @@ def _law_of_cosines(
     right: sp.Expr,
     turned: tuple[sp.Expr, sp.Expr, sp.Expr],
 ) -> tuple[sp.Expr, tuple[sp.Expr, sp.Expr] | None, sp.Expr | None]:
-    """e; the factors h - e and h + e where a triangle is recognised; their product in lengths where the factors are
-    not.
+    """Returns e; the factors h - e and h + e where a triangle is recognised; and their product in lengths where the
+    factors are not made of lengths.
 
     In a triangle with the sides D and k and the third side of square M, h = 2 k D, and the factors are M - (D - k)^2
     and (D + k)^2 - M, or the reverse. D is a multiple of the effective length, and k the arm that turns. Expanded, the

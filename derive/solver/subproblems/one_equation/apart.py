@@ -1,7 +1,7 @@
 """Apart:  two equations between which a length was eliminated, where that length drops out of both.
 
-The difference of two equations says nothing where both coefficients of the eliminated length vanish: a slide that
-points the way of another one. There the two hold without it, and are a pair for the angle u: a1 cos u + b1 sin u = e1,
+The difference of two equations says nothing where both coefficients of the eliminated length vanish: where one slide is
+parallel to another. There the two equations are a pair for the angle u: a1 cos u + b1 sin u = e1,
 a2 cos u + b2 sin u = e2. One root. Where their determinant vanishes, too, nothing determines u.
 """
 
@@ -22,8 +22,8 @@ Pair = tuple[sp.Expr, sp.Expr]
 def determined_apart(
     problem: Problem, equation: Equation, angle: sp.Symbol, free: Pair
 ) -> tuple[tuple[Let, ...], Pair]:
-    """Cosine and sine of the angle where the equation says nothing, and the statements that bind the names in them;
-    `free` where the two equations determine neither.
+    """Cosine and sine of the angle where the equation says nothing, and the statements that bind the names in them.
+    Where the two equations do not determine the angle, these are `free`.
     """
     read = [linear_coefficients(e, (cosine(angle), sine(angle))) for e in equation.apart]
     rows = [row for row in read if row is not None]

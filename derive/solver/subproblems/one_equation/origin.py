@@ -36,7 +36,7 @@ def from_origin(problem: Problem, equation: Equation, value: sp.Expr, arm: sp.Ex
 
 
 def _mean_rate(value: sp.Expr, name: sp.Symbol, origin: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
-    """The mean of the derivatives at both ends."""
+    """The mean of the derivatives at the origin and at the commanded position."""
     rate = sp.diff(value, name)
     return sp.expand((rate + rate.xreplace(origin)) / 2)
 

@@ -1,10 +1,10 @@
-"""The other leg of a swing, from the two equations that do not hold it.
+"""The other leg of a swing, from the two equations of the other coordinates.
 
 A step that solves a cos u + b sin u = e for u takes the other leg, a sin u - b cos u, from h^2 - e^2, where h is the
 length of (a, b). Where a chain is nearly stretched along the coordinate of this equation, both are as long as the
 chain, and their difference has lost the digits of the leg. The squares of the other two coordinates add up to
-H^2 = leg^2 + d^2, in which H is commanded and d known: so leg^2 = (H - d)(H + d), with all digits of H. Where H is the
-longer one of H and h it is the other way round, and leg^2 = (h - e)(h + e).
+H^2 = leg^2 + d^2, in which H is commanded and d known: so leg^2 = (H - d)(H + d), with all digits of H. Where H is
+longer than h, leg^2 = (h - e)(h + e) keeps more digits, and is taken.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Leg = tuple[sp.Expr, sp.Expr, tuple[Let, ...]]
 def other_leg(
     problem: Problem, equation: Equation, angle: sp.Symbol, leg: sp.Expr, known: tuple[Let, ...]
 ) -> Leg | None:
-    """H and d of this leg; None where no two other equations hold them. known: what the step binds already."""
+    """H and d of this leg; None where no two other equations give them. known: the bindings of the step so far."""
     others = [e for e in problem.equations if e.is_length and e.label != equation.label]
     found = (_of_pair(problem, pair, angle, leg, known) for pair in combinations(others, 2))
     return next(filter(None, found), None)

@@ -1,8 +1,8 @@
 """One less an entry of a rotation, without cancellation.
 
-Near one the entry has lost the digits of the angle: 1 - cos u is u^2 / 2. The other two entries of its column are as
-small as u and hold all digits. The squares of all three add up to one, so 1 - r = (p^2 + q^2) / (1 + r), and 1 + r is
-the same near minus one.
+Where an entry r = cos u is near one, it has lost the digits of u: 1 - cos u is u^2 / 2. The other two entries p and q
+of its column are as small as u and hold all digits. Since p^2 + q^2 + r^2 = 1, 1 - r = (p^2 + q^2) / (1 + r); near
+minus one, 1 + r = (p^2 + q^2) / (1 - r).
 
 The entry may be compared with an arm h that earlier joints have folded, as cos u cos v is with cos v. Near h it is near
 one, too, and h^2 - r^2 = p^2 + q^2 - (1 - h^2), where 1 - h^2 is the square of a sine, sin v. All of these are small.
@@ -19,7 +19,7 @@ from derive.ir.symbols import cosine, sine
 from derive.solver.subproblems.one_equation.triangle import is_square, with_units
 
 _SAME = 1e-15
-"""Two numbers that differ by less than this share are one number: products of sines and cosines of fixed angles."""
+"""Two numbers that differ by less than this share are equal: products of sines and cosines of fixed angles."""
 _LARGE = sp.Rational(1, 2)
 """An entry larger than this is nearer to one than to zero."""
 Factors = tuple[sp.Expr, sp.Expr]
@@ -28,11 +28,11 @@ Factors = tuple[sp.Expr, sp.Expr]
 def with_small_entries(
     problem: Problem, equation: Equation, factors: Factors, square: sp.Expr | None
 ) -> tuple[Factors, tuple[Let, ...], sp.Expr | None]:
-    """The factors 1 - cosine and 1 + cosine, times a scale; the statements that bind what they read; and the terms of
-    the squared sine, all positive, None where they are not known. Those that are a multiple of one less an entry are
-    written by the other entries.
+    """The factors 1 - cosine and 1 + cosine, times a scale; the statements that bind the names in them; and the sum of
+    the sizes of the terms of the squared sine, None where these are not known. A factor that is a multiple of one less
+    an entry is computed from the other entries of its column.
 
-    square: that of the arm that the entry is compared with, by sines and cosines alone; None where it is not.
+    square: the square of the arm with which the entry is compared, by sines and cosines alone; None where it has none.
     """
     column = equation.column
     if column is None:

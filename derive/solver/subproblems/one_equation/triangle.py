@@ -1,4 +1,4 @@
-"""The triangle whose law of cosines the right side of an equation is, and its lengths in factors."""
+"""The triangle in which the right side of an equation is the law of cosines, and its lengths in factored form."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Triangle:
 
     @property
     def factors(self) -> tuple[sp.Expr, sp.Expr]:
-        """1 - cosine and 1 + cosine of the angle, times the same product."""
+        """1 - cosine and 1 + cosine of the angle, times twice the product of distance and side."""
         less, more = self.third - (self.distance - self.side) ** 2, (self.distance + self.side) ** 2 - self.third
         if is_square(self.third):
             less, more = in_lengths(less), in_lengths(more)
@@ -37,8 +37,8 @@ class Triangle:
 
 
 def triangle_of(problem: Problem, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr, sp.Expr]) -> Triangle | None:
-    """The triangle whose law of cosines a right side is; None where the square of its third side is not simpler than
-    this.
+    """The triangle in which a right side is the law of cosines; None where the square of the third side is not simpler
+    than the right side.
     """
     common, square, effective = turned
     number, arm = common.as_coeff_Mul()
@@ -58,7 +58,7 @@ def triangle_of(problem: Problem, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr
 
 
 def with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
-    """A normal form with cos^2 + sin^2 of known angles written for one, so that squares can be recognised.
+    """A normal form in which cos^2 + sin^2 of known angles is inserted, so that squares can be recognised.
 
     The normal form of p^2 + q^2 - (p cos u + q sin u)^2 has 1 - cos^2 u for sin^2 u. With p^2 (cos^2 u + sin^2 u) for
     p^2, and the same for q^2, it is (p sin u - q cos u)^2.
@@ -77,7 +77,7 @@ def with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
 
 @cache
 def _factored(value: sp.Expr) -> sp.Expr:
-    """The value in factors; their coefficients may be the roots of numbers that occur in it."""
+    """The value in factored form; the coefficients may be the roots of numbers that occur in it."""
     roots = [r for r in value.atoms(sp.Pow) if r.is_number and not r.is_rational]
     return sp.factor(value, extension=roots) if roots else sp.factor(value)
 
@@ -88,12 +88,12 @@ def is_square(value: sp.Expr) -> bool:
 
 
 def in_lengths(value: sp.Expr) -> sp.Expr:
-    """The value in factors, which read as comparisons of lengths."""
+    """The value in factored form, where each factor reads as a comparison of lengths."""
     return without_minus(factored(value))
 
 
 def without_minus(product: sp.Expr) -> sp.Expr:
-    """A leading minus goes into the factor with the most minus signs."""
+    """The product without a leading minus, which goes into the factor with the most minus signs."""
     factors = list(sp.Mul.make_args(product))
     sums = [f for f in factors if f.is_Add]
     if -1 not in factors or not sums:

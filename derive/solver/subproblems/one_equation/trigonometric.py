@@ -5,11 +5,11 @@ Two roots. Let h = |(a, b)|, C = e / h and S = sigma sqrt((h - e)(h + e)) / h, t
 u and the direction of (a, b). Then cos u = (a C - b S) / h and sin u = (b C + a S) / h. The factors h - e and h + e
 stay products: expanded they lose half the digits. Where h is a root, C and S come from these factors alone,
 whose ratio is the square of the tangent of half the angle: so C^2 + S^2 = 1 to rounding, whatever digits e has lost.
-Where h is a product of lengths of the machine, their sum 2 h is one, too, and nothing is divided. Determinant a sin u -
-b cos u = h S: sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution. Where it is 1 both roots
-meet (degenerate case). Where joints can make h vanish, u is free there: e must vanish, too. Where h is made of
-parameters and commanded values alone, a pose is refused whose h is below 1e-9 of the length that it is compared with:
-the arm then has no length that u could turn.
+Where h is a product of lengths of the machine, so is the sum 2 h of the factors, and nothing is divided. Determinant
+a sin u - b cos u = h S: sigma is its sign. Guard: |C| <= 1 but for rounding, else there is no solution. Where |C| is 1
+both roots meet (degenerate case). Where joints can make h vanish, u is free there, and e must vanish, too. Where h is
+made of parameters and commanded values alone, a pose with h below 1e-9 of the length that it is compared with is
+refused: u then has no arm to turn.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator
 
 
 def lateral(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
-    """Those of these angles that aim an arm at a commanded point; the others give a cosine alone."""
+    """The angles of `trigonometric` that aim an arm at a commanded point; the others come from a cosine alone."""
     for equation, angle, row, is_aimed in _rows(problem, equations):
         if is_aimed:
             yield _with_arm(aimed_at_point(problem, equation, angle, row), row)
@@ -99,14 +99,14 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
     (less, more), column, terms = with_small_entries(problem, equation, (less, more), amplitude.square)
     is_fine = sp.Mul(less, more).has(Select)
     larger, leg = tuple[Let, ...](), None
-    if amplitude.aimable is not None:  # joints change the arm, which may be stretched along the coordinate
+    if amplitude.aimable is not None:  # joints change the arm, which may lie along the coordinate
         leg = other_leg(problem, equation, angle, amplitude.determinant, amplitude.naming.lets)
     if leg is not None:
         (less, more), larger, column = with_leg(angle, (length, right), leg)
         terms = None
     uncounted = 0 if terms is None else int(sp.count_ops([less, more]) - sp.count_ops(list(told)))
     scale: tuple[Let, ...] = (
-        Let(twice, less_cos + plus_cos, "twice the scale, as the sum of both: then cosine and sine agree"),
+        Let(twice, less_cos + plus_cos, "sum of both, twice the scale: cosine² + sine² is then 1"),
         Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
     )
     below: sp.Expr = divisor
@@ -155,8 +155,8 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
 def _cosine(
     angle: sp.Symbol, amplitude: Amplitude, name: sp.Symbol, value: sp.Expr, factors: tuple[sp.Expr, sp.Expr]
 ) -> tuple[Statement, ...]:
-    """The cosine of the swing, and the condition that there is one. Near the place where the arm vanishes rounding of
-    the equation moves it far, and beyond one: there it is one.
+    """The cosine of the swing, and the condition that it exists. Near the place where the arm vanishes, rounding of the
+    equation may move the cosine beyond one: there it is set to one.
     """
     told = sp.Mul(*factors) if amplitude.told is None else amplitude.told
     known = (*amplitude.naming.lets, *(s for s in amplitude.guard if isinstance(s, Let)))
@@ -179,8 +179,8 @@ def _turned(
     amplitude: Amplitude,
     swing: tuple[sp.Symbol, sp.Symbol],
 ) -> Iterator[Let]:
-    """Cosine and sine of the angle from those of the swing; where there is no arm those that the two equations give
-    between which a length was eliminated, else the reference.
+    """Cosine and sine of the angle from those of the swing. Without an arm they come from the two equations between
+    which a length was eliminated, else from the reference.
     """
     along, across = amplitude.cos_unit, amplitude.sin_unit
     cos_name, sin_name = swing

@@ -99,7 +99,7 @@ class ArrayPrograms(Programs):
         slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried * cos_q1_tried) * one_by_distance_q1_tried
         slope_across_q1_tried = wanted_shoulder * slope_wrist_y_tried
         slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried * sin_q1_tried) * one_by_distance_q1_tried
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried = elsewhere(
             (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
@@ -122,7 +122,7 @@ class ArrayPrograms(Programs):
         sum_in_one_plus_cos_q3_tried_2 = k.a2_minus_effective_q3_tried + reach_tried
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = -sum_in_one_plus_cos_q3_tried * sum_in_one_plus_cos_q3_tried_2
-        # twice the scale, as the sum of both: then cosine and sine agree
+        # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = k.j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
         slope_wrist_x_from_q1_tried = (
@@ -230,7 +230,7 @@ class ArrayPrograms(Programs):
         slope_sin_q2_tried = (
             slope_across_q2_tried - slope_length_q2_tried * sin_q2_tried
         ) * one_by_root_of_length_q2_tried
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried = elsewhere(
             (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
@@ -330,7 +330,7 @@ class ArrayPrograms(Programs):
         cos_q1_tried = along_q1_tried / length_q1_tried
         across_q1_tried = wanted_shoulder * wrist_y_tried
         sin_q1_tried = across_q1_tried / length_q1_tried
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         cos_q1_tried, sin_q1_tried = elsewhere(
             (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
             (cos_q1_tried, sin_q1_tried),
@@ -353,7 +353,7 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_tried = (reach_tried - k.a2_minus_effective_q3_tried) * (
             k.a2_minus_effective_q3_tried + reach_tried
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
+        # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         divisor_of_cos_q3_tried = select(sum_q3_tried > 0.0, sum_q3_tried, 1.0)
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
@@ -384,7 +384,7 @@ class ArrayPrograms(Programs):
         )
         cos_q2_tried = along_q2_tried / length_q2_tried
         sin_q2_tried = across_q2_tried / length_q2_tried
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         cos_q2_tried, sin_q2_tried = elsewhere(
             (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried),
@@ -977,7 +977,7 @@ class ArrayPrograms(Programs):
         one_plus_cos_q3_closed = (reach_closed - k.a2_minus_effective_q3_tried) * (
             k.a2_minus_effective_q3_tried + reach_closed
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
+        # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
         divisor_of_cos_q3_closed = select(sum_q3_closed > 0.0, sum_q3_closed, 1.0)
         cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
@@ -1039,7 +1039,7 @@ class ArrayPrograms(Programs):
             cos_q1_closed = along_q1_closed / distance_q1_closed
             across_q1_closed = sigma_shoulder * wrist_y_closed
             sin_q1_closed = across_q1_closed / distance_q1_closed
-            # where it is singular: the angle of the reference
+            # at a singularity: the angle of the reference
             cos_q1_closed, sin_q1_closed = elsewhere(
                 distance_q1_closed > k.machine_scale_times_free_angle,
                 (cos_q1_closed, sin_q1_closed),
@@ -1069,7 +1069,7 @@ class ArrayPrograms(Programs):
             length_q2_closed = select(sum_in_length_q2_closed > 0.0, root(sum_in_length_q2_closed), 1.0)
             cos_q2_closed = along_q2_closed / length_q2_closed
             sin_q2_closed = across_q2_closed / length_q2_closed
-            # where it is singular: the angle of the reference
+            # at a singularity: the angle of the reference
             cos_q2_closed, sin_q2_closed = elsewhere(
                 reach_closed > k.machine_scale_times_free_angle,
                 (cos_q2_closed, sin_q2_closed),
@@ -1103,7 +1103,7 @@ class ArrayPrograms(Programs):
 
             direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
             direction_y_q4_closed = -sigma_wrist * r23_from_q1_closed
-            # polar coordinates: angle q4 from the r33 and r23 equations; where it is singular: the angle of the
+            # polar coordinates: angle q4 from the r33 and r23 equations; at a singularity: the angle of the
             # reference
             direction_x_q4_closed, direction_y_q4_closed = elsewhere(
                 radius_q4_closed > 1e-11,

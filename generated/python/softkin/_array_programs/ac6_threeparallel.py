@@ -139,7 +139,7 @@ class ArrayPrograms(Programs):
 
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - k.d4 * wrist_y) / distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + k.d4 * wrist_x) / distance_q1_squared
-        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > k.machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -580,7 +580,7 @@ class ArrayPrograms(Programs):
         cos_q6_before_q6_of_q3 = along_q6 / radius_q6
         across_q6 = sigma_wrist * r22_from_q1
         sin_q6_before_q6_of_q3 = across_q6 / radius_q6
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3 = elsewhere(
             radius_q6 > 1e-11,
             (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
@@ -752,7 +752,7 @@ class ArrayPrograms(Programs):
         arm_across_q2 = k.a3 * sin_q3
         direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
         direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
-        # rotation by q2 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         direction_x_q2, direction_y_q2 = elsewhere(
             reach > k.machine_scale_times_free_angle,

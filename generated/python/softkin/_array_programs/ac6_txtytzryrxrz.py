@@ -100,7 +100,7 @@ class ArrayPrograms(Programs):
 
         direction_x_a4 = sigma_wrist * r33
         direction_y_a4 = sigma_wrist * r13
-        # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+        # polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
         # reference
         direction_x_a4, direction_y_a4 = elsewhere(
             radius_a4 > 1e-11, (direction_x_a4, direction_y_a4), elsewhere_direction_x_a4, (ref_a4,)

@@ -145,7 +145,7 @@ class ArrayPrograms(Programs):
 
         cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - k.d3 * wrist_y) / distance_q1_squared
         sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + k.d3 * wrist_x) / distance_q1_squared
-        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
             distance_q1 > k.machine_scale_times_free_angle,
             (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
@@ -260,8 +260,7 @@ class ArrayPrograms(Programs):
         one_less_cos_q3 = (k.a2_plus_effective_q3 + reach) * (k.a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - k.a2_minus_effective_q3) * (k.a2_minus_effective_q3 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = select(sum_q3 > 0.0, sum_q3, 1.0)
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
@@ -287,7 +286,7 @@ class ArrayPrograms(Programs):
         )
         cos_q2 = along_q2 / length_q2
         sin_q2 = across_q2 / length_q2
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         cos_q2, sin_q2 = elsewhere(
             reach > k.machine_scale_times_free_angle, (cos_q2, sin_q2), elsewhere_cos_q2, (ref_a2,)
         )
@@ -316,7 +315,7 @@ class ArrayPrograms(Programs):
 
         direction_x_q4 = -sigma_hand * r13_from_q123
         direction_y_q4 = sigma_hand * r23_from_q1
-        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+        # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
         # reference
         direction_x_q4, direction_y_q4 = elsewhere(
             radius_q4 > 1e-11, (direction_x_q4, direction_y_q4), elsewhere_direction_x_q4, (ref_a4,)

@@ -58,7 +58,8 @@ class ArrayPrograms(OrientationPrograms):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_c), Status.BAD_INPUT)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         open_c = select(k.single_c, k.mid_c, ref_c)  # C: without a commanded turn, the value nearest to this
@@ -108,7 +109,8 @@ class ArrayPrograms(OrientationPrograms):
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         status = passed(rotation)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)

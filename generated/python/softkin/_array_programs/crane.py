@@ -84,7 +84,7 @@ class ArrayPrograms(Programs):
             direction_y_theta = sin(reference_theta)
             return (direction_x_theta, direction_y_theta)
 
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         direction_x_theta, direction_y_theta = elsewhere(
             radius_theta > k.machine_scale_times_free_angle, (x, y), elsewhere_direction_x_theta, (ref_theta,)
         )
@@ -101,7 +101,7 @@ class ArrayPrograms(Programs):
             direction_y_phi = sin(value_in_direction_y_phi)
             return (direction_x_phi, direction_y_phi)
 
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         direction_x_phi, direction_y_phi = elsewhere(
             radius_phi > k.machine_scale_times_free_angle, (z, radius_theta), elsewhere_direction_x_phi, (ref_phi,)
         )
@@ -143,7 +143,7 @@ class ArrayPrograms(Programs):
         radius_theta = sqrt(x * x + y * y)  # polar coordinates: the radius at angle theta
         radius_phi = sqrt(radius_theta * radius_theta + z * z)  # polar coordinates: the radius at angle phi
         length_free_phi = k.one_by_machine_scale * radius_phi
-        # 0 where nothing determines the axis, else 1 or -1
+        # 0 where no equation determines the axis, else 1 or -1
         margin_free_phi = select(length_free_phi > 1e-11, 1.0, 0.0)
         # R where the machine has no pose
         require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)

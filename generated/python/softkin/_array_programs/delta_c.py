@@ -135,7 +135,8 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a1, ref_a2, ref_a3, ref_a4, x, y, z), Status.BAD_INPUT)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         span_1_x = x - k.base_radius_minus_plate_radius  # rod 1: known part of its vector
@@ -148,8 +149,7 @@ class ArrayPrograms(Programs):
         arm_length_plus_effective_a1 = k.arm_length + divisor_a1
         # 1 + cosine, times the scale
         one_plus_cos_a1 = arm_length_plus_effective_a1 * arm_length_plus_effective_a1 - third_square_a1
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         span_2_x = x - k.half_plate_radius_minus_half_base_radius  # rod 2: known part of its vector
@@ -170,8 +170,7 @@ class ArrayPrograms(Programs):
         half_effective_a2_minus_arm_length = half_effective_a2 - k.arm_length
         # 1 + cosine, times the scale
         one_plus_cos_a2 = third_square_a2 - half_effective_a2_minus_arm_length * half_effective_a2_minus_arm_length
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         span_3_y = k.sum_in_pivot_2_y + y
@@ -188,8 +187,7 @@ class ArrayPrograms(Programs):
         half_effective_a3_minus_arm_length = half_effective_a3 - k.arm_length
         # 1 + cosine, times the scale
         one_plus_cos_a3 = third_square_a3 - half_effective_a3_minus_arm_length * half_effective_a3_minus_arm_length
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
@@ -512,7 +510,8 @@ class ArrayPrograms(Programs):
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         status = passed(rotation)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)

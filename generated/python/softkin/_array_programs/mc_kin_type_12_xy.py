@@ -146,8 +146,7 @@ class ArrayPrograms(Programs):
         one_plus_cos_a1 = (k.link_length_1_plus_link_length_2 - divisor_a1) * (
             divisor_a1 - k.link_length_1_minus_link_length_2
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
@@ -170,8 +169,7 @@ class ArrayPrograms(Programs):
         one_plus_cos_a2 = (k.link_length_4_plus_link_length_5 - divisor_a2) * (
             divisor_a2 - k.link_length_5_minus_link_length_4
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         pivot_upper_x = -k.link_length_1 * sin_a1  # rod upper: centre about which it swings

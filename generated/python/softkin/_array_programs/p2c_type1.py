@@ -111,8 +111,7 @@ class ArrayPrograms(Programs):
         one_less_cos_a1 = (divisor_a1 + k.inner_arm_minus_outer_arm) * (divisor_a1 + k.inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (k.inner_arm_plus_outer_arm - divisor_a1) * (divisor_a1 - k.inner_arm_minus_outer_arm)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         span_2_x = k.tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
@@ -122,8 +121,7 @@ class ArrayPrograms(Programs):
         one_less_cos_a2 = (k.inner_arm_plus_outer_arm - divisor_a2) * (divisor_a2 - k.inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + k.inner_arm_minus_outer_arm) * (divisor_a2 + k.inner_arm_plus_outer_arm)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale

@@ -96,7 +96,8 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a1, ref_a2, ref_a3, ref_a4, x, y, z), Status.BAD_INPUT)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # coordinate of the point that the remaining links must reach
@@ -124,7 +125,7 @@ class ArrayPrograms(Programs):
 
         direction_x_a1 = sigma_shoulder * x
         direction_y_a1 = sigma_shoulder * y
-        # polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
+        # polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the
         # reference
         direction_x_a1, direction_y_a1 = elsewhere(
             radius_a1 > k.machine_scale_times_free_angle,
@@ -151,7 +152,7 @@ class ArrayPrograms(Programs):
         arm_across_a2 = k.link_length_2 * cos_a3_from_a2
         direction_x_a2 = arm_across_a2 * wrist_a1_radius + arm_along_a2 * wrist_z
         direction_y_a2 = arm_along_a2 * wrist_a1_radius - arm_across_a2 * wrist_z
-        # rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         direction_x_a2, direction_y_a2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
@@ -274,7 +275,8 @@ class ArrayPrograms(Programs):
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         status = passed(rotation)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)

@@ -90,7 +90,7 @@ class ArrayPrograms(Programs):
         arm_across_a1 = k.link_length_2 * sin_a2_from_a1
         direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
         direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
-        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > k.machine_scale_times_free_angle,

@@ -248,7 +248,8 @@ class ArrayPrograms(StartedPrograms):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a1, ref_a2, ref_a3, x, y, z), Status.BAD_INPUT)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
@@ -271,8 +272,7 @@ class ArrayPrograms(StartedPrograms):
         one_plus_cos_a1 = (k.arm_length_1_minus_rod_length_1 + divisor_a1) * (
             k.arm_length_1_plus_rod_length_1 + divisor_a1
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         arm_2_x = k.platform_2_x * cos_heading - k.platform_2_y * sin_heading
@@ -289,8 +289,7 @@ class ArrayPrograms(StartedPrograms):
         one_plus_cos_a2 = (k.arm_length_2_minus_rod_length_2 + divisor_a2) * (
             k.arm_length_2_plus_rod_length_2 + divisor_a2
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         arm_3_x = k.platform_3_x * cos_heading - k.platform_3_y * sin_heading
@@ -307,8 +306,7 @@ class ArrayPrograms(StartedPrograms):
         one_plus_cos_a3 = (k.arm_length_3_minus_rod_length_3 + divisor_a3) * (
             k.arm_length_3_plus_rod_length_3 + divisor_a3
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
@@ -508,7 +506,8 @@ class ArrayPrograms(StartedPrograms):
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         status = passed(rotation)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)

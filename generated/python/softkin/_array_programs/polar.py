@@ -72,7 +72,7 @@ class ArrayPrograms(Programs):
             direction_y_c = sin(reference_c)
             return (direction_x_c, direction_y_c)
 
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         direction_x_c, direction_y_c = elsewhere(
             radius_c > k.machine_scale_times_free_angle, (x, y), elsewhere_direction_x_c, (ref_c,)
         )
@@ -108,7 +108,8 @@ class ArrayPrograms(Programs):
         y = r * sin_c
         radius_c = sqrt(x * x + y * y)  # polar coordinates: the radius at angle c
         length_free_c = k.one_by_machine_scale * radius_c
-        margin_free_c = select(length_free_c > 1e-11, 1.0, 0.0)  # 0 where nothing determines the axis, else 1 or -1
+        # 0 where no equation determines the axis, else 1 or -1
+        margin_free_c = select(length_free_c > 1e-11, 1.0, 0.0)
         # R where the machine has no pose
         require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
         return (margin_free_c,), status

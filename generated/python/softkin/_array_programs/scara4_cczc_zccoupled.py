@@ -84,11 +84,13 @@ class ArrayPrograms(Programs):
         heading_along: Real
         heading_across: Real
         if k.flange_down:
-            # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+            # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+            # kept
             heading_along = r11 - r22
             heading_across = r12 + r21
         else:
-            # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+            # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+            # kept
             heading_along = r11 + r22
             heading_across = r21 - r12
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
@@ -110,7 +112,7 @@ class ArrayPrograms(Programs):
         arm_across_a1 = k.link_length_2 * sin_a2
         direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
         direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
-        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > k.machine_scale_times_free_angle,
@@ -199,11 +201,13 @@ class ArrayPrograms(Programs):
         heading_along: Real
         heading_across: Real
         if k.flange_down:
-            # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+            # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+            # kept
             heading_along = r11 - r22
             heading_across = r12 + r21
         else:
-            # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+            # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+            # kept
             heading_along = r11 + r22
             heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)

@@ -72,7 +72,8 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a2, ref_a3, ref_a4, x, y, z), Status.BAD_INPUT)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
@@ -103,7 +104,7 @@ class ArrayPrograms(Programs):
         arm_across_a2 = k.link_length_2 * sin_a3
         direction_x_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
         direction_y_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
-        # rotation by a2 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         direction_x_a2, direction_y_a2 = elsewhere(
             reach > k.machine_scale_times_free_angle,
@@ -191,7 +192,8 @@ class ArrayPrograms(Programs):
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         status = passed(rotation)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)

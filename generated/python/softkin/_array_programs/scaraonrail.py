@@ -73,7 +73,8 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a1, ref_a2, ref_a4, ref_e1, x, y, z), Status.BAD_INPUT)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         reference_e1 = ref_e1 - k.offset_e1
@@ -97,7 +98,7 @@ class ArrayPrograms(Programs):
         arm_across_a1 = k.link_length_2 * sin_a2
         direction_x_a1 = arm_across_a1 * y + arm_along_a1 * wrist_x
         direction_y_a1 = arm_along_a1 * y - arm_across_a1 * wrist_x
-        # rotation by a1 that takes the arm to its target point; where it is singular: the angle of the
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         direction_x_a1, direction_y_a1 = elsewhere(
             reach > k.machine_scale_times_free_angle,
@@ -182,7 +183,8 @@ class ArrayPrograms(Programs):
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
         status = passed(rotation)
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)

@@ -85,7 +85,7 @@ class ArrayPrograms(OrientationPrograms):
 
         direction_x_a = sigma_roll * r13_of_a
         direction_y_a = sigma_roll * r23_of_a
-        # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+        # polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
         # reference
         direction_x_a, direction_y_a = elsewhere(
             radius_a > 1e-11, (direction_x_a, direction_y_a), elsewhere_direction_x_a, (ref_a,)

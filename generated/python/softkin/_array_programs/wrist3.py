@@ -90,7 +90,7 @@ class ArrayPrograms(OrientationPrograms):
 
         direction_x_c = sigma_hand * r31
         direction_y_c = -sigma_hand * r32
-        # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+        # polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
         # reference
         direction_x_c, direction_y_c = elsewhere(
             radius_c > 1e-11, (direction_x_c, direction_y_c), elsewhere_direction_x_c, (ref_c,)

@@ -56,7 +56,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return 8 * (refused[Status.UNREACHABLE],)
             ahead_q1_before_q1_for_q3 = 0.0
-        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             d4_times_wrist_y = d4 * wrist_y
@@ -79,7 +79,7 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1 = r22 * cos_q1_before_q1_for_q3_left - r12 * sin_q1_before_q1_for_q3_left
         # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = -(r21_from_q1 / radius_q6)
             sin_q6_before_q6_of_q3_down = r22_from_q1 / radius_q6
@@ -367,7 +367,7 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1 = r22 * cos_q1_before_q1_for_q3_right - r12 * sin_q1_before_q1_for_q3_right
         # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = -(r21_from_q1 / radius_q6)
             sin_q6_before_q6_of_q3_down = r22_from_q1 / radius_q6
@@ -752,7 +752,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return None
             ahead_q1_before_q1_for_q3 = 0.0
-        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d4 * wrist_y) / divisor_q1
@@ -767,7 +767,7 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1 = r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3
         # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_q6 > 1e-11:
             along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6 / radius_q6

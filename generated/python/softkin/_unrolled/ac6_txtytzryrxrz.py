@@ -41,7 +41,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3 = offset_a3 + wrist_z
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
         if radius_a4 > 1e-11:
-            # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+            # polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
             # reference
             direction_x_a4_upright = r33
             direction_y_a4_upright = r13
@@ -57,13 +57,13 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a6_flipped = 180.0 + axis_a6_upright
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
-            # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+            # polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
             # reference
             direction_x_a4_upright = cos(reference_a4)
             direction_y_a4_upright = sin(reference_a4)
             scaled_r11_from_a4 = direction_x_a4_upright * r11 - direction_y_a4_upright * r31
             direction_y_a6 = direction_y_a4_upright * r32 - direction_x_a4_upright * r12
-            # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+            # polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
             # reference
             direction_x_a4_flipped = direction_x_a4_upright
             direction_y_a4_flipped = direction_y_a4_upright
@@ -100,7 +100,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - flange_x * r21 - flange_y * r22 - flange_z * r23
         wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
-        # polar coordinates: angle a4 from the r33 and r13 equations; where it is singular: the angle of the
+        # polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
         # reference
         if radius_a4 > 1e-11:
             direction_x_a4 = sigma_wrist * r33

@@ -64,12 +64,11 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             d3_times_wrist_y = d3 * wrist_y
@@ -115,7 +114,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         quotient_in_axis_a5_front_down_down = arctan2(radius_q4, cos_q5) * RADIAN
         if radius_q4 > 0.1:
-            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
             # reference
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -133,7 +132,7 @@ def unrolled(k: Constants) -> Unrolled:
             sin_of_reference_a4 = sin(reference_a4)
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_front - r11 * sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_front - r12 * sin_q1_before_q1_for_q3_front
-            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
             # reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = -r13_from_q123
@@ -177,7 +176,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         quotient_in_axis_a5_front_up_down = arctan2(radius_q4, cos_q5) * RADIAN
         if radius_q4 > 0.1:
-            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
             # reference
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -193,7 +192,7 @@ def unrolled(k: Constants) -> Unrolled:
             sin_of_reference_a4 = sin(reference_a4)
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_front - r11 * sin_q1_before_q1_for_q3_front
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_front - r12 * sin_q1_before_q1_for_q3_front
-            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
             # reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = -r13_from_q123
@@ -231,8 +230,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         refusal_back = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
@@ -265,7 +263,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         quotient_in_axis_a5_back_down_down = arctan2(radius_q4, cos_q5) * RADIAN
         if radius_q4 > 0.1:
-            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
             # reference
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -283,7 +281,7 @@ def unrolled(k: Constants) -> Unrolled:
             sin_of_reference_a4 = sin(reference_a4)
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_back - r11 * sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_back - r12 * sin_q1_before_q1_for_q3_back
-            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
             # reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = -r13_from_q123
@@ -327,7 +325,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         quotient_in_axis_a5_back_up_down = arctan2(radius_q4, cos_q5) * RADIAN
         if radius_q4 > 0.1:
-            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
             # reference
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
@@ -343,7 +341,7 @@ def unrolled(k: Constants) -> Unrolled:
             sin_of_reference_a4 = sin(reference_a4)
             r21_from_q1 = r21 * cos_q1_before_q1_for_q3_back - r11 * sin_q1_before_q1_for_q3_back
             r22_from_q1 = r22 * cos_q1_before_q1_for_q3_back - r12 * sin_q1_before_q1_for_q3_back
-            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
             # reference
             if radius_q4 > 1e-11:
                 direction_x_q4_down = -r13_from_q123
@@ -486,14 +484,13 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3
+        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
-        # rotation by q1 that points the arm at the point; where it is singular: the angle of the reference
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d3 * wrist_y) / divisor_q1
@@ -519,7 +516,7 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23 * cos_q1_before_q1_for_q3 - r13 * sin_q1_before_q1_for_q3
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+        # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
         # reference
         if radius_q4 > 0.1:
             direction_x_q4 = -sigma_hand * r13_from_q123
@@ -531,7 +528,7 @@ def unrolled(k: Constants) -> Unrolled:
                 (r11 * cos_q1_before_q1_for_q3 + r21 * sin_q1_before_q1_for_q3) * cos_q23 + r31 * sin_q23
             )
         else:
-            # polar coordinates: angle q4 from the r13 and r23 equations; where it is singular: the angle of the
+            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
             # reference
             if radius_q4 > 1e-11:
                 direction_x_q4 = -sigma_hand * r13_from_q123

@@ -45,8 +45,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm) * (divisor_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1) * (divisor_a1 - inner_arm_minus_outer_arm)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -62,8 +61,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2) * (divisor_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm) * (divisor_a2 + inner_arm_plus_outer_arm)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
@@ -145,8 +143,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a1 = (divisor_a1 + inner_arm_minus_outer_arm) * (divisor_a1 + inner_arm_plus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (inner_arm_plus_outer_arm - divisor_a1) * (divisor_a1 - inner_arm_minus_outer_arm)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -162,8 +159,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (inner_arm_plus_outer_arm - divisor_a2) * (divisor_a2 - inner_arm_minus_outer_arm)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (divisor_a2 + inner_arm_minus_outer_arm) * (divisor_a2 + inner_arm_plus_outer_arm)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach

@@ -39,7 +39,8 @@ def unrolled(k: Constants) -> Unrolled:
     ) -> tuple[Any, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -58,8 +59,7 @@ def unrolled(k: Constants) -> Unrolled:
         arm_length_plus_effective_a1 = arm_length + divisor_a1
         # 1 + cosine, times the scale
         one_plus_cos_a1 = arm_length_plus_effective_a1 * arm_length_plus_effective_a1 - third_square_a1
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -86,8 +86,7 @@ def unrolled(k: Constants) -> Unrolled:
         half_effective_a2_minus_arm_length = half_effective_a2 - arm_length
         # 1 + cosine, times the scale
         one_plus_cos_a2 = third_square_a2 - half_effective_a2_minus_arm_length * half_effective_a2_minus_arm_length
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
@@ -111,8 +110,7 @@ def unrolled(k: Constants) -> Unrolled:
         half_effective_a3_minus_arm_length = half_effective_a3 - arm_length
         # 1 + cosine, times the scale
         one_plus_cos_a3 = third_square_a3 - half_effective_a3_minus_arm_length * half_effective_a3_minus_arm_length
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach
@@ -276,7 +274,8 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -295,8 +294,7 @@ def unrolled(k: Constants) -> Unrolled:
         arm_length_plus_effective_a1 = arm_length + divisor_a1
         # 1 + cosine, times the scale
         one_plus_cos_a1 = arm_length_plus_effective_a1 * arm_length_plus_effective_a1 - third_square_a1
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -323,8 +321,7 @@ def unrolled(k: Constants) -> Unrolled:
         half_effective_a2_minus_arm_length = half_effective_a2 - arm_length
         # 1 + cosine, times the scale
         one_plus_cos_a2 = third_square_a2 - half_effective_a2_minus_arm_length * half_effective_a2_minus_arm_length
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
@@ -348,8 +345,7 @@ def unrolled(k: Constants) -> Unrolled:
         half_effective_a3_minus_arm_length = half_effective_a3 - arm_length
         # 1 + cosine, times the scale
         one_plus_cos_a3 = third_square_a3 - half_effective_a3_minus_arm_length * half_effective_a3_minus_arm_length
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach

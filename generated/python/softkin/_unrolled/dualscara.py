@@ -37,7 +37,8 @@ def unrolled(k: Constants) -> Unrolled:
     ) -> tuple[Any, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -53,8 +54,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a1 = (divisor_a1 - arm_length_1_plus_rod_length_1) * (arm_length_1_minus_rod_length_1 - divisor_a1)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (arm_length_1_minus_rod_length_1 + divisor_a1) * (arm_length_1_plus_rod_length_1 + divisor_a1)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -70,8 +70,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (divisor_a2 - arm_length_2_plus_rod_length_2) * (arm_length_2_minus_rod_length_2 - divisor_a2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (arm_length_2_minus_rod_length_2 + divisor_a2) * (arm_length_2_plus_rod_length_2 + divisor_a2)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
@@ -146,7 +145,8 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         sigma_elbow_1, sigma_elbow_2 = signs
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -162,8 +162,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a1 = (divisor_a1 - arm_length_1_plus_rod_length_1) * (arm_length_1_minus_rod_length_1 - divisor_a1)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (arm_length_1_minus_rod_length_1 + divisor_a1) * (arm_length_1_plus_rod_length_1 + divisor_a1)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -179,8 +178,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (divisor_a2 - arm_length_2_plus_rod_length_2) * (arm_length_2_minus_rod_length_2 - divisor_a2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (arm_length_2_minus_rod_length_2 + divisor_a2) * (arm_length_2_plus_rod_length_2 + divisor_a2)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach

@@ -31,7 +31,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         _, _, _, ref_c, _ = 5 * (0.0,) if reference is None else reference
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_c > 1e-11:
             cos_c_positive = r13 / radius_c
             sin_c_positive = r23 / radius_c
@@ -85,7 +85,7 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_tilt,) = signs
         _, _, _, ref_c, _ = 5 * (0.0,) if reference is None else reference
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_c > 1e-11:
             along_c = sigma_tilt * r13  # polar coordinates: angle c from the r13 and r23 equations
             cos_c = along_c / radius_c

@@ -64,8 +64,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a1 = (link_length_1_plus_link_length_2 - divisor_a1) * (
             divisor_a1 - link_length_1_minus_link_length_2
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -95,8 +94,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
             divisor_a2 - link_length_5_minus_link_length_4
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
@@ -176,8 +174,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
             divisor_a2 - link_length_5_minus_link_length_4
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
@@ -284,8 +281,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a1 = (link_length_1_plus_link_length_2 - divisor_a1) * (
             divisor_a1 - link_length_1_minus_link_length_2
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -313,8 +309,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
             divisor_a2 - link_length_5_minus_link_length_4
         )
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach

@@ -33,7 +33,8 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         ref_a1, ref_a2, _, _ = 4 * (0.0,) if reference is None else reference
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -86,7 +87,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a3 from the sum a3_from_a2 of angles about parallel axes
         # cosine and sine of a4 from the cos heading and sin heading equations
         if radius_a1 > machine_scale_times_free_angle:
-            # polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
+            # polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the
             # reference
             direction_x_a1_front = x
             direction_y_a1 = y
@@ -112,11 +113,11 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4_back = 180.0 + axis_a4_front
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            # polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
+            # polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the
             # reference
             direction_x_a1_front = cos(reference_a1)
             direction_y_a1 = sin(reference_a1)
-            # polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
+            # polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the
             # reference
             direction_x_a1_back = direction_x_a1_front
             angle_a1_front = arctan2(direction_y_a1, direction_x_a1_front)
@@ -182,7 +183,8 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         sigma_shoulder, sigma_elbow = signs
         ref_a1, ref_a2, _, _ = 4 * (0.0,) if reference is None else reference
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -206,7 +208,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a3_from_a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005):
             return None
-        # polar coordinates: angle a1 from the x and y equations; where it is singular: the angle of the
+        # polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the
         # reference
         if radius_a1 > machine_scale_times_free_angle:
             direction_x_a1 = sigma_shoulder * x

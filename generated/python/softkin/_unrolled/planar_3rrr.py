@@ -44,7 +44,8 @@ def unrolled(k: Constants) -> Unrolled:
     ) -> tuple[Any, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
@@ -61,8 +62,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a1 = (divisor_a1 - arm_length_1_plus_rod_length_1) * (arm_length_1_minus_rod_length_1 - divisor_a1)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (arm_length_1_minus_rod_length_1 + divisor_a1) * (arm_length_1_plus_rod_length_1 + divisor_a1)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         cos_swing_a1_times_span_1_x = span_1_x * cos_swing_a1
@@ -89,8 +89,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (divisor_a2 - arm_length_2_plus_rod_length_2) * (arm_length_2_minus_rod_length_2 - divisor_a2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (arm_length_2_minus_rod_length_2 + divisor_a2) * (arm_length_2_plus_rod_length_2 + divisor_a2)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         cos_swing_a2_times_span_2_x = span_2_x * cos_swing_a2
@@ -117,8 +116,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a3 = (divisor_a3 - arm_length_3_plus_rod_length_3) * (arm_length_3_minus_rod_length_3 - divisor_a3)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (arm_length_3_minus_rod_length_3 + divisor_a3) * (arm_length_3_plus_rod_length_3 + divisor_a3)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         cos_swing_a3_times_span_3_x = span_3_x * cos_swing_a3
@@ -321,7 +319,8 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         sigma_elbow_1, sigma_elbow_2, sigma_elbow_3 = signs
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
@@ -347,8 +346,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a1 = (divisor_a1 - arm_length_1_plus_rod_length_1) * (arm_length_1_minus_rod_length_1 - divisor_a1)
         # 1 + cosine, times the scale
         one_plus_cos_a1 = (arm_length_1_minus_rod_length_1 + divisor_a1) * (arm_length_1_plus_rod_length_1 + divisor_a1)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a1 = one_less_cos_a1 + one_plus_cos_a1
+        sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         # a1: out of reach
@@ -367,8 +365,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a2 = (divisor_a2 - arm_length_2_plus_rod_length_2) * (arm_length_2_minus_rod_length_2 - divisor_a2)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (arm_length_2_minus_rod_length_2 + divisor_a2) * (arm_length_2_plus_rod_length_2 + divisor_a2)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         # a2: out of reach
@@ -387,8 +384,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_a3 = (divisor_a3 - arm_length_3_plus_rod_length_3) * (arm_length_3_minus_rod_length_3 - divisor_a3)
         # 1 + cosine, times the scale
         one_plus_cos_a3 = (arm_length_3_minus_rod_length_3 + divisor_a3) * (arm_length_3_plus_rod_length_3 + divisor_a3)
-        # twice the scale, as the sum of both: then cosine and sine agree
-        sum_a3 = one_less_cos_a3 + one_plus_cos_a3
+        sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
         cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3) / divisor_of_cos_a3
         # a3: out of reach

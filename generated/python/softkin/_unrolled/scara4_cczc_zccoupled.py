@@ -35,7 +35,8 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         ref_a1, _, _, ref_a4 = 4 * (0.0,) if reference is None else reference
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         if flange_down:
             heading_along = r11 - r22
             heading_across = r12 + r21
@@ -90,7 +91,8 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
         ref_a1, _, _, ref_a4 = 4 * (0.0,) if reference is None else reference
-        # nearest rotation about Z: the tool direction is swung to the machine's, the twist is kept
+        # nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
+        # kept
         if flange_down:
             heading_along = r11 - r22
             heading_across = r12 + r21

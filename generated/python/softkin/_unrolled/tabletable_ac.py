@@ -36,7 +36,7 @@ def unrolled(k: Constants) -> Unrolled:
         r33_times_pivot_z_plus_z = pivot_z_plus_z * r33
         quotient_in_axis_a = arctan2(radius_c, r33) * RADIAN
         if radius_c > 1e-11:
-            cos_c_positive = r23 / radius_c  # where it is singular: the angle of the reference
+            cos_c_positive = r23 / radius_c  # at a singularity: the angle of the reference
             sin_c_positive = r13 / radius_c
             x_from_c_positive = x * cos_c_positive - y * sin_c_positive
             axis_x = offset_x + x_from_c_positive
@@ -53,9 +53,9 @@ def unrolled(k: Constants) -> Unrolled:
             axis_c_negative = 180.0 + axis_c_positive
         else:
             reference_c = (ref_c - offset_c) * DEGREE
-            cos_c_positive = cos(reference_c)  # where it is singular: the angle of the reference
+            cos_c_positive = cos(reference_c)  # at a singularity: the angle of the reference
             sin_c_positive = sin(reference_c)
-            cos_c_negative = cos_c_positive  # where it is singular: the angle of the reference
+            cos_c_negative = cos_c_positive  # at a singularity: the angle of the reference
             sin_c_negative = sin_c_positive
             x_from_c_positive = x * cos_c_positive - y * sin_c_positive
             axis_x = offset_x + x_from_c_positive
@@ -90,7 +90,7 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_tilt,) = signs
         _, _, _, _, ref_c = 5 * (0.0,) if reference is None else reference
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
-        # where it is singular: the angle of the reference
+        # at a singularity: the angle of the reference
         if radius_c > 1e-11:
             along_c = sigma_tilt * r23  # polar coordinates: angle c from the r23 and r13 equations
             cos_c = along_c / radius_c

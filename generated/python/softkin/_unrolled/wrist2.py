@@ -32,7 +32,7 @@ def unrolled(k: Constants) -> Unrolled:
         r13_of_a = one_by_tool_side_2 * r13
         r23_of_a = one_by_tool_side_2 * r23
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
-        # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+        # polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
         # reference
         if radius_a > 1e-11:
             direction_x_a_positive = r13_of_a
@@ -62,7 +62,7 @@ def unrolled(k: Constants) -> Unrolled:
         r13_of_a = one_by_tool_side_2 * r13
         r23_of_a = one_by_tool_side_2 * r23
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
-        # polar coordinates: angle a from the r13 and r23 equations; where it is singular: the angle of the
+        # polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
         # reference
         if radius_a > 1e-11:
             direction_x_a = sigma_roll * r13_of_a

@@ -32,7 +32,7 @@ def unrolled(k: Constants) -> Unrolled:
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
         quotient_in_axis_b = arctan2(radius_c, r33) * RADIAN
         if radius_c > 1e-11:
-            # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+            # polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
             # reference
             direction_x_c_down = r31
             direction_y_c_down = -r32
@@ -44,11 +44,11 @@ def unrolled(k: Constants) -> Unrolled:
             axis_c_up = 180.0 + axis_c_down
         else:
             reference_c = (ref_c - offset_c) * DEGREE
-            # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+            # polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
             # reference
             direction_x_c_down = cos(reference_c)
             direction_y_c_down = sin(reference_c)
-            # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+            # polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
             # reference
             direction_x_c_up = direction_x_c_down
             direction_y_c_up = direction_y_c_down
@@ -75,7 +75,7 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_hand,) = signs
         _, _, ref_c = 3 * (0.0,) if reference is None else reference
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
-        # polar coordinates: angle c from the r31 and r32 equations; where it is singular: the angle of the
+        # polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
         # reference
         if radius_c > 1e-11:
             direction_x_c = sigma_hand * r31
