@@ -51,13 +51,8 @@ from derive.description.mechanism import (
     signed_length,
     transmission,
 )
-from derive.ir.constants import (
-    DEGREE,
-)
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    ROTATION_ENTRIES,
-)
+from derive.ir.constants import DEGREE
+from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES
 
 __all__ = [
     "COORDINATE_NAMES",

@@ -1,13 +1,6 @@
 """Vectors for closures that are not a chain, for mechanism files to import."""
 
-from derive.geometry.vectors import (
-    Vector,
-    cross,
-    dot,
-    minus,
-    triple,
-    vector,
-)
+from derive.geometry.vectors import Vector, cross, dot, minus, triple, vector
 
 __all__ = [
     "Vector",

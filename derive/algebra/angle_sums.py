@@ -9,11 +9,7 @@ from itertools import product
 import sympy as sp
 
 from derive.algebra.normal_form import polynomial
-from derive.ir.symbols import (
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.symbols import cosine, real, sine
 
 Terms = tuple[tuple[sp.Symbol, int], ...]
 

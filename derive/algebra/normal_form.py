@@ -12,9 +12,7 @@ from functools import cache
 import sympy as sp
 
 from derive.algebra.rings import is_rational, reduced_in_ring
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from derive.ir.symbols import cosine, sine
 
 

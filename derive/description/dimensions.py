@@ -10,11 +10,7 @@ import sympy as sp
 from derive.description.quantity import Quantity
 from derive.ir.constants import DEGREE
 from derive.ir.program import Let
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    ROTATION_ENTRIES,
-    real,
-)
+from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, real
 
 _OF_REACHES = ("side_12", "side_13", "side_23", "equal_power", "reach")
 _OF_EQUATIONS = {

@@ -9,14 +9,8 @@ from typing import TypedDict, Unpack
 import sympy as sp
 
 from derive.description.quantity import Quantity
-from derive.ir.constants import (
-    DEGREE,
-)
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    count,
-    real,
-)
+from derive.ir.constants import DEGREE
+from derive.ir.symbols import COORDINATE_NAMES, count, real
 
 Interval = tuple[float, float]
 

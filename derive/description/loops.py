@@ -11,11 +11,7 @@ import sympy as sp
 
 from derive.description.errors import DescriptionError
 from derive.description.quantity import Quantity
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    ROTATION_ENTRIES,
-    real,
-)
+from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, real
 
 X, Y, Z = (Quantity(real(name)) for name in COORDINATE_NAMES)
 """The commanded position, for closures that are not a chain."""

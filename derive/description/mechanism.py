@@ -35,23 +35,12 @@ from derive.description.dimensions import (
 )
 from derive.description.errors import DescriptionError
 from derive.description.fields import as_stated
-from derive.description.joints import (
-    Interval,
-    Joint,
-    Kind,
-    arc,
-    helical,
-    linear,
-    rotary,
-)
+from derive.description.joints import Interval, Joint, Kind, arc, helical, linear, rotary
 from derive.description.kinds import expressions
 from derive.description.loops import ROTATION, Bound, Limited, Plane, Rod, X, Y, Z, bound, guide, limited, on_plate, rod
 from derive.geometry.frames import Chain
 from derive.geometry.half_turns import with_half_turns_last
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    ROTATION_ENTRIES,
-)
+from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES
 
 TURN = 2 * sp.pi
 COORDINATE_NAMES_OF_A_PLANE = "xy"

@@ -8,12 +8,8 @@ import sympy as sp
 
 from derive.description.dimensions import Constraint
 from derive.geometry.vectors import Vector, cross, dot, minus, vector
-from derive.ir.program import (
-    Let,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.program import Let
+from derive.ir.symbols import real
 
 _PAIRS = ((1, 2), (1, 3), (2, 3))
 

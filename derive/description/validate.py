@@ -24,9 +24,7 @@ from derive.description.mechanism import (
     Y,
     Z,
 )
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 
 _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _CLASS = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")

@@ -8,9 +8,7 @@ import numpy as np
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from derive.ir.interpret import Array, evaluate
 from derive.kept import kept_by_identity
 from derive.kinematics.sampling import sample_machine

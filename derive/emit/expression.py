@@ -13,18 +13,8 @@ from functools import cache
 import sympy as sp
 from sympy.core.relational import Relational
 
-from derive.ir.constants import (
-    DEGREE,
-)
-from derive.ir.primitives import (
-    Atan2,
-    NearestOnArc,
-    NearestPeriod,
-    Root,
-    Select,
-    ToReal,
-    Wrap,
-)
+from derive.ir.constants import DEGREE
+from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
 from derive.ir.symbols import is_condition, is_count, is_decided
 
 _OR, _AND, COMPARE, _SUM, PRODUCT, _UNARY, ATOM = range(7)

@@ -8,30 +8,11 @@ from functools import cache
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism
-from derive.ir.constants import (
-    DEGREE,
-    LARGEST,
-)
-from derive.ir.primitives import (
-    Atan2,
-    NearestPeriod,
-    Select,
-    ToReal,
-    Wrap,
-)
-from derive.ir.program import (
-    Let,
-    Require,
-    Status,
-)
+from derive.ir.constants import DEGREE, LARGEST
+from derive.ir.primitives import Atan2, NearestPeriod, Select, ToReal, Wrap
+from derive.ir.program import Let, Require, Status
 from derive.ir.reason import Why, about_input
-from derive.ir.symbols import (
-    compared,
-    cosine,
-    flag,
-    real,
-    sine,
-)
+from derive.ir.symbols import compared, cosine, flag, real, sine
 
 _REASONABLE = "numbers of reasonable size"
 _CHECK = "inputs must be numbers, and of reasonable size"

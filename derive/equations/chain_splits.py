@@ -18,15 +18,8 @@ from derive.algebra.normal_form import is_compound, polynomial
 from derive.equations.problem import Equation
 from derive.geometry.frames import Chain, Factor, Motion
 from derive.geometry.pose import pose_of
-from derive.ir.program import (
-    Let,
-)
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.program import Let
+from derive.ir.symbols import COORDINATE_NAMES, cosine, real, sine
 
 
 def is_spatial(chain: Chain) -> bool:

@@ -14,10 +14,7 @@ from derive.ir.constants import DEGREE
 from derive.ir.passes import normalise
 from derive.ir.program import Let, Program, Require, Statement, Status
 from derive.ir.reason import OtherTurn, Reason, Unit, Why, about, about_joint
-from derive.ir.symbols import (
-    compared,
-    real,
-)
+from derive.ir.symbols import compared, real
 
 
 def limits_program(mechanism: Mechanism) -> Program:

@@ -13,20 +13,13 @@ import sympy as sp
 
 from derive.algebra.angle_sums import name_of, terms_of
 from derive.algebra.normal_form import is_compound
-from derive.description.mechanism import (
-    Mechanism,
-)
+from derive.description.mechanism import Mechanism
 from derive.equations.closures.fixed_names import angles_of
 from derive.equations.trigonometry import named_trigonometry
 from derive.geometry.frames import Factor, Motion
 from derive.geometry.pose import Screw
-from derive.ir.program import (
-    Let,
-)
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    real,
-)
+from derive.ir.program import Let
+from derive.ir.symbols import COORDINATE_NAMES, real
 from derive.kept import kept_by_identity
 
 Column = tuple[sp.Expr, sp.Expr, sp.Expr]

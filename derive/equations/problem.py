@@ -9,13 +9,8 @@ import sympy as sp
 
 from derive.algebra.normal_form import cancelled, reduce_units
 from derive.geometry.frames import Factor
-from derive.ir.constants import (
-    DEGREE,
-)
-from derive.ir.program import (
-    Let,
-    Statement,
-)
+from derive.ir.constants import DEGREE
+from derive.ir.program import Let, Statement
 from derive.ir.symbols import cosine, names_in, real, sine
 
 _NUMBER = 1e-9

@@ -15,30 +15,12 @@ from functools import cache, reduce
 import sympy as sp
 
 from derive.equations.axes import finite
-from derive.ir.constants import (
-    EXACT_ROTATION,
-    ROTATION,
-    SURE_ROTATION,
-)
+from derive.ir.constants import EXACT_ROTATION, ROTATION, SURE_ROTATION
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Root,
-    Select,
-    larger,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Statement,
-    Status,
-)
+from derive.ir.primitives import Root, Select, larger
+from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Why, about_input
-from derive.ir.symbols import (
-    ROTATION_ENTRIES,
-    real,
-)
+from derive.ir.symbols import ROTATION_ENTRIES, real
 
 _RIGHT_HANDED = "a right-handed frame"
 _GIVEN = sp.Matrix(3, 3, ROTATION_ENTRIES)

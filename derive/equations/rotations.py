@@ -17,9 +17,7 @@ from derive.equations.pitch.equations import followed_entries
 from derive.equations.problem import Column, Equation, Problem
 from derive.geometry.frames import Chain, Factor
 from derive.geometry.pose import pose_of
-from derive.ir.program import (
-    Let,
-)
+from derive.ir.program import Let
 from derive.ir.symbols import names_in
 
 _MOST_UNKNOWN = 2

@@ -11,15 +11,8 @@ from derive.algebra.normal_form import polynomial
 from derive.description.mechanism import Mechanism
 from derive.equations.closures.fixed_names import angles_of, fixed_angles, signs_of
 from derive.ir.constants import DEGREE
-from derive.ir.program import (
-    Let,
-)
-from derive.ir.symbols import (
-    HEADING,
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.program import Let
+from derive.ir.symbols import HEADING, cosine, real, sine
 
 _FUNCTIONS = ((sine, sp.sin), (cosine, sp.cos))
 

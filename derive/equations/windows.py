@@ -11,13 +11,7 @@ from functools import cached_property
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, rotary
-from derive.ir.constants import (
-    GEARED_TURN,
-    LARGEST,
-    LIMIT,
-    ONE_TURN,
-    UNLIMITED,
-)
+from derive.ir.constants import GEARED_TURN, LARGEST, LIMIT, ONE_TURN, UNLIMITED
 from derive.ir.passes import plain, renamed
 from derive.ir.primitives import Select
 from derive.ir.program import Let, Output, Program, Require, Statement, Status, rewritten

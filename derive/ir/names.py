@@ -6,13 +6,8 @@ from collections.abc import Iterable
 
 import sympy as sp
 
-from derive.ir.program import (
-    Program,
-)
-from derive.ir.symbols import (
-    called,
-    real,
-)
+from derive.ir.program import Program
+from derive.ir.symbols import called, real
 
 
 class Names:

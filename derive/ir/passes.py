@@ -14,13 +14,9 @@ from functools import cache, partial
 
 import sympy as sp
 
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from derive.ir.names import Names
-from derive.ir.primitives import (
-    Root,
-)
+from derive.ir.primitives import Root
 from derive.ir.program import (
     Call,
     FindRoot,
@@ -37,15 +33,7 @@ from derive.ir.program import (
     rewritten,
 )
 from derive.ir.reason import Unit
-from derive.ir.symbols import (
-    POSITION,
-    ROTATION_ENTRIES,
-    called,
-    is_decided,
-    names_in,
-    replaced,
-    symbols_of,
-)
+from derive.ir.symbols import POSITION, ROTATION_ENTRIES, called, is_decided, names_in, replaced, symbols_of
 from derive.ir.verify import RepeatedName, verify
 from derive.kept import kept_by_identity
 

@@ -20,10 +20,7 @@ import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from derive.ir.reason import Reason
-from derive.ir.symbols import (
-    PLACE,
-    names_in,
-)
+from derive.ir.symbols import PLACE, names_in
 
 
 class Status(Enum):

@@ -22,15 +22,7 @@ import sympy as sp
 from sympy.core.relational import Relational
 
 from derive.ir.constants import DEGREE
-from derive.ir.primitives import (
-    Atan2,
-    NearestOnArc,
-    NearestPeriod,
-    Root,
-    Select,
-    ToReal,
-    Wrap,
-)
+from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
 from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Statement
 from derive.ir.symbols import Flag, is_count, is_decided, names_in
 

@@ -7,22 +7,9 @@ from functools import cache
 
 import sympy as sp
 
-from derive.ir.constants import (
-    DEGREE,
-)
-from derive.ir.primitives import (
-    PRIMITIVES,
-)
-from derive.ir.program import (
-    Call,
-    Iterate,
-    Program,
-    Solve,
-    Statement,
-    binds,
-    expressions,
-    reason_expressions,
-)
+from derive.ir.constants import DEGREE
+from derive.ir.primitives import PRIMITIVES
+from derive.ir.program import Call, Iterate, Program, Solve, Statement, binds, expressions, reason_expressions
 from derive.ir.symbols import is_decided, names_in, symbols_of
 from derive.ir.typed import check_types
 from derive.ir.types import IllTypedError

@@ -14,37 +14,17 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.description.mechanism import (
-    Mechanism,
-    Turning,
-)
+from derive.description.mechanism import Mechanism, Turning
 from derive.equations.axes import finite
 from derive.equations.closures.commanded import flange_rotation
 from derive.geometry.frames import Factor, Motion
 from derive.geometry.pose import pose_of
-from derive.ir.constants import (
-    HELD,
-)
+from derive.ir.constants import HELD
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Root,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Statement,
-    Status,
-)
+from derive.ir.primitives import Root
+from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Why, about_machine
-from derive.ir.symbols import (
-    BASE_AXIS,
-    COORDINATE_NAMES,
-    FLANGE_AXIS,
-    ROTATION_ENTRIES,
-    real,
-)
+from derive.ir.symbols import BASE_AXIS, COORDINATE_NAMES, FLANGE_AXIS, ROTATION_ENTRIES, real
 
 _ALONG = real("flange_along")
 _UNNOTICED = real("unnoticed_shift")

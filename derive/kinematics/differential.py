@@ -6,46 +6,21 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from derive.description.mechanism import (
-    DescriptionError,
-    Mechanism,
-    Turning,
-)
+from derive.description.mechanism import DescriptionError, Mechanism, Turning
 from derive.equations.chain_splits import is_spatial
 from derive.equations.closures.fixed_names import with_fixed_names
 from derive.equations.named_pose import named_pose
 from derive.equations.pitch.chain import followed_factors
-from derive.equations.pose_at_axes import (
-    Forward,
-)
+from derive.equations.pose_at_axes import Forward
 from derive.equations.trigonometry import named_trigonometry
 from derive.geometry.frames import Chain, Motion
 from derive.geometry.pose import Screw, pose_of
-from derive.ir.constants import (
-    FREE_ANGLE,
-)
+from derive.ir.constants import FREE_ANGLE
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Statement,
-    Status,
-)
+from derive.ir.primitives import Select
+from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Why, about_machine
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    HEADING,
-    ROTATION_ENTRIES,
-    SCALE,
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.plate.jacobian import platform_jacobian
 
 _ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")

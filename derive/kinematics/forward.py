@@ -7,10 +7,7 @@ from functools import cache
 
 import sympy as sp
 
-from derive.description.mechanism import (
-    Mechanism,
-    Turning,
-)
+from derive.description.mechanism import Mechanism, Turning
 from derive.equations.axes import finite, frozen_lets, joint_lets
 from derive.equations.chain_splits import is_spatial
 from derive.equations.closures.commanded import heading_of
@@ -21,23 +18,10 @@ from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import Problem
 from derive.equations.trigonometry import heading_at_joints, named_trigonometry
 from derive.geometry.pose import pose_of
-from derive.ir.constants import (
-    BOUNDARY,
-    LIMIT,
-)
+from derive.ir.constants import BOUNDARY, LIMIT
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Statement,
-    Status,
-    rewritten,
-)
+from derive.ir.primitives import Select
+from derive.ir.program import Let, Output, Program, Require, Statement, Status, rewritten
 from derive.ir.reason import Why, about, about_machine
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,

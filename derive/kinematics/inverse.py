@@ -9,13 +9,7 @@ import sympy as sp
 
 from derive.algebra.normal_form import polynomial
 from derive.description.chains.numbers import fixed_numbers
-from derive.description.mechanism import (
-    COORDINATE_NAMES_OF_A_PLANE,
-    DescriptionError,
-    Joint,
-    Mechanism,
-    Turning,
-)
+from derive.description.mechanism import COORDINATE_NAMES_OF_A_PLANE, DescriptionError, Joint, Mechanism, Turning
 from derive.equations.axes import axis_lets, finite, frozen_lets, plain_angle, reference_lets, reference_value
 from derive.equations.closures.closure import FLANGE, Closure
 from derive.equations.closures.commanded import closure_at, flange_rotation, offset_closure, pose_closure
@@ -32,35 +26,12 @@ from derive.equations.pitch.heading import free_heading, free_value
 from derive.equations.problem import Problem
 from derive.equations.trigonometry import heading_at_joints
 from derive.geometry.frames import Motion
-from derive.ir.constants import (
-    FREE_ANGLE,
-    PLANE,
-)
+from derive.ir.constants import FREE_ANGLE, PLANE
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Atan2,
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Statement,
-    Status,
-)
+from derive.ir.primitives import Atan2, Root, Select
+from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Unit, Why, about, about_machine
-from derive.ir.symbols import (
-    HEADING,
-    OFFSET,
-    POSITION,
-    ROTATION_ENTRIES,
-    SCALE,
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.symbols import HEADING, OFFSET, POSITION, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.kinematics.scan.guards import without_wrist
 from derive.kinematics.scan.machine_checks import MachineCheck, apart
 from derive.optimize.simplify import shorter

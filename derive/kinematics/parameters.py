@@ -12,31 +12,12 @@ from derive.description.mechanism import Branch, Joint, Mechanism, Parameter, Ro
 from derive.equations.choices import converted, input_of
 from derive.equations.windows import windows
 from derive.geometry.frames import Motion
-from derive.ir.constants import (
-    LARGEST,
-    LEAST,
-    SINGULAR,
-    TIE_SHARE,
-)
+from derive.ir.constants import LARGEST, LEAST, SINGULAR, TIE_SHARE
 from derive.ir.passes import without_assumptions
 from derive.ir.primitives import Select, ToReal
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Statement,
-    Status,
-)
+from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Reason, about_parameters
-from derive.ir.symbols import (
-    MIN_TYPE2_MARGIN,
-    SCALE,
-    compared,
-    flag,
-    is_count,
-    real,
-)
+from derive.ir.symbols import MIN_TYPE2_MARGIN, SCALE, compared, flag, is_count, real
 from derive.ir.verify import verify
 from derive.plate.plate import home_branches, home_flag, machine_constants, machine_statements
 

@@ -11,14 +11,8 @@ from numpy.typing import NDArray
 from derive.description.mechanism import Mechanism, Role
 from derive.ir.interpret import evaluate, run
 from derive.ir.program import Program, Status
-from derive.ir.symbols import (
-    SCALE,
-)
-from derive.kinematics.parameters import (
-    has_length,
-    machine_parameters,
-    machine_scale,
-)
+from derive.ir.symbols import SCALE
+from derive.kinematics.parameters import has_length, machine_parameters, machine_scale
 
 Samples = dict[str, NDArray[np.float64]]
 ENOUGH = 16

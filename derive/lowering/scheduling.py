@@ -19,19 +19,9 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.ir.passes import with_bound_reason
-from derive.ir.primitives import (
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Program,
-    Statement,
-    binds,
-    reads,
-)
-from derive.ir.symbols import (
-    names_in,
-)
+from derive.ir.primitives import Select
+from derive.ir.program import Let, Program, Statement, binds, reads
+from derive.ir.symbols import names_in
 from derive.ir.tree import If, Item, bound_behind, read_in
 from derive.kept import kept_by_identity
 from derive.lowering.decided import decided

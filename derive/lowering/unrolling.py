@@ -22,17 +22,7 @@ from derive.ir.graph import Graph, Node, Value, reached
 from derive.ir.names import Names
 from derive.ir.passes import renamed
 from derive.ir.primitives import Select
-from derive.ir.program import (
-    Call,
-    FindRoot,
-    Iterate,
-    Output,
-    Program,
-    Require,
-    Solve,
-    Status,
-    binds,
-)
+from derive.ir.program import Call, FindRoot, Iterate, Output, Program, Require, Solve, Status, binds
 from derive.ir.symbols import REFUSAL, Choice, Sign, choices, count, suffixed
 from derive.ir.verify import BrokenProgram
 from derive.lowering.draft import Draft, Effect, Named, Reader, Rewriting

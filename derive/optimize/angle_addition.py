@@ -18,29 +18,12 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from derive.ir.names import Names
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Atan2,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Program,
-    Statement,
-    reads,
-    rewritten,
-)
-from derive.ir.symbols import (
-    angle_of,
-    angle_word,
-    is_branch_sign,
-    real,
-    symbols_of,
-)
+from derive.ir.primitives import Atan2, Select
+from derive.ir.program import Let, Program, Statement, reads, rewritten
+from derive.ir.symbols import angle_of, angle_word, is_branch_sign, real, symbols_of
 from derive.ir.symbols import cosine as cosine_of
 from derive.ir.symbols import sine as sine_of
 from derive.optimize.directions import Pair, lengths_of, products

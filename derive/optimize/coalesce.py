@@ -17,16 +17,8 @@ from itertools import combinations
 import sympy as sp
 
 from derive.ir.passes import renamed
-from derive.ir.program import (
-    rewritten,
-)
-from derive.ir.symbols import (
-    Sign,
-    called,
-    replaced,
-    symbols_of,
-    without_words,
-)
+from derive.ir.program import rewritten
+from derive.ir.symbols import Sign, called, replaced, symbols_of, without_words
 from derive.ir.tree import If, Item, bindings_in, read_in
 
 

@@ -16,31 +16,12 @@ from itertools import permutations, product
 
 import sympy as sp
 
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from derive.ir.names import Names
 from derive.ir.passes import is_read_once, normalise
-from derive.ir.primitives import (
-    Atan2,
-    NearestPeriod,
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    reads,
-    reason_expressions,
-    rewritten,
-)
-from derive.ir.symbols import (
-    angle_of,
-    angle_word,
-    is_condition,
-    symbols_of,
-)
+from derive.ir.primitives import Atan2, NearestPeriod, Root, Select
+from derive.ir.program import Let, Output, Program, reads, reason_expressions, rewritten
+from derive.ir.symbols import angle_of, angle_word, is_condition, symbols_of
 
 _AXES = {"cos": "x", "sin": "y"}
 Pair = tuple[sp.Symbol, sp.Symbol]

@@ -15,18 +15,9 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.ir.primitives import (
-    Root,
-)
-from derive.ir.program import (
-    Let,
-    Require,
-    Statement,
-    binds,
-)
-from derive.ir.symbols import (
-    symbols_of,
-)
+from derive.ir.primitives import Root
+from derive.ir.program import Let, Require, Statement, binds
+from derive.ir.symbols import symbols_of
 from derive.ir.tree import If, Item
 
 

@@ -20,17 +20,8 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.ir.passes import with_inputs
-from derive.ir.primitives import (
-    NearestPeriod,
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Program,
-    expressions,
-    rewritten,
-)
+from derive.ir.primitives import NearestPeriod, Root, Select
+from derive.ir.program import Let, Program, expressions, rewritten
 from derive.ir.symbols import replaced
 from derive.ir.tree import If, Item, bindings_in, expressions_in
 

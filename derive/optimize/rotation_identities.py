@@ -14,22 +14,11 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.ir.constants import (
-    FREE_ANGLE,
-    KNOWN_ANGLE,
-)
+from derive.ir.constants import FREE_ANGLE, KNOWN_ANGLE
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Program,
-)
-from derive.ir.symbols import (
-    ROTATION_ENTRIES,
-    angle_of,
-)
+from derive.ir.primitives import Select
+from derive.ir.program import Let, Program
+from derive.ir.symbols import ROTATION_ENTRIES, angle_of
 from derive.ir.symbols import cosine as cosine_of
 from derive.ir.symbols import sine as sine_of
 

@@ -12,18 +12,9 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.ir.passes import is_read_once, normalise
-from derive.ir.primitives import (
-    Root,
-)
-from derive.ir.program import (
-    Let,
-    Program,
-    Statement,
-)
-from derive.ir.symbols import (
-    is_condition,
-    symbols_of,
-)
+from derive.ir.primitives import Root
+from derive.ir.program import Let, Program, Statement
+from derive.ir.symbols import is_condition, symbols_of
 from derive.optimize.directions import plain_directions
 
 

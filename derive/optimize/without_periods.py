@@ -14,25 +14,9 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    NearestPeriod,
-    Wrap,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Statement,
-    Status,
-    expressions,
-    reads,
-    rewritten,
-)
-from derive.ir.symbols import (
-    replaced,
-    symbols_of,
-)
+from derive.ir.primitives import NearestPeriod, Wrap
+from derive.ir.program import Let, Output, Program, Require, Statement, Status, expressions, reads, rewritten
+from derive.ir.symbols import replaced, symbols_of
 from derive.ir.typed import check_statement
 from derive.ir.types import IllTypedError, Type, angles_in, angles_of
 

@@ -12,29 +12,12 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import sympy as sp
 
-from derive.description.mechanism import (
-    Mechanism,
-    Rod,
-)
-from derive.ir.constants import (
-    BOUNDARY,
-    DEGREE,
-)
-from derive.ir.primitives import (
-    Select,
-    angle_of_cosine,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Require,
-    Statement,
-    Status,
-)
+from derive.description.mechanism import Mechanism, Rod
+from derive.ir.constants import BOUNDARY, DEGREE
+from derive.ir.primitives import Select, angle_of_cosine
+from derive.ir.program import Let, Output, Require, Statement, Status
 from derive.ir.reason import Unit, Why, about_leg
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.symbols import real
 from derive.plate.legs import names, of, rotation_of, turned, vector_word
 
 _HOME, _SEEN, _TURNED = "home_along", "plate_axis", "cone_axis"

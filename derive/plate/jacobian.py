@@ -4,36 +4,14 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.description.mechanism import (
-    Mechanism,
-    Plane,
-    Turning,
-)
+from derive.description.mechanism import Mechanism, Plane, Turning
 from derive.equations.closures.fixed_names import fixed_lets, with_fixed_names
 from derive.equations.trigonometry import named_trigonometry
-from derive.ir.constants import (
-    FREE_ANGLE,
-)
-from derive.ir.program import (
-    Require,
-    Solve,
-    Statement,
-    Status,
-)
+from derive.ir.constants import FREE_ANGLE
+from derive.ir.program import Require, Solve, Statement, Status
 from derive.ir.reason import Why, about_machine
-from derive.ir.symbols import (
-    DETERMINANT,
-    real,
-)
-from derive.plate.legs import (
-    RADIUS,
-    Leg,
-    legs_of,
-    names,
-    rotation_of,
-    rows,
-    spins,
-)
+from derive.ir.symbols import DETERMINANT, real
+from derive.plate.legs import RADIUS, Leg, legs_of, names, rotation_of, rows, spins
 
 
 def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:

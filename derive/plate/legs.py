@@ -13,34 +13,12 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.description.mechanism import (
-    DescriptionError,
-    Mechanism,
-    Plane,
-    Rod,
-    Turning,
-    on_plate,
-)
+from derive.description.mechanism import DescriptionError, Mechanism, Plane, Rod, Turning, on_plate
 from derive.equations.closures.fixed_names import with_fixed_names
-from derive.ir.constants import (
-    SHORTEST_LINK,
-)
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-)
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    HEADING,
-    ROTATION_ENTRIES,
-    SCALE,
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.constants import SHORTEST_LINK
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Let
+from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, SCALE, cosine, real, sine
 
 RADIUS = real("platform_radius")
 MARGIN = "rods_dependent"

@@ -14,36 +14,15 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.description.mechanism import (
-    Mechanism,
-    Turning,
-)
+from derive.description.mechanism import Mechanism, Turning
 from derive.equations.axes import finite, joint_lets
 from derive.equations.closures.fixed_names import fixed_lets, with_fixed_names
-from derive.equations.pose_at_axes import (
-    Forward,
-)
+from derive.equations.pose_at_axes import Forward
 from derive.equations.trigonometry import named_trigonometry
-from derive.ir.constants import (
-    CONVERGED,
-    FREE_ANGLE,
-)
+from derive.ir.constants import CONVERGED, FREE_ANGLE
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Call,
-    Iterate,
-    Let,
-    Output,
-    Program,
-    Require,
-    Solve,
-    Statement,
-    Status,
-)
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Solve, Statement, Status
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,

@@ -11,31 +11,11 @@ from collections.abc import Sequence
 import sympy as sp
 
 from derive.algebra.normal_form import polynomial
-from derive.description.mechanism import (
-    Branch,
-    DescriptionError,
-    Mechanism,
-    Rod,
-    Turning,
-)
+from derive.description.mechanism import Branch, DescriptionError, Mechanism, Rod, Turning
 from derive.equations.closures.fixed_names import all_angles, fixed_angles, signs_of, with_fixed_names
-from derive.ir.constants import (
-    DEGREE,
-    SHORTEST_LINK,
-    SINGULAR,
-)
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Require,
-    Solve,
-    Statement,
-    Status,
-)
+from derive.ir.constants import DEGREE, SHORTEST_LINK, SINGULAR
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Let, Output, Require, Solve, Statement, Status
 from derive.ir.reason import Why, about, about_leg, about_parameters
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,

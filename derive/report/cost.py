@@ -16,28 +16,10 @@ from functools import cache
 import sympy as sp
 
 from derive.equations.rotation_repair import rotation_program, surely_exact
-from derive.ir.constants import (
-    DEGREE,
-    FINISHED,
-    TRIALS,
-)
+from derive.ir.constants import DEGREE, FINISHED, TRIALS
 from derive.ir.interpret import Repeats
-from derive.ir.primitives import (
-    Atan2,
-    NearestOnArc,
-    NearestPeriod,
-    Root,
-)
-from derive.ir.program import (
-    Call,
-    FindRoot,
-    Iterate,
-    Let,
-    Program,
-    Require,
-    Solve,
-    Statement,
-)
+from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root
+from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, Statement
 from derive.ir.tree import If, Item
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics

@@ -13,12 +13,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.equations.rotation_repair import rotation_program
-from derive.ir.program import (
-    Iterate,
-    Require,
-    Status,
-    shared,
-)
+from derive.ir.program import Iterate, Require, Status, shared
 from derive.ir.reason import Kind, OtherTurn, Reason, Subject, Unit
 from derive.kinematics.kinematics import Kinematics
 

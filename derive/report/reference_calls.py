@@ -12,20 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.equations.rotation_repair import rotation_program
-from derive.ir.constants import (
-    EDGE,
-    FREE_ANGLE,
-    TIE,
-)
+from derive.ir.constants import EDGE, FREE_ANGLE, TIE
 from derive.ir.interpret import Array, Repeats, evaluate, repeats_counted, run
-from derive.ir.program import (
-    Program,
-    Status,
-)
-from derive.ir.symbols import (
-    ROTATION_ENTRIES,
-    branch_sign,
-)
+from derive.ir.program import Program, Status
+from derive.ir.symbols import ROTATION_ENTRIES, branch_sign
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, has_length
 from derive.kinematics.reference_cases import Bytes, Reals

@@ -13,14 +13,9 @@ from itertools import chain, islice
 import numpy as np
 
 from derive.description.mechanism import DescriptionError, Joint, Role
-from derive.ir.constants import (
-    LARGEST,
-    SINGULAR,
-)
+from derive.ir.constants import LARGEST, SINGULAR
 from derive.ir.interpret import Array
-from derive.ir.program import (
-    Status,
-)
+from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import has_length
 from derive.kinematics.reference_cases import Bytes, Called, Case, Reals, SelfTest

@@ -8,16 +8,8 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.equations.problem import Binding, Conditioning, StepDeterminant
-from derive.ir.program import (
-    Let,
-    Statement,
-    rewritten,
-)
-from derive.ir.symbols import (
-    called,
-    cosine,
-    sine,
-)
+from derive.ir.program import Let, Statement, rewritten
+from derive.ir.symbols import called, cosine, sine
 from derive.ir.verify import BrokenProgram
 
 

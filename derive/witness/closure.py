@@ -15,25 +15,12 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.description.mechanism import (
-    ROTATION,
-    Branch,
-    Mechanism,
-    Turning,
-    X,
-    Y,
-    Z,
-)
+from derive.description.mechanism import ROTATION, Branch, Mechanism, Turning, X, Y, Z
 from derive.equations.pitch.chain import followed_factors
 from derive.geometry.frames import Chain, Motion
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from derive.ir.interpret import Array
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    real,
-)
+from derive.ir.symbols import COORDINATE_NAMES, real
 from derive.witness.terms import Term, term
 
 LEAST_MARGIN = 1e-6

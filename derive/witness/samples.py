@@ -14,10 +14,7 @@ from numpy.typing import NDArray
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role
 from derive.ir.interpret import Array, evaluate, run
 from derive.ir.program import Program, Require, Status
-from derive.ir.symbols import (
-    MIN_TYPE2_MARGIN,
-    SCALE,
-)
+from derive.ir.symbols import MIN_TYPE2_MARGIN, SCALE
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.no_pose import why_no_pose
 from derive.kinematics.parameters import lengths_in_numbers

@@ -12,12 +12,8 @@ import casadi as ca
 import sympy as sp
 
 from derive.description.mechanism import DescriptionError
-from derive.ir.constants import (
-    DEGREE,
-)
-from derive.ir.primitives import (
-    Select,
-)
+from derive.ir.constants import DEGREE
+from derive.ir.primitives import Select
 
 Term = Any
 """A CasADi expression (`casadi.SX`) or a number; CasADi carries no types."""

@@ -15,9 +15,7 @@ from numpy.typing import NDArray
 
 from derive.description.mechanism import ROTATION, Mechanism, Turning, X, Y, Z
 from derive.geometry.frames import Motion
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 
 Array = NDArray[np.float64]
 STEP = 1e-30

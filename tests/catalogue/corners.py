@@ -19,24 +19,15 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from derive.description.mechanism import Mechanism
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from derive.ir.interpret import evaluate
 from derive.ir.passes import normalise
-from derive.ir.program import (
-    Output,
-    Program,
-)
-from derive.ir.symbols import (
-    SCALE,
-)
+from derive.ir.program import Output, Program
+from derive.ir.symbols import SCALE
 from derive.kinematics.branches.assembly import assembled
 from derive.kinematics.forward import derivation_at_axes, pose_at_axes
 from derive.kinematics.inverse import solve_pose
-from derive.kinematics.parameters import (
-    machine_scale,
-)
+from derive.kinematics.parameters import machine_scale
 from derive.kinematics.scan.derivations import solve_both
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine

@@ -9,25 +9,9 @@ from typing import Any
 import mpmath
 import sympy as sp
 
-from derive.ir.constants import (
-    DEGREE,
-    EDGE,
-)
-from derive.ir.primitives import (
-    Atan2,
-    NearestOnArc,
-    NearestPeriod,
-    Root,
-    Select,
-    ToReal,
-    Wrap,
-)
-from derive.ir.program import (
-    Let,
-    Program,
-    Require,
-    Status,
-)
+from derive.ir.constants import DEGREE, EDGE
+from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
+from derive.ir.program import Let, Program, Require, Status
 from derive.kept import kept_by_identity
 
 DIGITS = 60

@@ -5,18 +5,7 @@ from __future__ import annotations
 from sympy import cos, sin
 
 from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz
-from derive.mechanism import (
-    Mechanism,
-    Task,
-    Turning,
-    Vendor,
-    angle,
-    branch,
-    distance,
-    length,
-    radians,
-    rotary,
-)
+from derive.mechanism import Mechanism, Task, Turning, Vendor, angle, branch, distance, length, radians, rotary
 
 A1, A2, A3, A4, A5, A6 = (rotary(f"A{k}", f"turn A{k}") for k in range(1, 7))
 UPPER, FORE = length("link_a", "upper arm", nominal=540.0), length("link_b", "forearm", nominal=540.0)

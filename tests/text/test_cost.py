@@ -12,30 +12,10 @@ import pytest
 import sympy as sp
 
 from derive.description.mechanism import Mechanism
-from derive.ir.primitives import (
-    Atan2,
-    NearestOnArc,
-    NearestPeriod,
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Call,
-    Iterate,
-    Let,
-    Output,
-    Program,
-    Require,
-    Solve,
-    Status,
-)
-from derive.ir.symbols import (
-    SCALE,
-    real,
-)
-from derive.kinematics.parameters import (
-    machine_parameters,
-)
+from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select
+from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Solve, Status
+from derive.ir.symbols import SCALE, real
+from derive.kinematics.parameters import machine_parameters
 from derive.kinematics.sampling import sample_axes
 from derive.plate.plate import home_position
 from derive.report.cost import Cost, cost_of, expression_cost, solve_cost

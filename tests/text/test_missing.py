@@ -11,9 +11,7 @@ import sympy as sp
 from softkin import Diagnosis, KinematicsError, Status
 
 from derive.description.mechanism import Mechanism, Rod, X, Y, Z
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from tests.catalogue.references import held_at
 from tests.mechanisms import catalogue
 from tests.text.samples import NO_TURN

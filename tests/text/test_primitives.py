@@ -13,10 +13,7 @@ from hypothesis import strategies as some
 
 from derive.command.catalogue import OUTPUT
 from derive.ir import primitives
-from derive.ir.constants import (
-    EDGE,
-    FREE_ANGLE,
-)
+from derive.ir.constants import EDGE, FREE_ANGLE
 from tests.harness.library import Library, StError, compile_st
 
 TEXTS = {p.name: p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st" / "softkin").glob("*.st"))}

@@ -17,15 +17,7 @@ from math import lcm
 import sympy as sp
 
 from derive.description.dimensions import Role
-from derive.description.mechanism import (
-    Bound,
-    DescriptionError,
-    Joint,
-    Kind,
-    Limited,
-    Mechanism,
-    Rod,
-)
+from derive.description.mechanism import Bound, DescriptionError, Joint, Kind, Limited, Mechanism, Rod
 from derive.geometry.frames import Chain, Motion
 
 Table = dict[sp.Symbol, sp.Expr]

@@ -12,15 +12,7 @@ from derive.drawing.scene import ORIGIN, Body, Dimension, Point, Segment, Slide,
 from derive.emit.picture import style
 from derive.emit.picture.belt import belt, motor_radius
 from derive.emit.picture.ink import Area, Mark, Vector
-from derive.emit.picture.naming import (
-    name_angle,
-    name_axes,
-    name_length,
-    name_motor,
-    name_point,
-    name_slide,
-    name_turn,
-)
+from derive.emit.picture.naming import name_angle, name_axes, name_length, name_motor, name_point, name_slide, name_turn
 from derive.emit.picture.placing import Sheet, around
 from derive.emit.picture.rails import FREE, rails, slide_arrow
 from derive.emit.picture.spelling import in_short, spelled

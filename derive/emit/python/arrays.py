@@ -22,16 +22,7 @@ from derive.emit.python.program import (
     without_conversions,
 )
 from derive.ir.primitives import NearestPeriod
-from derive.ir.program import (
-    Call,
-    FindRoot,
-    Iterate,
-    Let,
-    Require,
-    Solve,
-    Statement,
-    reads,
-)
+from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve, Statement, reads
 from derive.ir.tree import If, Item, grouped
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.scheduling import scheduled

@@ -7,13 +7,8 @@ import sympy as sp
 
 from derive.emit.python.layout import note_lines, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
-from derive.ir.program import (
-    Call,
-    FindRoot,
-)
-from derive.ir.symbols import (
-    PLACE,
-)
+from derive.ir.program import Call, FindRoot
+from derive.ir.symbols import PLACE
 
 GIVEN, FOUND = "given", "found"
 """The argument of a shared program, and its result: its values or, on plain numbers, the status of its refusal."""

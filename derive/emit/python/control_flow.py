@@ -25,18 +25,9 @@ import sympy as sp
 
 from derive.emit.python.layout import note_lines, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
-from derive.ir.primitives import (
-    NearestPeriod,
-)
-from derive.ir.program import (
-    Let,
-    Statement,
-)
-from derive.ir.symbols import (
-    Flag,
-    is_count,
-    symbols_of,
-)
+from derive.ir.primitives import NearestPeriod
+from derive.ir.program import Let, Statement
+from derive.ir.symbols import Flag, is_count, symbols_of
 from derive.ir.tree import If, Item, given_to, read_in
 
 

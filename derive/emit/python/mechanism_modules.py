@@ -27,12 +27,7 @@ from derive.emit.python.program import Method, constants_of, has_search, scalar_
 from derive.emit.python.refusal import explained
 from derive.emit.python.runtime import templates
 from derive.emit.python.straight_line.finish import Function
-from derive.emit.python.straight_line.unrolled import (
-    Unrolled,
-    is_trusted,
-    trusted_branch,
-    unrolled,
-)
+from derive.emit.python.straight_line.unrolled import Unrolled, is_trusted, trusted_branch, unrolled
 from derive.ir.passes import untold
 from derive.ir.program import FindRoot
 from derive.kinematics.kinematics import Kinematics

@@ -10,14 +10,8 @@ import sympy as sp
 
 from derive.emit.conditions import sized
 from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, PRODUCT, ExpressionPrinter, is_never_negative
-from derive.ir.constants import (
-    DEGREE,
-)
-from derive.ir.primitives import (
-    Atan2,
-    Root,
-    Select,
-)
+from derive.ir.constants import DEGREE
+from derive.ir.primitives import Atan2, Root, Select
 from derive.optimize.guards import PositiveRoot
 from derive.optimize.inline import Grouped
 

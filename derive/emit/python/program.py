@@ -12,14 +12,8 @@ from derive.emit.python.layout import assigned, fits, note_lines, taken_apart, t
 from derive.emit.python.loops import scalar_end, scalar_head, solve_lines
 from derive.emit.python.printer import ScalarPrinter, literal, spelled
 from derive.emit.python.refusal import PLAIN, Refusals, conjunction
-from derive.ir.constants import (
-    EDGE,
-)
-from derive.ir.primitives import (
-    NearestPeriod,
-    Select,
-    ToReal,
-)
+from derive.ir.constants import EDGE
+from derive.ir.primitives import NearestPeriod, Select, ToReal
 from derive.ir.program import (
     Call,
     FindRoot,
@@ -32,11 +26,7 @@ from derive.ir.program import (
     reason_expressions,
     rewritten,
 )
-from derive.ir.symbols import (
-    PLACE,
-    replaced,
-    symbols_of,
-)
+from derive.ir.symbols import PLACE, replaced, symbols_of
 from derive.ir.tree import If, Item, grouped
 from derive.ir.verify import verify
 from derive.lowering.decided import decided

@@ -15,12 +15,7 @@ from derive.emit.python.program import binding_lines
 from derive.emit.python.refusal import conjunction
 from derive.emit.setup import own_setup, parameters_read
 from derive.equations.windows import Window, windows
-from derive.ir.program import (
-    Call,
-    FindRoot,
-    Iterate,
-    Require,
-)
+from derive.ir.program import Call, FindRoot, Iterate, Require
 from derive.kinematics.kinematics import Kinematics
 
 _PRINTER = ScalarPrinter()

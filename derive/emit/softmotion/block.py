@@ -15,9 +15,7 @@ from derive.emit.st.names import capitalized, free, stored_name, type_name
 from derive.emit.st.program import Printed
 from derive.ir.constants import TIE
 from derive.ir.passes import needed_for
-from derive.ir.program import (
-    Program,
-)
+from derive.ir.program import Program
 from derive.ir.types import type_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics

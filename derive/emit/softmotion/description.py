@@ -14,12 +14,7 @@ from derive.emit.softmotion.block import Block
 from derive.emit.softmotion.inputs import inputs
 from derive.emit.st.layout import WIDTH
 from derive.emit.st.names import respelled
-from derive.ir.constants import (
-    EXACT_ROTATION,
-    FREE_ANGLE,
-    ONE_TURN,
-    ROTATION,
-)
+from derive.ir.constants import EXACT_ROTATION, FREE_ANGLE, ONE_TURN, ROTATION
 from derive.ir.program import Status, shared
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.reference_cases import Called

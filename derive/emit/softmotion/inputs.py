@@ -12,9 +12,7 @@ from derive.emit.st.expression import literal
 from derive.emit.st.layout import sentence
 from derive.emit.st.names import capitalized, input_name, of_methods, stored_name
 from derive.emit.st.reserved import clash
-from derive.ir.constants import (
-    LARGEST,
-)
+from derive.ir.constants import LARGEST
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 

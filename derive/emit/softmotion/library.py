@@ -32,15 +32,7 @@ from derive.emit.st.limits import limits_function
 from derive.emit.st.reserved import refuse_clashes
 from derive.emit.st.rotation import rotation_function
 from derive.emit.st.scan import SEARCH
-from derive.ir.constants import (
-    EDGE,
-    FREE_ANGLE,
-    HELD,
-    LARGEST,
-    LEAST,
-    PIVOT,
-    SOLVABLE,
-)
+from derive.ir.constants import EDGE, FREE_ANGLE, HELD, LARGEST, LEAST, PIVOT, SOLVABLE
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.report.branch_stretches import MOST_KEPT, MOST_SIDES

@@ -9,14 +9,8 @@ from sympy.core.relational import Relational
 
 from derive.emit.conditions import is_size_test
 from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter, is_never_negative
-from derive.ir.constants import (
-    DEGREE,
-    LARGEST,
-)
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
+from derive.ir.constants import DEGREE, LARGEST
+from derive.ir.primitives import Root, Select
 
 _FUNCTIONS = {
     "sin": "SIN",

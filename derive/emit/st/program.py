@@ -16,23 +16,9 @@ from derive.emit.st.names import respelled, spellings, type_name
 from derive.emit.st.refusal import Refusal
 from derive.emit.st.shared import OUTCOME, call_lines
 from derive.emit.st.stretches import SIDE, has_sides, stretch_lines
-from derive.ir.constants import (
-    DEGREE,
-)
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Call,
-    FindRoot,
-    Iterate,
-    Let,
-    Program,
-    Require,
-    Solve,
-    Status,
-)
+from derive.ir.constants import DEGREE
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, Status
 from derive.ir.tree import If, Item, bound_in
 from derive.ir.types import type_of
 from derive.lowering.decided import decided

@@ -13,9 +13,7 @@ from derive.emit.st.refusal import MISSING, REASON, Explained
 from derive.equations.rotation_repair import rotation_program, surely_exact
 from derive.ir.passes import with_inputs
 from derive.ir.program import Let
-from derive.ir.symbols import (
-    ROTATION_ENTRIES,
-)
+from derive.ir.symbols import ROTATION_ENTRIES
 from derive.report.reasons import reasons_of_rotation, rotation_texts
 
 _FUNCTION = "Softkin_MakeRotation"

@@ -19,10 +19,7 @@ from derive.emit.st.shared import method_name
 from derive.ir import cells, roots
 from derive.ir.constants import FINISHED, TRIALS
 from derive.ir.program import FindRoot, Program
-from derive.ir.symbols import (
-    PLACE,
-    is_count,
-)
+from derive.ir.symbols import PLACE, is_count
 
 TRY_AT = "TryAt"
 _STACKED, _PLACES = 60, 48

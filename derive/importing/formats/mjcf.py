@@ -17,17 +17,7 @@ from derive.importing.formats.documents import number, numbers, parsed, required
 from derive.importing.formats.mimics import Follower, driven
 from derive.importing.formats.orientations import File, places_of
 from derive.importing.formats.whole import whole
-from derive.importing.robot import (
-    Axis,
-    Moving,
-    Place,
-    Robot,
-    Shifted,
-    Step,
-    Triple,
-    UnreadableRobot,
-    reversed_step,
-)
+from derive.importing.robot import Axis, Moving, Place, Robot, Shifted, Step, Triple, UnreadableRobot, reversed_step
 
 Element = ElementTree.Element
 WORLD = "world"

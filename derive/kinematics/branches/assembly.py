@@ -17,25 +17,13 @@ from derive.algebra.normal_form import polynomial
 from derive.description.branches import assembly
 from derive.description.mechanism import Assembly, Bound, DescriptionError, Mechanism, Rod
 from derive.equations.closures.fixed_names import all_angles, signs_of, with_fixed_names
-from derive.equations.pose_at_axes import (
-    Forward,
-)
+from derive.equations.pose_at_axes import Forward
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.constants import BOUNDARY, DEGREE
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Root,
-    Select,
-    angle_of_sine,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Require,
-    Statement,
-    Status,
-)
+from derive.ir.primitives import Root, Select, angle_of_sine
+from derive.ir.program import Let, Output, Require, Statement, Status
 from derive.ir.reason import Reason, Unit, Why, about
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,

@@ -11,30 +11,15 @@ import sympy as sp
 from derive.algebra.normal_form import cancelled, reduce_units
 from derive.description.mechanism import Branch, DescriptionError, Mechanism
 from derive.equations.closures.fixed_names import all_angles, with_fixed_names
-from derive.equations.pose_at_axes import (
-    Forward,
-)
+from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import StepDeterminant
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    ToReal,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Statement,
-    Status,
-    rewritten,
-)
-from derive.ir.symbols import (
-    branch_sign,
-    real,
-)
-from derive.kinematics.forward import (
-    derivation_at_axes,
-)
+from derive.ir.primitives import ToReal
+from derive.ir.program import Let, Output, Statement, Status, rewritten
+from derive.ir.symbols import branch_sign, real
+from derive.kinematics.forward import derivation_at_axes
 from derive.kinematics.inverse import Inverse
 from derive.kinematics.no_pose import near_home, why_no_pose
 from derive.kinematics.sampling import possible_axes, sample_machine

@@ -6,27 +6,14 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.description.mechanism import (
-    Mechanism,
-)
+from derive.description.mechanism import Mechanism
 from derive.equations.problem import Conditioning
-from derive.ir.constants import (
-    FREE_ANGLE,
-)
-from derive.ir.primitives import (
-    Select,
-)
-from derive.ir.program import (
-    Let,
-)
-from derive.ir.symbols import (
-    SCALE,
-    real,
-)
+from derive.ir.constants import FREE_ANGLE
+from derive.ir.primitives import Select
+from derive.ir.program import Let
+from derive.ir.symbols import SCALE, real
 from derive.kinematics.branches.assignment import Assignment
-from derive.kinematics.parameters import (
-    has_length,
-)
+from derive.kinematics.parameters import has_length
 
 
 @dataclass(frozen=True)

@@ -7,21 +7,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.description.mechanism import (
-    DescriptionError,
-    Mechanism,
-)
+from derive.description.mechanism import DescriptionError, Mechanism
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
-from derive.ir.program import (
-    Output,
-    Program,
-    Statement,
-    Status,
-)
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-)
+from derive.ir.program import Output, Program, Statement, Status
+from derive.ir.symbols import COORDINATE_NAMES
 from derive.kinematics.differential import jacobian_rows
 from derive.kinematics.kinematics import Margin
 from derive.kinematics.margins.candidates import Factor

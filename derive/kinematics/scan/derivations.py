@@ -12,50 +12,20 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.description.mechanism import (
-    Branch,
-    DescriptionError,
-    Mechanism,
-)
+from derive.description.mechanism import Branch, DescriptionError, Mechanism
 from derive.equations.axes import axis_lets, frozen_lets, held_lets, reference_lets, reference_value
 from derive.equations.closures.fixed_names import fixed_lets
-from derive.equations.pose_at_axes import (
-    Forward,
-)
+from derive.equations.pose_at_axes import Forward
 from derive.geometry.frames import Chain
 from derive.ir.passes import normalise, renamed
 from derive.ir.primitives import Select
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Statement,
-    binds,
-    rewritten,
-)
-from derive.ir.symbols import (
-    SIDE,
-    TRIED,
-    branch_sign,
-    called,
-    cosine,
-    count,
-    flag,
-    real,
-    sine,
-)
+from derive.ir.program import Let, Output, Program, Require, Statement, binds, rewritten
+from derive.ir.symbols import SIDE, TRIED, branch_sign, called, cosine, count, flag, real, sine
 from derive.kinematics.branches.assignment import Assignment, assign, refuse_unnamed, steps_and_rest, with_branch_signs
-from derive.kinematics.forward import (
-    pose_at_axes,
-)
+from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, of_angle, solve_at, solve_pose
 from derive.kinematics.scan.guards import conditions_of, guards_of, room_of
-from derive.kinematics.scan.programs import (
-    Trial,
-    trial_of,
-    with_goal,
-)
+from derive.kinematics.scan.programs import Trial, trial_of, with_goal
 from derive.kinematics.scan.slopes import slope_name, with_slopes
 from derive.solver.solve import Derivation
 

@@ -13,27 +13,10 @@ import sympy as sp
 
 from derive.equations.axes import finite, reference_value
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Atan2,
-    Select,
-)
-from derive.ir.program import (
-    Call,
-    Let,
-    Output,
-    Program,
-    Require,
-    Statement,
-    Status,
-)
+from derive.ir.primitives import Atan2, Select
+from derive.ir.program import Call, Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Why, about_joint, about_machine
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    ROTATION_ENTRIES,
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, cosine, real, sine
 from derive.kinematics.branches.assignment import with_branch_signs
 from derive.kinematics.inverse import Inverse
 from derive.kinematics.scan.candidates import candidates_program
@@ -50,15 +33,7 @@ from derive.kinematics.scan.derivations import (
 from derive.kinematics.scan.margins import DETERMINANT, margins_wanted
 from derive.kinematics.scan.own_side import on_own_side
 from derive.kinematics.scan.position_first import with_position_first
-from derive.kinematics.scan.programs import (
-    FOUND,
-    GOAL,
-    LOOKED_FOR,
-    START,
-    find_program,
-    finish_program,
-    try_program,
-)
+from derive.kinematics.scan.programs import FOUND, GOAL, LOOKED_FOR, START, find_program, finish_program, try_program
 from derive.kinematics.scan.quartic import quartic_of
 
 

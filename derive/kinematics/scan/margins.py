@@ -13,49 +13,23 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.description.mechanism import (
-    Branch,
-    Mechanism,
-    Role,
-)
+from derive.description.mechanism import Branch, Mechanism, Role
 from derive.equations.axes import reference_value
 from derive.equations.closures.fixed_names import with_fixed_names
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Select,
-    ToReal,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Solve,
-    Statement,
-    binds,
-)
-from derive.ir.symbols import (
-    FREED,
-    FREED_ANGLE,
-    SCALE,
-    SIDE,
-    TRIED,
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.primitives import Select, ToReal
+from derive.ir.program import Let, Output, Solve, Statement, binds
+from derive.ir.symbols import FREED, FREED_ANGLE, SCALE, SIDE, TRIED, cosine, real, sine
 from derive.ir.verify import BrokenProgram
 from derive.kinematics.branches.assignment import Assignment
 from derive.kinematics.differential import scaled_entries, solved_entries
-from derive.kinematics.forward import (
-    derivation_at_axes,
-)
+from derive.kinematics.forward import derivation_at_axes
 from derive.kinematics.inverse import Inverse
 from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.kinematics.scan.derivations import SEARCHED, Scanned, named_apart, searched_flag, trial_on_branch, wanted
-from derive.kinematics.scan.programs import (
-    GOAL,
-)
+from derive.kinematics.scan.programs import GOAL
 
 DETERMINANT = real("determinant")
 _SAMPLES = 64

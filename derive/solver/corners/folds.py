@@ -21,32 +21,11 @@ import sympy as sp
 
 from derive.algebra.normal_form import is_compound, linear_coefficients
 from derive.equations.problem import Conditioning, Legs, StepDeterminant
-from derive.ir.constants import (
-    FOLD,
-    FREE_ANGLE,
-    ROUNDING,
-)
+from derive.ir.constants import FOLD, FREE_ANGLE, ROUNDING
 from derive.ir.passes import depending_on, needed_lets, normalise
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Program,
-    Require,
-    Statement,
-    Status,
-    binds,
-    rewritten,
-)
-from derive.ir.symbols import (
-    SCALE,
-    cosine,
-    flag,
-    real,
-    sine,
-)
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Let, Program, Require, Statement, Status, binds, rewritten
+from derive.ir.symbols import SCALE, cosine, flag, real, sine
 from derive.solver.corners.feasible_arc import WITHIN_ITS_BOUND
 from derive.solver.corners.sweeps import WAYS, Sweep, sweep_of, swept
 

@@ -21,25 +21,10 @@ import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients, reduce_units
 from derive.equations.problem import Conditioning
-from derive.ir.constants import (
-    BOUNDARY,
-    FREE_ANGLE,
-    INSIDE,
-)
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-)
-from derive.ir.symbols import (
-    angle_of,
-    cosine,
-    flag,
-    real,
-    sine,
-)
+from derive.ir.constants import BOUNDARY, FREE_ANGLE, INSIDE
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Let
+from derive.ir.symbols import angle_of, cosine, flag, real, sine
 from derive.solver.corners.feasible_arc import nearest_on_arc
 
 Row = tuple[sp.Expr, sp.Expr]

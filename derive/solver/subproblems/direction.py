@@ -10,23 +10,10 @@ from __future__ import annotations
 import sympy as sp
 
 from derive.equations.problem import Problem
-from derive.ir.constants import (
-    FREE_ANGLE,
-)
-from derive.ir.primitives import (
-    NearestOnArc,
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Statement,
-)
-from derive.ir.symbols import (
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.constants import FREE_ANGLE
+from derive.ir.primitives import NearestOnArc, Root, Select
+from derive.ir.program import Let, Statement
+from derive.ir.symbols import cosine, real, sine
 
 AT_THE_SINGULARITY = "at a singularity: the angle of the reference"
 

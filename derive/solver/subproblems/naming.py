@@ -9,15 +9,9 @@ import sympy as sp
 from derive.algebra.angle_sums import name_of, recognise
 from derive.algebra.normal_form import is_compound
 from derive.equations.problem import Problem
-from derive.ir.primitives import (
-    Root,
-)
-from derive.ir.program import (
-    Let,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.primitives import Root
+from derive.ir.program import Let
+from derive.ir.symbols import real
 
 
 class Naming:

@@ -16,9 +16,7 @@ import sympy as sp
 
 from derive.algebra.normal_form import cancelled, linear_coefficients
 from derive.equations.problem import Binding, Column, Conditioning, Equation, Problem, StepDeterminant
-from derive.ir.program import (
-    Let,
-)
+from derive.ir.program import Let
 from derive.ir.symbols import cosine, sine
 from derive.solver.subproblems.direction import direction
 from derive.solver.subproblems.naming import Naming

@@ -13,21 +13,10 @@ import sympy as sp
 
 from derive.algebra.normal_form import cancelled, factored, linear_coefficients
 from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant, sign_of
-from derive.ir.constants import (
-    BOUNDARY,
-)
-from derive.ir.primitives import (
-    Root,
-)
-from derive.ir.program import (
-    Let,
-    Require,
-    Statement,
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.constants import BOUNDARY
+from derive.ir.primitives import Root
+from derive.ir.program import Let, Require, Statement, Status
+from derive.ir.symbols import real
 from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.shortfall import cannot_reach
 

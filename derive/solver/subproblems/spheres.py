@@ -17,24 +17,11 @@ import sympy as sp
 
 from derive.algebra.normal_form import cancelled, factored, is_compound
 from derive.equations.problem import Binding, Equation, Problem, StepDeterminant, sign_of
-from derive.ir.constants import (
-    BOUNDARY,
-    FREE_ANGLE,
-)
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Require,
-    Statement,
-    Status,
-)
+from derive.ir.constants import BOUNDARY, FREE_ANGLE
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Let, Require, Statement, Status
 from derive.ir.reason import Why, about_machine
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.symbols import real
 
 _ASSEMBLY = real("assembly")
 """The name of the step, which finds all unknowns together."""

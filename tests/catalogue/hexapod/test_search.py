@@ -9,14 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 from softkin import KinematicsError, Status
 
-from derive.ir.program import (
-    Iterate,
-    Statement,
-)
+from derive.ir.program import Iterate, Statement
 from derive.ir.program import Status as Outcome
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.symbols import real
 from derive.plate.newton import LIMIT
 from tests.catalogue.hexapod.machines import Machine, machines, rotation
 from tests.catalogue.hexapod.programs import bounded, found_from, search_changed

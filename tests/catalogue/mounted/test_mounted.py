@@ -14,16 +14,7 @@ from hypothesis import strategies as st
 from softkin import Frame, KinematicsError, Status
 
 from derive.description.mechanism import Mechanism, Turning
-from tests.catalogue.mounted.machines import (
-    BASE,
-    EVERY,
-    LATERAL,
-    TOOL,
-    Sample,
-    matrices,
-    sample_of,
-    tools_of,
-)
+from tests.catalogue.mounted.machines import BASE, EVERY, LATERAL, TOOL, Sample, matrices, sample_of, tools_of
 from tests.catalogue.references import held_at
 from tests.catalogue.search.arms import frame as frame_of_arm
 from tests.text.samples import tilted

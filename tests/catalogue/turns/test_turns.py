@@ -9,9 +9,7 @@ from dataclasses import replace
 import pytest
 
 from derive.description.mechanism import Mechanism
-from derive.ir.constants import (
-    ONE_TURN,
-)
+from derive.ir.constants import ONE_TURN
 from tests.catalogue.turns.axes import FULL, MECHANISMS, TurningAxis, turning_axes
 from tests.catalogue.turns.callers import InPython, OnController
 from tests.catalogue.turns.following import Make, check_anywhere, check_edges, follow

@@ -9,9 +9,7 @@ import sympy as sp
 
 from derive.algebra.angle_sums import Terms, name_of, recognise, symbol_of_sum, terms_of
 from derive.algebra.normal_form import polynomial
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.symbols import real
 
 A1, A2, A3, THETA = ANGLES = tuple(real(n) for n in ("a1", "a2", "a3", "theta"))
 L = sp.Symbol("link", positive=True)

@@ -17,12 +17,8 @@ from derive.algebra.normal_form import (
     sine,
     split_known,
 )
-from derive.ir.constants import (
-    DEGREE,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.constants import DEGREE
+from derive.ir.symbols import real
 from tests.unit.solver.execution import ANGLES, NUMBERS, at, few
 
 A1, A2, A3 = ANGLE_NAMES = tuple(real(f"a{k}") for k in (1, 2, 3))

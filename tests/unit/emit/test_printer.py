@@ -16,27 +16,11 @@ from derive.emit.python.arrays import array_body
 from derive.emit.python.layout import WIDTH, UnformattedError, assigned, formatted
 from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, literal, spelled
 from derive.emit.python.program import Argument, Method, scalar_body
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from derive.ir.interpret import evaluate, run
-from derive.ir.primitives import (
-    Atan2,
-    NearestPeriod,
-    Root,
-    Select,
-    Wrap,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, Wrap
+from derive.ir.program import Let, Output, Program, Require, Status
+from derive.ir.symbols import real
 
 NAMES = ("first", "second", "third")
 LEAVES = st.sampled_from(

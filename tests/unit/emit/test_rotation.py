@@ -12,9 +12,7 @@ from softkin._rotation import in_words, made_rotation
 
 from derive.equations.rotation_repair import rotation_program
 from derive.ir.interpret import run
-from derive.ir.symbols import (
-    ROTATION_ENTRIES,
-)
+from derive.ir.symbols import ROTATION_ENTRIES
 from derive.report.reasons import rotation_texts
 from tests.orthonormal import Array, error, mirrored, repaired, single, slightly_off, too_far_off
 

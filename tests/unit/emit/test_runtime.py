@@ -14,15 +14,8 @@ from softkin import _array, _scalar
 from softkin._types import Status
 
 from derive.ir.interpret import evaluate
-from derive.ir.primitives import (
-    Atan2,
-    NearestOnArc,
-    NearestPeriod,
-    Root,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root
+from derive.ir.symbols import real
 
 SIZES = st.floats(-1e9, 1e9) | st.sampled_from([0.0, -0.0, 1.0, -1.0, 1e-12, -1e-12, 180.0, -180.0])
 ANGLES = st.floats(-50.0, 50.0)

@@ -10,23 +10,9 @@ import sympy as sp
 
 from derive.ir.interpret import run
 from derive.ir.passes import hoist, normalise
-from derive.ir.primitives import (
-    Root,
-)
-from derive.ir.program import (
-    Call,
-    Let,
-    Output,
-    Program,
-    Require,
-    Status,
-    binds,
-    reads,
-    shared,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.primitives import Root
+from derive.ir.program import Call, Let, Output, Program, Require, Status, binds, reads, shared
+from derive.ir.symbols import real
 from derive.ir.verify import BrokenProgram, verify
 
 A, B, C, K, Q, W, X, Y = map(real, ("a", "b", "c", "k", "q", "w", "x", "y"))

@@ -12,18 +12,8 @@ from softkin import _array, _scalar
 
 from derive.ir.interpret import run, solve
 from derive.ir.passes import hoist, normalise
-from derive.ir.program import (
-    Iterate,
-    Let,
-    Output,
-    Program,
-    Require,
-    Solve,
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.program import Iterate, Let, Output, Program, Require, Solve, Status
+from derive.ir.symbols import real
 from derive.ir.verify import BrokenProgram, verify
 from tests.text.units import compiled_shared
 

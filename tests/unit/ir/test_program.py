@@ -4,24 +4,10 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.ir.constants import (
-    DEGREE,
-)
-from derive.ir.primitives import (
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Status,
-    reads,
-)
-from derive.ir.symbols import (
-    real,
-    symbols_of,
-)
+from derive.ir.constants import DEGREE
+from derive.ir.primitives import Select
+from derive.ir.program import Let, Output, Program, Require, Status, reads
+from derive.ir.symbols import real, symbols_of
 
 A, B, X, Y = (real(n) for n in "abxy")
 SAMPLE = Program(

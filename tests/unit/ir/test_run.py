@@ -10,27 +10,11 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from derive.ir.interpret import evaluate, run
-from derive.ir.primitives import (
-    Atan2,
-    Root,
-    Select,
-    nearest_on_arc,
-    nearest_period,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.primitives import Atan2, Root, Select, nearest_on_arc, nearest_period
+from derive.ir.program import Let, Output, Program, Require, Status
+from derive.ir.symbols import real
 from tests.unit.solver.execution import at, distance
 
 X, Y, Z = (real(n) for n in "xyz")

@@ -7,27 +7,10 @@ import re
 import pytest
 import sympy as sp
 
-from derive.ir.constants import (
-    DEGREE,
-)
-from derive.ir.primitives import (
-    Atan2,
-    NearestOnArc,
-    NearestPeriod,
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Statement,
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.constants import DEGREE
+from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select
+from derive.ir.program import Let, Output, Program, Require, Statement, Status
+from derive.ir.symbols import real
 from derive.ir.verify import BrokenProgram, verify
 
 X, Y, Z = (real(n) for n in "xyz")

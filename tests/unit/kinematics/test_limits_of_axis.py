@@ -11,14 +11,9 @@ from hypothesis import strategies as st
 
 from derive.description.catalogue import MECHANISMS, load
 from derive.equations.windows import limits_of_axis
-from derive.ir.constants import (
-    LARGEST,
-    LIMIT,
-)
+from derive.ir.constants import LARGEST, LIMIT
 from derive.ir.interpret import run
-from derive.ir.program import (
-    Status,
-)
+from derive.ir.program import Status
 from tests.unit.kinematics.machine import machine
 
 PROGRAM = limits_of_axis()

@@ -5,22 +5,9 @@ from __future__ import annotations
 import sympy as sp
 
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Solve,
-    Statement,
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Let, Output, Program, Require, Solve, Statement, Status
+from derive.ir.symbols import real
 from derive.ir.tree import If, Item
 from derive.lowering.scheduling import scheduled, structured
 from derive.report.cost import cost_of

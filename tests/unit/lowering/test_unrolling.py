@@ -12,30 +12,9 @@ import sympy as sp
 from derive.description.catalogue import MECHANISMS, load
 from derive.ir.interpret import run
 from derive.ir.passes import normalise, renamed
-from derive.ir.primitives import (
-    NearestPeriod,
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Iterate,
-    Let,
-    Output,
-    Program,
-    Require,
-    Solve,
-    Status,
-    rewritten,
-)
-from derive.ir.symbols import (
-    REFUSAL,
-    Sign,
-    called,
-    choices,
-    count,
-    real,
-    suffixed,
-)
+from derive.ir.primitives import NearestPeriod, Root, Select
+from derive.ir.program import Iterate, Let, Output, Program, Require, Solve, Status, rewritten
+from derive.ir.symbols import REFUSAL, Sign, called, choices, count, real, suffixed
 from derive.ir.verify import BrokenProgram, verify
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.unrolling import is_straight, unroll

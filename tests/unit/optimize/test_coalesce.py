@@ -5,20 +5,9 @@ from __future__ import annotations
 import sympy as sp
 
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Root,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Statement,
-)
-from derive.ir.symbols import (
-    Sign,
-    real,
-    without_words,
-)
+from derive.ir.primitives import Root
+from derive.ir.program import Let, Output, Program, Statement
+from derive.ir.symbols import Sign, real, without_words
 from derive.lowering.scheduling import scheduled
 from derive.lowering.unrolling import unroll
 from derive.optimize.coalesce import coalesced

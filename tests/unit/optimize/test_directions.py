@@ -5,27 +5,11 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Atan2,
-    NearestPeriod,
-    Root,
-    Select,
-    Wrap,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, Wrap
+from derive.ir.program import Let, Output, Program, Require, Status
+from derive.ir.symbols import real
 from derive.ir.verify import BrokenProgram
 from derive.optimize.angle_addition import with_added_angles
 from derive.optimize.directions import plain_directions

@@ -7,17 +7,9 @@ import sympy as sp
 
 from derive.emit.python.printer import ScalarPrinter
 from derive.emit.python.program import Refusals, item_lines
-from derive.ir.primitives import (
-    Root,
-)
-from derive.ir.program import (
-    Let,
-    Require,
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.primitives import Root
+from derive.ir.program import Let, Require, Status
+from derive.ir.symbols import real
 from derive.ir.tree import If
 from derive.optimize.guards import PositiveRoot, guarded
 

@@ -5,20 +5,9 @@ from __future__ import annotations
 import sympy as sp
 
 from derive.emit.python.printer import ScalarPrinter
-from derive.ir.primitives import (
-    Atan2,
-    NearestPeriod,
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Require,
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.primitives import Atan2, NearestPeriod, Root, Select
+from derive.ir.program import Let, Require, Status
+from derive.ir.symbols import real
 from derive.ir.tree import If
 from derive.optimize.inline import LONGEST, Grouped, inlined
 

@@ -6,25 +6,12 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
 from derive.ir.passes import hoist, normalise
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Let, Output, Program, Require, Status
+from derive.ir.symbols import real
 from derive.ir.verify import BrokenProgram
 
 A, B, C, D, X, Y = (real(n) for n in "abcdxy")

@@ -6,25 +6,12 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.ir.constants import (
-    FREE_ANGLE,
-    KNOWN_ANGLE,
-)
+from derive.ir.constants import FREE_ANGLE, KNOWN_ANGLE
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-)
-from derive.ir.symbols import (
-    ROTATION_ENTRIES,
-    real,
-)
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Let, Output, Program
+from derive.ir.symbols import ROTATION_ENTRIES, real
 from derive.ir.tree import If
 from derive.lowering.scheduling import scheduled
 from derive.optimize.rotation_identities import with_rotation_identities

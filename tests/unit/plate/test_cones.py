@@ -10,16 +10,10 @@ import sympy as sp
 
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.validate import validate
-from derive.ir.constants import (
-    DEGREE,
-)
+from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
-from derive.ir.program import (
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.program import Status
+from derive.ir.symbols import real
 from derive.kinematics.build import build
 from derive.mechanisms.kin_hexapod import BASE_CONE, MECHANISM, PLATFORM_CONE
 from derive.mechanisms.kin_tripod_p3z import MECHANISM as TRIPOD

@@ -14,17 +14,8 @@ from derive.algebra.normal_form import polynomial
 from derive.equations.problem import Binding, Equation, Problem
 from derive.ir.interpret import evaluate, run
 from derive.ir.passes import normalise
-from derive.ir.program import (
-    Let,
-    Output,
-    Statement,
-    Status,
-)
-from derive.ir.symbols import (
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.program import Let, Output, Statement, Status
+from derive.ir.symbols import cosine, real, sine
 from derive.solver.solve import Rule
 
 Array = NDArray[np.float64]

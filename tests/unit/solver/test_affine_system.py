@@ -8,14 +8,8 @@ import pytest
 import sympy as sp
 from hypothesis import given
 
-from derive.ir.program import (
-    Status,
-)
-from derive.ir.symbols import (
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.program import Status
+from derive.ir.symbols import cosine, real, sine
 from derive.solver.subproblems.affine_system import affine_pair, affine_triple
 from tests.unit.solver.execution import (
     ANGLES,

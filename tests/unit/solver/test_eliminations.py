@@ -11,9 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from derive.equations.problem import Equation, Problem
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.symbols import real
 from derive.solver.eliminations import differences, squares
 from tests.unit.solver.execution import ANGLES, NUMBERS, at, execute, few, problem, trigonometry
 

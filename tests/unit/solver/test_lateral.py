@@ -9,15 +9,8 @@ import sympy as sp
 from derive.equations.problem import Equation, Problem
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
-from derive.ir.program import (
-    Output,
-    Status,
-)
-from derive.ir.symbols import (
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.program import Output, Status
+from derive.ir.symbols import cosine, real, sine
 from derive.solver.subproblems.one_equation.trigonometric import trigonometric
 
 Q, X, Y, BESIDE = real("q"), real("x"), real("y"), real("beside")

@@ -10,12 +10,8 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.ir.program import (
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.program import Status
+from derive.ir.symbols import real
 from derive.solver.subproblems.pair import pair
 from tests.unit.solver.execution import (
     ANGLES,

@@ -15,10 +15,7 @@ from derive.algebra.normal_form import polynomial
 from derive.equations.known_turns import Side, joints_of
 from derive.equations.problem import Problem
 from derive.geometry.frames import Factor, Motion
-from derive.ir.symbols import (
-    cosine,
-    real,
-)
+from derive.ir.symbols import cosine, real
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from tests.unit.solver.execution import ANGLES, angle_of, at, distance, execute, few, problem, reference, trigonometry
 

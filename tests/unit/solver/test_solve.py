@@ -18,20 +18,9 @@ import sympy as sp
 from derive.equations.problem import Problem
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
-from derive.ir.primitives import (
-    Atan2,
-    Wrap,
-)
-from derive.ir.program import (
-    Let,
-    Output,
-    Status,
-)
-from derive.ir.symbols import (
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.primitives import Atan2, Wrap
+from derive.ir.program import Let, Output, Status
+from derive.ir.symbols import cosine, real, sine
 from derive.ir.verify import BrokenProgram
 from derive.solver.derivation_record import DerivationRecord
 from derive.solver.solve import Derivation, Unsolved, solve

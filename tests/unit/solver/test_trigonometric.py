@@ -11,12 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from derive.equations.problem import Binding, Problem
-from derive.ir.program import (
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.program import Status
+from derive.ir.symbols import real
 from derive.solver.subproblems.one_equation.trigonometric import trigonometric
 from tests.unit.solver.execution import (
     ANGLES,

@@ -9,16 +9,8 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
-from derive.ir.program import (
-    Let,
-    Output,
-    Program,
-    Require,
-    Status,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.program import Let, Output, Program, Require, Status
+from derive.ir.symbols import real
 from derive.kinematics.kinematics import Kinematics
 from derive.witness import Disagreement, decade, witness
 from tests.mechanisms import kinematics_of, named

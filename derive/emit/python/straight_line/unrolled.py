@@ -32,18 +32,8 @@ from derive.emit.python.program import (
 from derive.emit.python.refusal import Refusals, status_of
 from derive.emit.python.straight_line.finish import Function, finish
 from derive.ir.passes import untold
-from derive.ir.program import (
-    Let,
-    Program,
-    Status,
-)
-from derive.ir.symbols import (
-    REFUSAL,
-    choices,
-    replaced,
-    suffixed,
-    symbols_of,
-)
+from derive.ir.program import Let, Program, Status
+from derive.ir.symbols import REFUSAL, choices, replaced, suffixed, symbols_of
 from derive.ir.tree import Item
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.scheduling import scheduled

@@ -15,26 +15,10 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.equations.problem import Binding, Conditioning, Equation, Legs, Problem, StepDeterminant
-from derive.ir.constants import (
-    BOUNDARY,
-    FREE_ANGLE,
-    ROUNDING,
-)
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Require,
-    Statement,
-    Status,
-)
-from derive.ir.symbols import (
-    cosine,
-    real,
-    sine,
-)
+from derive.ir.constants import BOUNDARY, FREE_ANGLE, ROUNDING
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Let, Require, Statement, Status
+from derive.ir.symbols import cosine, real, sine
 from derive.solver.subproblems.direction import AT_THE_SINGULARITY, direction, free_angle
 from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.shortfall import out_of_reach
