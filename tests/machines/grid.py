@@ -1,4 +1,4 @@
-"""Where machines are asked: at right angles and anywhere."""
+"""Where machines are asked: at right angles, next to them, and anywhere; and what they must answer there."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
+from softkin import Status
 
 from tests.machines.made import Array, Made
 
 MOST = 300
 """Rows of a grid, drawn where it has more."""
+_CORNERS = 240
 
 
 def grid(machine: Made) -> Array:
@@ -22,6 +24,32 @@ def grid(machine: Made) -> Array:
         rows = rows[rng.choice(len(rows), MOST, replace=False)]
     sizes = np.where(machine.closure.angles, 200.0, 0.9)
     return machine.axes(np.concatenate([rows, rng.uniform(-1.0, 1.0, (100, rows.shape[1])) * sizes]))
+
+
+def corners(machine: Made) -> Array:
+    """Axis values next to poses where singularities meet: joints are 1e-9 to 0.1 degrees away from multiples of 90
+    degrees, all by the same or each by another power of ten.
+    """
+    rng, angles = np.random.default_rng(9), machine.closure.angles
+    shape = (_CORNERS, len(angles))
+    away = 10.0 ** rng.uniform(-9.0, -1.0, shape) * rng.choice([-1.0, 1.0], shape)
+    away[::2] = 10.0 ** rng.uniform(-9.0, -1.0, (_CORNERS // 2, 1)) * rng.uniform(-1.0, 1.0, (_CORNERS // 2, shape[1]))
+    joints = np.where(angles, 90.0 * rng.integers(-2, 3, shape) + away, rng.uniform(-1.0, 1.0, shape))
+    axes = machine.axes(joints)
+    found = axes[is_own(machine, axes)]
+    assert len(found) > _CORNERS / 5
+    return found
+
+
+def every_pose_is_met(machine: Made, axes: Array, references: Array, within: float) -> None:
+    """Each pose has an answer on a branch, and each answer meets its pose. within: the largest error, in reaches."""
+    positions, rotations = machine.closure.poses(axes)
+    slots, statuses = machine.robot.inverse_all_batch(positions, rotations, references)
+    found = statuses == Status.OK
+    assert len(found) and found.any(axis=1).all()
+    for slot in range(slots.shape[1]):
+        rows = found[:, slot]
+        assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= within
 
 
 def is_own(machine: Made, axes: Array) -> NDArray[np.bool_]:

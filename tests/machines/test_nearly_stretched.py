@@ -9,8 +9,8 @@ from itertools import product
 
 import numpy as np
 import pytest
-from softkin import Status
 
+from tests.machines.grid import every_pose_is_met
 from tests.machines.made import Array, Made, made
 from tests.text.controller import OK
 
@@ -32,13 +32,7 @@ def test_every_answer_meets_the_pose(name: str, away: float) -> None:
     machine = made(name)
     axes = nearly_stretched(machine)
     references = axes + away * (np.array([j not in machine.mechanism.held_joints for j in machine.mechanism.joints]))
-    positions, rotations = machine.closure.poses(axes)
-    slots, statuses = machine.robot.inverse_all_batch(positions, rotations, references)
-    found = statuses == Status.OK
-    assert found.any(axis=1).all()
-    for slot in range(slots.shape[1]):
-        rows = found[:, slot]
-        assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= _CLOSED
+    every_pose_is_met(machine, axes, references, _CLOSED)
 
 
 def test_the_block_meets_the_pose() -> None:

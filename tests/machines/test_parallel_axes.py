@@ -8,26 +8,20 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from softkin import Status
 
+from tests.machines.grid import corners, every_pose_is_met
 from tests.machines.made import made
 from tests.machines.parallel_machines import PARALLEL
-from tests.machines.test_corners import _corners
 
 _CLOSED = 1e-10
 
 
 @pytest.mark.parametrize("name", PARALLEL)
 def test_no_pose_is_lost_where_singularities_meet(name: str) -> None:
+    """Every pose is answered, and every answer meets its pose."""
     machine = made(name)
-    axes = _corners(machine)
-    positions, rotations = machine.closure.poses(axes)
-    slots, statuses = machine.robot.inverse_all_batch(positions, rotations, axes)
-    found = statuses == Status.OK
-    assert found.any(axis=1).all()
-    for slot in range(slots.shape[1]):
-        rows = found[:, slot]
-        assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= _CLOSED
+    axes = corners(machine)
+    every_pose_is_met(machine, axes, axes, _CLOSED)
 
 
 ALONE = {
@@ -48,11 +42,7 @@ order leads half of the way to the only solution.
 
 @pytest.mark.parametrize("name", ALONE)
 def test_a_pose_where_three_singularities_meet(name: str) -> None:
+    """The pose is answered, and every answer meets it."""
     machine = made(name)
     axes = np.array([ALONE[name]]) + machine.closure.offsets
-    positions, rotations = machine.closure.poses(axes)
-    slots, statuses = machine.robot.inverse_all_batch(positions, rotations, axes)
-    answered = slots[statuses == Status.OK]
-    assert len(answered)
-    poses = np.repeat(positions, len(answered), axis=0), np.repeat(rotations, len(answered), axis=0)
-    assert machine.error(answered, *poses).max() <= _CLOSED
+    every_pose_is_met(machine, axes, axes, _CLOSED)
