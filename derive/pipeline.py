@@ -178,15 +178,19 @@ def derive_one(
 def derive_and_measure(mechanism: Mechanism, told: Told = _nobody) -> Kinematics:
     """Derive one mechanism and measure it. Raises what `faults.UNFIT` lists, where one of them fails."""
     from derive.kinematics.build import build
+    from derive.kinematics.no_pose import why_no_pose
     from derive.report.branch_meanings import with_meanings
     from derive.report.self_test import self_test
-    from derive.witness import witness
+    from derive.witness import Disagreement, NoPose, witness
 
     told("derive", "")
     derived = with_meanings(build(mechanism))
     told("derive", _derived(derived).removeprefix(mechanism.name).strip())
     told("measure", "")
-    evidence = witness(derived)
+    try:
+        evidence = witness(derived, mechanism)
+    except NoPose:
+        raise Disagreement(f"{mechanism.name}: {why_no_pose(derived.mechanism)}") from None
     told("measure", _measured(evidence))
     return replace(derived, evidence=evidence, self_test=self_test(derived))
 

@@ -32,6 +32,11 @@ class Branch:
         """Whether it is a branch that tells the roots of a scan apart: its indicator is the slope of the residual."""
         return bool(self.indicator is sp.nan)
 
+    @property
+    def home_flag(self) -> str:
+        """The parameter that is true where the machine is on the second side of this branch at its home pose."""
+        return f"home_{self.name}_{self.names[1]}"
+
 
 @dataclass(frozen=True)
 class Assembly:

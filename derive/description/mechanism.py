@@ -39,7 +39,6 @@ from derive.description.joints import Interval, Joint, Kind, arc, helical, linea
 from derive.description.kinds import expressions
 from derive.description.loops import ROTATION, Bound, Limited, Plane, Rod, X, Y, Z, bound, guide, limited, on_plate, rod
 from derive.geometry.frames import Chain
-from derive.geometry.half_turns import with_half_turns_last
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES
 
 TURN = 2 * sp.pi
@@ -213,8 +212,6 @@ class Mechanism:
         for what in ("positive", "closure", "home"):
             object.__setattr__(self, what, expressions(what, getattr(self, what)))
         object.__setattr__(self, "heading", None if self.heading is None else sp.sympify(self.heading))
-        if self.chain is not None:
-            object.__setattr__(self, "chain", with_half_turns_last(self.chain))
         held = {joint.name for joint in self.held}  # a held joint keeps the turn of the reference: it needs no byte
         joints = (replace(j, multi_turn=False) if j.name in held else j for j in self.joints)
         object.__setattr__(self, "joints", tuple(joints))

@@ -18,6 +18,7 @@ from derive.equations.conditions import with_conditions
 from derive.equations.limits import limits_program
 from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import Conditioning
+from derive.geometry.half_turns import with_half_turns_last
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.program import Let, Output, Program, Statement
@@ -81,9 +82,13 @@ def prepared(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> 
     """The mechanism as it is derived: its inputs have unique names, its numbers have names, its gears are moved to the
     joints, and its rods are recognised.
     """
-    mechanism = with_gears(with_named_numbers(with_inner_names(mechanism, further)))
+    mechanism = with_gears(with_named_numbers(_with_half_turns_last(with_inner_names(mechanism, further))))
     check_joints(mechanism)
     return with_stated_rods(with_fixed_point(mechanism))
+
+
+def _with_half_turns_last(mechanism: Mechanism) -> Mechanism:
+    return mechanism if mechanism.chain is None else replace(mechanism, chain=with_half_turns_last(mechanism.chain))
 
 
 def _built(mechanism: Mechanism) -> Kinematics:

@@ -19,7 +19,7 @@ from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Reason, about_parameters
 from derive.ir.symbols import MIN_TYPE2_MARGIN, SCALE, compared, flag, is_count, real
 from derive.ir.verify import verify
-from derive.plate.plate import home_branches, home_flag, machine_constants, machine_statements
+from derive.plate.plate import home_branches, machine_constants, machine_statements
 
 CHECK_LIMITS, WARNING_DISTANCE = "check_limits", "warning_distance"
 TIE_OF_LENGTHS = real("tie")
@@ -79,7 +79,7 @@ def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:
 def _at_home(branch: Branch) -> Parameter:
     """The branch at the home pose, on which the assembly mode of the machine depends."""
     meaning = f"branch {branch.name} at the home pose: {branch.names[1]} instead of {branch.names[0]}"
-    name = home_flag(branch)
+    name = branch.home_flag
     return Parameter(real(name), name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, 0.0)
 
 

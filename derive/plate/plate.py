@@ -98,11 +98,6 @@ def platform_size(mechanism: Mechanism) -> tuple[Statement, ...]:
     )
 
 
-def home_flag(branch: Branch) -> str:
-    """The parameter that is true where the machine is on the second side of a branch at its home pose."""
-    return f"home_{branch.name}_{branch.names[1]}"
-
-
 def home_branches(mechanism: Mechanism) -> tuple[Branch, ...]:
     """The branches on which the lines of the legs at the home pose depend."""
     is_needed = is_driven(mechanism, [v for rod in mechanism.rods for v in rod.base])

@@ -25,7 +25,7 @@ from derive.ir.symbols import HEADING, POSITION, ROTATION_ENTRIES, SCALE, Flag, 
 from derive.plate.legs import angles, by_angles, is_driven, position_of, rotation_of
 from derive.plate.newton import at_given, at_home, found_from, search_program
 from derive.plate.passive import mode_constants, modes_at_home
-from derive.plate.plate import home_flag, platform_size, pose_at_home
+from derive.plate.plate import platform_size, pose_at_home
 
 Samples = dict[str, NDArray[np.float64]]
 
@@ -62,7 +62,7 @@ def joints_at_home(mechanism: Mechanism, statements: Sequence[Statement]) -> tup
     """
     if not is_driven(mechanism, [v for rod in mechanism.rods for v in rod.base]):
         return ()
-    signs = [Let(real(f"sign_{b.name}"), 1 - 2 * real(home_flag(b))) for b in mechanism.branches]
+    signs = [Let(real(f"sign_{b.name}"), 1 - 2 * real(b.home_flag)) for b in mechanism.branches]
     own = [s for s in statements if not (isinstance(s, Let) and s.name in {sign.name for sign in signs})]
     wanted = [s for j in mechanism.joints for s in ((cosine(j.symbol), sine(j.symbol)) if j.is_angle else (j.symbol,))]
     program = normalise("home", (*signs, *fixed_lets(mechanism), *own), [Output(s.name, s) for s in wanted])

@@ -20,7 +20,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, has_length
 from derive.kinematics.reference_cases import Bytes, Reals
 from derive.kinematics.sampling import size_of
-from derive.plate.plate import home_flag, home_position, home_rotation
+from derive.plate.plate import home_position, home_rotation
 
 FRAME = ("x", "y", "z", *(r.name for r in ROTATION_ENTRIES))
 _DECIMALS, _ROTATION_DECIMALS = 6, 9
@@ -62,7 +62,7 @@ class Machine:
         mechanism = self.kinematics.mechanism
         position = (float(evaluate(v, self.values)) for v in home_position(mechanism))
         frame = (*position, *(float(evaluate(entry, self.values)) for entry in home_rotation(mechanism)))
-        told = {b.name: self.given.get(home_flag(b), 0.0) for b in mechanism.branches}
+        told = {b.name: self.given.get(b.home_flag, 0.0) for b in mechanism.branches}
         chosen = tuple(1 + int(told[b.name]) for b in mechanism.branches)
         configuration = (*chosen, *(0,) * len(mechanism.period_joints))
         return inverse(self, frame, configuration, (0.0,) * len(mechanism.joints))[1]

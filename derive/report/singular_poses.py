@@ -26,7 +26,7 @@ from derive.kinematics.reference_cases import Reals
 from derive.kinematics.sampling import sample_axes, size_of
 from derive.plate.legs import angles, by_angles
 from derive.plate.passive import commanded, spelled
-from derive.plate.plate import home_flag, platform_checks
+from derive.plate.plate import platform_checks
 from derive.report.derived import Derived
 from derive.report.reference_calls import FRAME, Machine
 
@@ -196,7 +196,7 @@ def _of_platform(machine: Machine, derived: Derived, name: str) -> SingularPose 
     scales = np.array([size if k < width else 1.0 for k in range(len(home))])
     kept = [m.name for m in machine.kinematics.margins]
     place = kept.index(name)
-    ways = {b.name: machine.given.get(home_flag(b), 0.0) for b in mechanism.branches}
+    ways = {b.name: machine.given.get(b.home_flag, 0.0) for b in mechanism.branches}
     signs = {branch_sign(name).name: np.asarray(1.0 - 2.0 * way) for name, way in ways.items()}
 
     def solved(rows: Array) -> tuple[Array, dict[str, Array]]:

@@ -1,20 +1,23 @@
 """The independent witness: every derived program is measured against the closure equations themselves.
 
-CasADi functions are built from a mechanism's description alone, never from a derived formula. They give the
-residual, the Jacobian by automatic differentiation, and the number of solutions by multi-start root finding.
+CasADi functions are built from a mechanism's description as it is written, never from a derived formula, nor from what
+the compiler makes of the description before it derives. They give the residual, the Jacobian by automatic
+differentiation, and the number of solutions by multi-start root finding.
 
-It may import the folders from `ir` to `kinematics`.
+It imports descriptions, programs and the bundle `kinematics.kinematics`, and nothing of the derivation.
 
 assembly: the assembly mode of a loop that turns its platform, from the closure alone
 checks: the checks of forward kinematics, Jacobian and margins, and how errors are measured
 closure: the closure equations as CasADi functions
-disagreement: the error where a derived formula is wrong
+disagreement: the errors where a derived formula is wrong, and where there is no pose to measure
+frames: the frames of a chain, multiplied out factor by factor
 home_samples: axis values of a loop that turns its platform, around its home pose
 inverse: the checks of the inverse: every slot, the way back, no solution missing
 jointless: the check of a mechanism without joints
 orientation: the check of the orientations that a flange can have
 planted: poses close to where branches of a root scan meet
 roots: all solutions of the closure for a pose, from many starts
+rows: CasADi functions over rows of samples
 samples: machines and regular poses, drawn from a fixed seed
 terms: expressions of a description as CasADi expressions
 """
@@ -23,24 +26,27 @@ from __future__ import annotations
 
 import math
 
+from derive.description.mechanism import Mechanism
 from derive.kinematics.kinematics import Evidence, Inverted, Kinematics
 from derive.witness.checks import check_forward, check_jacobian, check_margins
 from derive.witness.closure import closure_of
-from derive.witness.disagreement import Disagreement
+from derive.witness.disagreement import Disagreement, NoPose
 from derive.witness.inverse import check_inverse, check_offset, check_solutions
 from derive.witness.jointless import check_jointless
 from derive.witness.orientation import check_orientation
 from derive.witness.samples import regular_samples
 
-__all__ = ["Disagreement", "witness"]
+__all__ = ["Disagreement", "NoPose", "witness"]
 
 _FLOOR = 1e-12
 
 
-def witness(kin: Kinematics) -> Evidence:
-    """Measure every program of the mechanism; raises `Disagreement` where one contradicts the closure."""
+def witness(kin: Kinematics, described: Mechanism) -> Evidence:
+    """Measure every program of a mechanism against the closure of its description, as it is written; raises
+    `Disagreement` where one contradicts it.
+    """
     try:
-        closure = closure_of(kin.mechanism)
+        closure = closure_of(described, kin.mechanism)
         if not kin.mechanism.joints:
             poses, error = check_jointless(kin, closure)
             return Evidence(poses, decade(error), None)
@@ -52,7 +58,7 @@ def witness(kin: Kinematics) -> Evidence:
         offset, offset_trip = check_offset(kin, closure, samples)
         solutions, missed = check_solutions(kin, closure, samples)
     except Disagreement as problem:
-        raise Disagreement(f"{kin.mechanism.name}: {problem}") from None
+        raise type(problem)(f"{kin.mechanism.name}: {problem}") from None
     return Evidence(
         poses=len(samples),
         closure_residual=decade(max(forward, inverse, offset)),

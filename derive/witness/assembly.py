@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from derive.description.mechanism import Mechanism
 from derive.ir.interpret import Array
 from derive.kinematics.kinematics import Kinematics
-from derive.plate.plate import home_branches, home_flag
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
 from derive.witness.home_samples import joints_at, measured_legs, on_guides, poses_at_home
@@ -56,14 +55,15 @@ def _sides(closure: Closure, joints: Array, pose: Array, parameters: Array) -> A
 def _home_side(kin: Kinematics, closure: Closure, samples: Samples, row: int) -> float:
     """The sign of det A at the home pose of the machine of a sample."""
     part = samples.take(np.full(starts_for(kin.mechanism) if kin.branches else _WITHOUT_BRANCHES, row))
-    pose = on_guides(kin.mechanism, closure, poses_at_home(kin.mechanism, part.values, part.reach), part.parameters)
+    pose = on_guides(closure, poses_at_home(closure, part.values, part.reach), part.parameters)
     joints = joints_at(kin.mechanism, closure, pose, part.parameters, part.reach, np.random.default_rng(SEED + 5))
     state = (joints, pose, part.parameters)
     closed = np.abs(closure.residual(*state)[:, :, 0]).max(axis=1) < _CLOSED * part.reach**2
     closed &= np.all(closure.positive(*state)[:, :, 0] > 0, axis=1)
     indicators = closure.indicators(*state)[:, :, 0]
-    for k, branch in enumerate(kin.branches if home_branches(kin.mechanism) else ()):
-        closed &= indicators[:, k] * (1.0 - 2.0 * part.values[home_flag(branch)]) > 0
+    for k, branch in enumerate(kin.branches):
+        if branch.home_flag in part.values:
+            closed &= indicators[:, k] * (1.0 - 2.0 * part.values[branch.home_flag]) > 0
     sides = np.unique(_sides(closure, joints, pose, part.parameters)[closed])
     if len(sides) != 1:
         raise Disagreement(f"the home pose has {len(sides)} assembly modes, {describe(kin, samples, row)}")

@@ -73,7 +73,7 @@ def least_move(kin: Kinematics, closure: Closure, samples: Samples, joints: Arra
         return displacement(closure, samples, joints)
     state = (joints, samples.pose, samples.parameters)
     by_pose = closure.by_pose(*state) * closure.row_scale(samples.reach)[:, None, :]
-    by_joints = closure.by_joints(*state) * closure.joint_scale(samples.reach)[:, None, :]
+    by_joints = closure.by_joints(*state) * closure.joint_scale(samples.reach, joints, samples.parameters)[:, None, :]
     both = np.concatenate([by_pose, by_joints], axis=2)
     return np.asarray(np.linalg.norm((np.linalg.pinv(both) @ closure.residual(*state))[:, :, 0], axis=1))
 
@@ -85,7 +85,7 @@ def check_forward(kin: Kinematics, closure: Closure, samples: Samples) -> float:
         frame[:, 3:] = _nearest_rotations(samples.pose[:, 3:])
     position = (samples.pose[:, :3] - frame[:, :3]) / samples.reach[:, None]
     if kin.mechanism.chain is None:  # stated equations hold the position alone: `displacement` measures it
-        position[:, ["xyz".index(c) for c in kin.mechanism.motion.position]] = 0.0
+        position[:, ["xyz".index(c) for c in closure.coordinates]] = 0.0
     outputs = run_regular(kin, kin.orientation, samples)
     rotation = np.stack([outputs[name] for name in POSE[3:]], axis=1)
     parts = (

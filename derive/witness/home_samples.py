@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import sympy as sp
 from numpy.random import Generator
 from numpy.typing import NDArray
 
@@ -22,7 +23,7 @@ def axes_near_home(
     mechanism: Mechanism, closure: Closure, values: dict[str, Array], parameters: Array, reach: Array, rng: Generator
 ) -> Array:
     """Axis values at random poses around home, by Newton's method on the closure itself."""
-    home = poses_at_home(mechanism, values, reach)
+    home = poses_at_home(closure, values, reach)
     position = home[:, :3].copy()
     width = len(mechanism.task.position)
     own = ["xyz".index(c) for c in mechanism.task.position]
@@ -30,21 +31,22 @@ def axes_near_home(
     rotation = home[:, 3:].reshape(-1, 3, 3)
     for row in closure.task[width:]:
         rotation = _turn("xyz".index(row[-1]), _TURN * rng.uniform(-1.0, 1.0, len(reach))) @ rotation
-    pose = on_guides(mechanism, closure, np.concatenate([position, rotation.reshape(-1, 9)], axis=1), parameters)
-    units = closure.joint_scale(reach) / closure.axis_scale(reach)
+    pose = on_guides(closure, np.concatenate([position, rotation.reshape(-1, 9)], axis=1), parameters)
     offsets = np.stack([values[j.offset.name] for j in mechanism.joints], axis=1)
-    return np.asarray(joints_at(mechanism, closure, pose, parameters, reach, rng) / units + offsets)
+    in_degrees = np.array([j.in_degrees for j in mechanism.joints])
+    joints = joints_at(mechanism, closure, pose, parameters, reach, rng)
+    return closure.axes_at(joints, offsets, parameters, in_degrees)
 
 
-def on_guides(mechanism: Mechanism, closure: Closure, pose: Array, parameters: Array) -> Array:
+def on_guides(closure: Closure, pose: Array, parameters: Array) -> Array:
     """The poses with passive coordinates at which the guides hold the platform, by Newton's method."""
-    first = len(mechanism.closure)
-    rows = [first + k for k, plane in enumerate(mechanism.guides) if plane in mechanism.fixed_guides]
+    joints = {j.symbol for j in closure.described.joints}
+    rows = [k for k, e in enumerate(closure.described.equations) if not sp.sympify(e).free_symbols & joints]
     passive, columns = closure.moved[len(closure.task) :], slice(len(closure.task), None)
-    joints = np.zeros((len(pose), len(mechanism.joints)))  # no fixed guide reads them
+    still = np.zeros((len(pose), len(joints)))  # no fixed guide reads them
     for _ in range(_ITERATIONS if passive else 0):
-        slopes = closure.by_pose(joints, pose, parameters)[:, rows, columns]
-        step = -(np.linalg.pinv(slopes) @ closure.residual(joints, pose, parameters)[:, rows])[:, :, 0]
+        slopes = closure.by_pose(still, pose, parameters)[:, rows, columns]
+        step = -(np.linalg.pinv(slopes) @ closure.residual(still, pose, parameters)[:, rows])[:, :, 0]
         step = np.clip(step, -1.0, 1.0) if "tilt z" in passive and len(passive) == 1 else step
         rotation = pose[:, 3:].reshape(-1, 3, 3)
         position = pose[:, :3].copy()
@@ -59,12 +61,13 @@ def on_guides(mechanism: Mechanism, closure: Closure, pose: Array, parameters: A
     return pose
 
 
-def poses_at_home(mechanism: Mechanism, values: dict[str, Array], reach: Array) -> Array:
+def poses_at_home(closure: Closure, values: dict[str, Array], reach: Array) -> Array:
     """The home pose of every machine: position, then rotation by rows."""
-    home = np.stack([np.broadcast_to(evaluate(v, values), reach.shape) for v in mechanism.home], axis=1)
-    width = len(mechanism.motion.position)
+    own, coordinates = closure.described_values(values), sorted(closure.coordinates)
+    home = np.stack([np.broadcast_to(evaluate(v, own), reach.shape) for v in closure.described.home], axis=1)
+    width = len(coordinates)
     position = np.zeros((len(reach), 3))
-    position[:, ["xyz".index(c) for c in mechanism.motion.position]] = home[:, :width]
+    position[:, ["xyz".index(c) for c in coordinates]] = home[:, :width]
     turns = dict(zip((2,) if home.shape[1] - width == 1 else (0, 1, 2), home[:, width:].T, strict=True))
     rotation = np.tile(np.eye(3), (len(reach), 1, 1))
     for axis, angle in turns.items():
@@ -77,14 +80,15 @@ def joints_at(
 ) -> Array:
     """Joint values at poses, by Newton's method; from anywhere where a leg has several.
 
-    Where a quantity that must be positive is not, the joints on which it depends start elsewhere once more.
+    mechanism: its rods tell which legs have several. Where a quantity that must be positive is not,
+    the joints on which it depends start elsewhere once more.
     """
-    joints = closure.joint_scale(reach)
+    joints = closure.joint_size(reach)
     is_one_of_many = len(measured_legs(mechanism)) < len(mechanism.rods)
     if is_one_of_many:
         joints = _anywhere(closure, reach, rng)
     joints = _solved(closure, joints, pose, parameters, reach if is_one_of_many else None)
-    for _ in range(_ROUNDS if is_one_of_many and mechanism.positive else 0):
+    for _ in range(_ROUNDS if is_one_of_many and closure.described.positive else 0):
         negative = closure.positive(joints, pose, parameters)[:, :, 0] <= 0
         again = (negative @ _touched(closure, joints, pose, parameters)) > 0
         if not again.any():
@@ -101,7 +105,7 @@ def measured_legs(mechanism: Mechanism) -> list[str]:
 
 
 def _anywhere(closure: Closure, reach: Array, rng: Generator) -> Array:
-    size = closure.joint_scale(reach) * np.where(closure.angles, np.pi, 2.0)
+    size = closure.joint_size(reach) * np.where(closure.angles, np.pi, 2.0)
     return np.asarray(size * rng.uniform(-1.0, 1.0, size.shape))
 
 

@@ -18,7 +18,7 @@ from derive.witness.checks import CLOSURE_TOLERANCE, clear_of_zero, least_move, 
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
 from derive.witness.planted import refused_when_planted
-from derive.witness.roots import Problem, all_solutions, distinct, problem_at, same, within_one_turn
+from derive.witness.roots import Problem, all_solutions, distinct, polished, problem_at, same
 from derive.witness.samples import SEED, Samples, describe, turns_of
 
 AXES_TOLERANCE = 1e-9
@@ -67,14 +67,14 @@ def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> tupl
     part = samples.take(np.arange(0, len(samples), _EVERY) if is_search else first)
     problem = problem_at(closure, part)
     axes, ok = _ranks(kin, part)
-    offered = [within_one_turn(problem, closure.joints(a, part.parameters)[:, :, 0] / problem.units) for a in axes]
+    offered = [polished(problem, closure.joints(a, part.parameters)[:, :, 0] / problem.units) for a in axes]
     counts, missed = [], 0
     solutions = all_solutions(problem, starts_for(kin.mechanism))
     own = in_own_mode(kin, closure, part, solutions, problem.units)
     for row, found in enumerate(f[kept] for f, kept in zip(solutions, own, strict=True)):
         slots = np.array([offered[slot][row] for slot in np.flatnonzero(ok[:, row])]).reshape(-1, axes.shape[2])
-        slots = distinct(slots, problem.angles) if is_search else slots  # one opposite the reference is found twice
-        missing = _compare(kin, problem, (found, slots), describe(kin, part, row))
+        slots = distinct(problem, row, slots) if is_search else slots  # one opposite the reference is found twice
+        missing = _compare(kin, problem, row, (found, slots), describe(kin, part, row))
         missed += missing
         counts.append(len(found))
     if missed > _MOST_MISSED * sum(counts):
@@ -206,20 +206,18 @@ def _round_trip(
     return worst(kin, what, errors[clear], part, AXES_TOLERANCE, part.ease * part.pose_ease)
 
 
-def _compare(kin: Kinematics, problem: Problem, solutions: tuple[Array, Array], place: str) -> int:
+def _compare(kin: Kinematics, problem: Problem, row: int, solutions: tuple[Array, Array], place: str) -> int:
     """The number of solutions that a root scan misses. Raises `Disagreement` for any other difference."""
     found, offered = solutions
-    missing = [f for f in found if not same(f, offered, problem.angles).any()]
+    places = problem.places_at(row, offered)
+    missing = [f for f in problem.places_at(row, found) if not same(f, places).any()]
+    count = len(distinct(problem, row, offered))
     is_search = kin.mechanism.search is not None
     expected = len(found) - (len(missing) if is_search else 0)
-    if (
-        (missing and not is_search)
-        or expected != len(offered)
-        or len(distinct(offered, problem.angles)) != len(offered)
-    ):
+    if (missing and not is_search) or expected != len(offered) or count != len(offered):
         raise Disagreement(
             f"number of solutions: the closure has {len(found)}, the slots hold {len(offered)}"
-            f" ({len(distinct(offered, problem.angles))} distinct), for the pose {place}"
+            f" ({count} distinct), for the pose {place}"
         )
     return len(missing)
 

@@ -18,6 +18,8 @@ _ITERATIONS = 40
 _POLISH = 4
 _CONVERGED = 1e-9
 _SAME = 1e-6
+_FAR = 4.0
+"""The largest length from which a search starts, in reaches."""
 _ROUNDING = 1e-13
 """An equation of order one is met but for rounding."""
 _EXACT = 4e-15
@@ -35,6 +37,9 @@ class Problem:
     units: Array
     """The unit of each scaled unknown, in radians or lengths."""
     angles: NDArray[np.bool_]
+    whole: Array
+    """Half of a turn of every angle of the closure, in each scaled unknown; half of a range for lengths."""
+    reach: Array
     held: Array
     """The values of the joints that are not solved for; no number for the others."""
 
@@ -47,6 +52,8 @@ class Problem:
             self.weights[rows],
             self.units[rows],
             self.angles,
+            self.whole[rows],
+            self.reach[rows],
             self.held[rows],
         )
 
@@ -67,6 +74,18 @@ class Problem:
         kept = np.eye(len(self.angles))[~self.closure.solved]
         return np.concatenate([phi, np.broadcast_to(kept, (len(phi), *kept.shape))], axis=1)
 
+    def places(self, unknowns: Array) -> Array:
+        """What tells solutions apart, in lengths of the reach: an angle of the closure that is a turn more is the same,
+        whatever gear a joint has.
+        """
+        places = self.closure.places(unknowns * self.units, self.parameters)[:, :, 0]
+        places[:, self.closure.turned :] /= self.reach[:, None]
+        return places
+
+    def places_at(self, row: int, unknowns: Array) -> Array:
+        """The same for solutions of one row."""
+        return self.take(np.full(len(unknowns), row)).places(unknowns)
+
     def is_positive(self, unknowns: Array) -> NDArray[np.bool_]:
         """Whether the description admits the solution, or excludes it as a mirror image."""
         quantities = self.closure.positive(unknowns * self.units, self.pose, self.parameters)[:, :, 0]
@@ -75,14 +94,18 @@ class Problem:
 
 def problem_at(closure: Closure, samples: Samples) -> Problem:
     """The root-finding problem at each sample."""
-    units = closure.joint_scale(samples.reach)
+    units = closure.joint_scale(samples.reach, samples.joints, samples.parameters)
     state = (samples.joints, samples.pose, samples.parameters)
     by_pose = closure.by_pose(*state) * closure.row_scale(samples.reach)[:, None, :]
     by_joints = closure.by_joints(*state) * units[:, None, :]
     sizes = np.linalg.norm(np.concatenate([by_pose, by_joints], axis=2), axis=2)
     sizes[:, closure.equations :] = 1.0  # entries of a rotation are of order one already
     held = np.where(closure.solved, np.nan, samples.joints / units)
-    return Problem(closure, samples.pose, samples.parameters, 1.0 / sizes, units, closure.angles, held)
+    rates = closure.rates(samples.joints, samples.parameters)
+    whole = np.where(closure.angles, np.pi * rates[:, :, 0] / rates[:, :, 1], _FAR)
+    return Problem(
+        closure, samples.pose, samples.parameters, 1.0 / sizes, units, closure.angles, whole, samples.reach, held
+    )
 
 
 def all_solutions(problem: Problem, starts_of_each: int = STARTS) -> list[Array]:
@@ -90,35 +113,32 @@ def all_solutions(problem: Problem, starts_of_each: int = STARTS) -> list[Array]
     count = len(problem.pose)
     rows = np.repeat(np.arange(count), starts_of_each)
     many = problem.take(rows)
-    size = np.where(problem.angles, np.pi, 4.0)
-    starts = np.random.default_rng(SEED).uniform(-1.0, 1.0, (len(rows), len(size))) * size
+    starts = np.random.default_rng(SEED).uniform(-1.0, 1.0, many.whole.shape) * many.whole
     starts[1::2] = np.where(problem.angles, starts, np.abs(starts))[
         1::2
     ]  # six lengths have 64 mirror images, one is wanted
-    ends = within_one_turn(many, _newton(many, starts, _ITERATIONS))
+    ends = _newton(many, starts, _ITERATIONS)
     good = (np.linalg.norm(many.residual(ends), axis=1) < _CONVERGED) & many.is_positive(ends)
-    return [distinct(ends[(rows == i) & good], problem.angles) for i in range(count)]
+    return [distinct(problem, i, ends[(rows == i) & good]) for i in range(count)]
 
 
-def within_one_turn(problem: Problem, unknowns: Array) -> Array:
-    """The same solutions with angles in [-π, π); lengths that climb with a turn follow by a few more iterations."""
-    wrapped = np.where(problem.angles, (unknowns + np.pi) % (2 * np.pi) - np.pi, unknowns)
-    return _newton(problem, wrapped, _POLISH)
+def polished(problem: Problem, unknowns: Array) -> Array:
+    """The solutions nearest to these unknowns."""
+    return _newton(problem, unknowns, _POLISH)
 
 
-def distinct(unknowns: Array, angles: NDArray[np.bool_]) -> Array:
-    """Each solution once: the first of those that are the same."""
-    kept: list[Array] = []
-    while len(unknowns):
-        kept.append(unknowns[0])
-        unknowns = unknowns[~same(unknowns[0], unknowns, angles)]
-    return np.array(kept).reshape(len(kept), len(angles))
+def distinct(problem: Problem, row: int, unknowns: Array) -> Array:
+    """Each solution of a row once: the first of those that are the same."""
+    left, places, kept = np.arange(len(unknowns)), problem.places_at(row, unknowns), []
+    while len(left):
+        kept.append(left[0])
+        left = left[~same(places[left[0]], places[left])]
+    return np.asarray(unknowns[np.array(kept, dtype=int)])
 
 
-def same(one: Array, others: Array, angles: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Whether a solution and others are one, for each of the others."""
-    apart = np.where(angles, np.abs(np.exp(1j * one) - np.exp(1j * others)), np.abs(one - others))
-    return np.asarray(np.all(apart < _SAME, axis=-1), dtype=bool)
+def same(one: Array, others: Array) -> NDArray[np.bool_]:
+    """Whether a solution and others have the same places, for each of the others."""
+    return np.asarray(np.all(np.abs(one - others) < _SAME, axis=-1), dtype=bool)
 
 
 def _newton(problem: Problem, start: Array, iterations: int) -> Array:

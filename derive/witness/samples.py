@@ -5,22 +5,22 @@ Everything is drawn from a fixed seed, so that a build says the same every time.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+import sympy as sp
 from numpy.random import Generator
 from numpy.typing import NDArray
 
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role
+from derive.geometry.frames import Motion
 from derive.ir.interpret import Array, evaluate, run
 from derive.ir.program import Program, Require, Status
 from derive.ir.symbols import MIN_TYPE2_MARGIN, SCALE
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.no_pose import why_no_pose
-from derive.kinematics.parameters import lengths_in_numbers
-from derive.plate.plate import home_flag
 from derive.witness.closure import LEAST_MARGIN, POSE, Closure
-from derive.witness.disagreement import Disagreement
+from derive.witness.disagreement import Disagreement, NoPose
 from derive.witness.home_samples import axes_near_home
 
 SEED = 20260
@@ -89,13 +89,13 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
     count = len(next(iter(machines.values())))
     for larger in _LARGER:
         samples, status = _drawn(kin, closure, machines, larger, rng)
-        inside = _inside(kin.mechanism, closure, samples)
+        inside = _inside(closure, samples)
         if not kin.mechanism.rods or (inside & (status == Status.OK))[samples.machine == 0].any():
             break
     if refused := np.flatnonzero(inside & (status != Status.OK) & (kin.mechanism.chain is not None)).tolist():
         raise Disagreement(f"forward kinematics refuses a possible pose: {describe(kin, samples, refused[0])}")
     if not inside.any():
-        raise Disagreement(why_no_pose(kin.mechanism))
+        raise NoPose("no sampled pose closes: check the nominal values of parameters and joints")
     samples = samples.take(inside & np.asarray(status == Status.OK, dtype=bool))
     chosen = _first_regular(closure, samples)
     possible = len(np.unique(chosen.machine))  # random dimensions may form a loop that never closes, or is singular
@@ -185,7 +185,7 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
     count = 8 * MACHINES
     names = {p.name for p in kin.mechanism.parameters} | {j.offset.name for j in kin.mechanism.joints}
     names |= {kin.mechanism.assembly.parameter} if kin.mechanism.assembly else set()
-    names |= {home_flag(b) for b in kin.branches} if kin.mechanism.is_platform else set()
+    names |= {b.home_flag for b in kin.branches} if kin.mechanism.is_platform else set()
     cones = [c for rod in kin.mechanism.rods for c in (rod.base_cone, rod.plate_cone) if c is not None]
     names -= {s.name for cone in cones for s in cone.free_symbols}  # they refuse poses, and change no answer
     values = {}
@@ -243,15 +243,20 @@ def _draw(parameter: Parameter, count: int, rng: Generator, largest: float) -> A
 def _reach(mechanism: Mechanism, values: dict[str, Array]) -> Array:
     if mechanism.is_platform:  # the sum of all its coordinates says little
         return values[SCALE.name]
-    lengths = [
-        np.abs(values[p.name])
-        for p in mechanism.parameters
-        if p.role in (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
-    ]
+    roles = (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
+    lengths = [np.abs(values[p.name]) for p in mechanism.parameters if p.role in roles]
     total = np.sum(lengths, axis=0) if lengths else np.zeros_like(next(iter(values.values())))
-    total = total + sum(map(float, lengths_in_numbers(mechanism)))
+    total = total + sum(_numbers(mechanism))
     legs = max(1, len(mechanism.rods))  # one leg of a loop
     return np.where(total > 0, total / legs, WITHOUT_LENGTHS)
+
+
+def _numbers(mechanism: Mechanism) -> Iterator[float]:
+    """The sizes of shifts of a chain and of rods that are stated as numbers."""
+    factors = mechanism.chain.factors if mechanism.chain is not None else ()
+    shifts = [f.amount for f in factors if f.motion is Motion.SHIFT]
+    terms = (t for v in (*shifts, *(r.length for r in mechanism.rods)) for t in sp.Add.make_args(sp.sympify(v)))
+    return (abs(float(t)) for t in terms if t.is_number)
 
 
 def _axes(mechanism: Mechanism, values: dict[str, Array], reach: Array, rng: Generator) -> Array:
@@ -271,10 +276,10 @@ def turns_of(joint: Joint, values: dict[str, Array]) -> Array:
     return np.asarray(np.abs(np.asarray(evaluate(joint.ratio, values), dtype=float)))
 
 
-def _inside(mechanism: Mechanism, closure: Closure, samples: Samples) -> NDArray[np.bool_]:
+def _inside(closure: Closure, samples: Samples) -> NDArray[np.bool_]:
     """Whether joints keep to their domains and the positive quantities are positive."""
     inside = np.all(closure.positive(samples.joints, samples.pose, samples.parameters)[:, :, 0] > 0, axis=1)
-    for i, joint in enumerate(mechanism.joints):
+    for i, joint in enumerate(closure.described.joints):
         low, high = joint.domain or (-np.inf, np.inf)
         value = samples.joints[:, i] / _unit(joint)
         inside &= (value >= low) & (value <= high)
@@ -290,7 +295,8 @@ def _singular_values(closure: Closure, samples: Samples) -> tuple[Array, Array]:
     """The largest and the least singular value of the Jacobian of the joints that are solved for, with lengths in
     reaches: the least is small near a type 1 singularity, the largest is large near a type 2 singularity.
     """
-    columns, rows = closure.joint_scale(samples.reach), closure.row_scale(samples.reach)[:, : len(closure.task)]
+    columns = closure.joint_scale(samples.reach, samples.joints, samples.parameters)
+    rows = closure.row_scale(samples.reach)[:, : len(closure.task)]
     gears = np.diagonal(closure.gearing(samples.axes, samples.parameters), axis1=1, axis2=2)
     columns = columns / np.abs(gears)  # per radian of the joint, however slow a gear makes it
     scaled = np.nan_to_num(samples.jacobian * columns[:, None, :] / rows[:, :, None], posinf=0.0, neginf=0.0)

@@ -17,6 +17,8 @@ from derive.ir.primitives import Select
 
 Term = Any
 """A CasADi expression (`casadi.SX`) or a number; CasADi carries no types."""
+Symbols = dict[sp.Symbol, Term]
+"""The symbols of a description, with their CasADi expressions."""
 
 _FUNCTIONS: dict[type[sp.Basic], Callable[..., Term]] = {
     sp.Add: lambda *terms: reduce(add, terms),

@@ -294,6 +294,7 @@ def test_a_loop_with_gears_is_the_loop_without_them() -> None:
     """The arms of a five-bar behind gears: three turns of a motor are one of its arm."""
     own = next(m for _, m in catalogue() if m.name == "Kin_P2C_Type1")
     table = {joint.symbol: -joint.symbol / 3 for joint in own.joints}
-    geared = build(in_other_joints(replace(own, joints=tuple(replace(j, domain=None) for j in own.joints)), table))
+    described = in_other_joints(replace(own, joints=tuple(replace(j, domain=None) for j in own.joints)), table)
+    geared = build(described)
     assert [abs(joint.ratio) for joint in geared.mechanism.joints] == [Rational(1, 3)] * 2
-    assert witness(geared).inverted is not None
+    assert witness(geared, described).inverted is not None

@@ -154,32 +154,32 @@ def test_a_program_that_refuses_a_regular_pose(planar_arm: Kinematics) -> None:
     closed = Require(sp.Le(real("axis_a1"), 10), Status.UNREACHABLE)
     spoiled = replace(planar_arm.jacobian, body=(closed, *planar_arm.jacobian.body))
     with pytest.raises(Disagreement, match=r"jacobian refuses a regular pose: at A1=.*of the machine link"):
-        witness(replace(planar_arm, jacobian=spoiled))
+        witness(replace(planar_arm, jacobian=spoiled), planar_arm.mechanism)
 
 
 def test_a_branch_without_a_clear_sample(planar_arm: Kinematics) -> None:
     with pytest.raises(Disagreement, match="no sample has clear branches"):
-        witness(replace(planar_arm, forward=bent(planar_arm.forward, "branch_elbow", 0.0)))
+        witness(replace(planar_arm, forward=bent(planar_arm.forward, "branch_elbow", 0.0)), planar_arm.mechanism)
 
 
 def test_a_branch_with_the_other_sign(planar_arm: Kinematics) -> None:
     with pytest.raises(Disagreement, match="branch 'elbow' has the opposite sign of its indicator at A1="):
-        witness(replace(planar_arm, forward=bent(planar_arm.forward, "branch_elbow", -1.0)))
+        witness(replace(planar_arm, forward=bent(planar_arm.forward, "branch_elbow", -1.0)), planar_arm.mechanism)
 
 
 def test_a_machine_that_is_always_singular(planar_arm: Kinematics) -> None:
     """A chain whose second joint moves nothing to speak of: no pose is regular."""
     chain = Rz(A1) * Tx(L1) * Rz(A2 * sp.Rational(1, 10**9)) * Tx(L2)
     with pytest.raises(Disagreement, match="a machine has no regular pose: is the mechanism always singular"):
-        witness(replace(planar_arm, mechanism=replace(planar_arm.mechanism, chain=chain)))
+        witness(planar_arm, replace(planar_arm.mechanism, chain=chain))
 
 
 def test_a_dimension_that_may_be_zero_needs_no_pose_there() -> None:
     """A link that is stated as a distance is zero in some of the machines that the witness tries: they are left out."""
     offset = distance("offset", "a link that may vanish", nominal=80.0)
     chain = Rz(A1) * Tx(L1) * Rz(A2) * Tx(offset)
-    machine = arm(chain=chain, parameters=(L1, offset), offset_interface=False)
-    assert witness(build(validate(machine))).inverted is not None
+    machine = validate(arm(chain=chain, parameters=(L1, offset), offset_interface=False))
+    assert witness(build(machine), machine).inverted is not None
 
 
 def test_the_indicator_of_an_assembly_must_tell() -> None:

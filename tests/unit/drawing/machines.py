@@ -63,4 +63,5 @@ class Drawn:
 def drawn(name: str) -> Drawn:
     """The drawing of a mechanism of the catalogue."""
     mechanism = CATALOGUE[name]
-    return Drawn(mechanism, drawing_of(kinematics_of(mechanism)), closure_of(mechanism))
+    kinematics = kinematics_of(mechanism)
+    return Drawn(mechanism, drawing_of(kinematics), closure_of(mechanism, kinematics.mechanism))

@@ -100,7 +100,7 @@ def test_every_slot_is_another_solution(name: str) -> None:
 @EVERY
 def test_the_witness_finds_no_other_solution(name: str) -> None:
     """Multi-start root finding finds exactly as many solutions as there are slots."""
-    evidence = witness(built(name).kinematics)
+    evidence = witness(built(name).kinematics, INVENTIONS[name].mechanism)
     assert evidence.inverted is not None
     assert evidence.inverted.solutions == len(built(name).slots)
 

@@ -13,10 +13,10 @@ from derive.description.catalogue import MECHANISMS, load
 from derive.description.mechanism import DescriptionError, Mechanism, Rod, Task, X, Y, length, linear, rod, rotary
 from derive.description.validate import validate
 from derive.frames import Rz, Tx
-from derive.kinematics.build import build
 from derive.mechanism import assembly, branch
+from derive.pipeline import derive_and_measure
 from derive.vectors import cross, dot, minus, vector
-from derive.witness import Disagreement, witness
+from derive.witness import Disagreement
 from tests.unit.kinematics.inventions import invention
 
 A1, A2 = rotary("A1", "turn"), rotary("A2", "turn")
@@ -99,5 +99,5 @@ def test_no_pose_closes(kind: str) -> None:
     mechanism, sentence = NOWHERE[kind]
     start = time.process_time()
     with pytest.raises((DescriptionError, Disagreement), match=re.escape(sentence)):
-        witness(build(validate(mechanism)))
+        derive_and_measure(validate(mechanism))
     assert time.process_time() - start < 10.0

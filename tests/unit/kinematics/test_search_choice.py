@@ -130,7 +130,7 @@ def test_a_parameter_named_like_a_value_of_the_search_keeps_its_name(name: str) 
 
 def test_an_angle_of_a_table_counts_in_degrees_in_the_branches_that_are_derived() -> None:
     """The witness compares the sign of every branch with its indicator, and counts the solutions."""
-    evidence = witness(build(validate(ANGLES_AS_NUMBERS)))
+    evidence = witness(build(validate(ANGLES_AS_NUMBERS)), ANGLES_AS_NUMBERS)
     assert evidence.inverted is not None and evidence.inverted.solutions == 10
 
 
@@ -140,6 +140,6 @@ def test_a_commanded_point_is_searched_without_a_step_of_two_roots(name: str) ->
     kinematics = build(validate(OF_DEGREE_FOUR[name]))
     assert kinematics.mechanism.search is not None and kinematics.tried_branches == 0
     assert [b.is_crossing for b in kinematics.mechanism.branches] == [True]
-    evidence = witness(kinematics)
+    evidence = witness(kinematics, OF_DEGREE_FOUR[name])
     assert evidence.inverted is not None and evidence.inverted.missed is not None
     assert evidence.inverted.missed[0] == 0 and evidence.inverted.missed[1] > 50

@@ -192,8 +192,8 @@ CASES = [pytest.param(arm, marks=() if arm in QUICK else pytest.mark.slow) for a
 @pytest.mark.parametrize("make", CASES, ids=lambda f: f.__name__)
 def test_an_arm_in_space(make: Callable[[], Mechanism]) -> None:
     """An invented spatial arm is derived, and the witness finds as many solutions as the inverse has."""
-    kinematics = build(make())
-    evidence = witness(kinematics)
+    described = make()
+    evidence = witness(build(described), described)
     assert evidence.inverted is not None
     assert evidence.inverted.solutions == ARMS[make]
     assert max(evidence.closure_residual, evidence.inverted.round_trip, evidence.inverted.jacobian) <= 1e-10

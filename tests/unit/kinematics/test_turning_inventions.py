@@ -43,7 +43,8 @@ def described(name: str) -> Mechanism:
 def built(name: str) -> Kinematics:
     """The programs, with what the witness found."""
     kinematics = machine(validate(described(name))).kinematics
-    return replace(kinematics, evidence=witness(kinematics), self_test=self_test(kinematics))
+    evidence = witness(kinematics, described(name))
+    return replace(kinematics, evidence=evidence, self_test=self_test(kinematics))
 
 
 def poses_of(name: str) -> Values:

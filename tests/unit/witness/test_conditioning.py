@@ -68,7 +68,7 @@ UNLIKE = {
 @pytest.mark.parametrize("kind", UNLIKE)
 def test_right_formulas_are_accepted(kind: str) -> None:
     """Whatever the lengths: every machine has poses to measure, and they close to rounding."""
-    evidence = witness(build(UNLIKE[kind]))
+    evidence = witness(build(UNLIKE[kind]), UNLIKE[kind])
     assert evidence.inverted is not None
     assert evidence.inverted.solutions == 2
     assert evidence.closure_residual <= 1e-12
@@ -91,7 +91,7 @@ def test_a_millionth_is_refused_in_every_value_of_the_inverse() -> None:
     assert len(changes) > 20
     for wrong in changes:
         with pytest.raises(Disagreement, match="inverse kinematics: error|the way back|slot . answers"):
-            witness(replace(kinematics, branch=wrong))
+            witness(replace(kinematics, branch=wrong), kinematics.mechanism)
 
 
 @pytest.mark.parametrize("field", ["forward", "jacobian"])
@@ -104,7 +104,7 @@ def test_a_millionth_is_refused_in_every_output(field: str) -> None:
         wrong = replace(output, value=output.value * Float(1.000001))
         outputs = (*program.outputs[:place], wrong, *program.outputs[place + 1 :])
         with pytest.raises(Disagreement):
-            witness(replace(kinematics, **{field: replace(program, outputs=outputs)}))
+            witness(replace(kinematics, **{field: replace(program, outputs=outputs)}), kinematics.mechanism)
 
 
 LENGTHS = (Role.LENGTH, Role.DISTANCE)

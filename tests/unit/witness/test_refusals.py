@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
-from derive.description.mechanism import Mechanism, Task
+from derive.description.mechanism import Branch, Mechanism, Task
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
 from derive.frames import Rz, Tx
@@ -17,7 +17,6 @@ from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from derive.mechanism import search
 from derive.witness import Disagreement, inverse, witness
-from derive.witness import assembly as witness_of_modes
 from tests.mechanisms import kinematics_of, named
 from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, invention
 
@@ -47,7 +46,7 @@ def refusing(program: Program, condition: sp.Basic) -> Program:
 
 def said_of(kinematics: Kinematics) -> str:
     with pytest.raises(Disagreement) as refused:
-        witness(kinematics)
+        witness(kinematics, kinematics.mechanism)
     assert "\n" not in str(refused.value)
     return with_remedy(str(refused.value))
 
@@ -68,8 +67,9 @@ def test_a_search_that_refuses_poses_where_branches_meet(arm: Kinematics, monkey
 
 def test_a_home_pose_of_several_modes(monkeypatch: pytest.MonkeyPatch) -> None:
     """With its working modes not told apart, the legs at home stand in both assembly modes."""
-    monkeypatch.setattr(witness_of_modes, "home_branches", lambda _: ())
-    said = said_of(kinematics_of(named("Softkin_Planar_3RRR")))
+    kinematics = kinematics_of(named("Softkin_Planar_3RRR"))
+    monkeypatch.setattr(Branch, "home_flag", "no parameter")
+    said = said_of(kinematics)
     assert "the home pose has 2 assembly modes" in said
     assert "choose a home= at which every rod has a side" in said
 

@@ -45,7 +45,7 @@ def refusing(program: Program, condition: sp.Basic) -> Program:
 
 def test_the_scara_agrees(scara: Kinematics) -> None:
     """The witness agrees with the derived programs of a SCARA, and finds two solutions."""
-    evidence = witness(scara)
+    evidence = witness(scara, named(SCARA))
     assert evidence.poses == 144
     assert evidence.inverted is not None
     assert evidence.inverted.solutions == 2
@@ -55,9 +55,9 @@ def test_the_scara_agrees(scara: Kinematics) -> None:
 def test_what_is_not_excluded_is_missed() -> None:
     """Without `positive` the mirror solutions count: radius and azimuth, and the polar angle with them."""
     kinematics = kinematics_of(named("Kin_Crane"))
-    mirrored = replace(kinematics, mechanism=replace(kinematics.mechanism, positive=()))
+    mirrored = replace(named("Kin_Crane"), positive=())
     with pytest.raises(Disagreement, match="number of solutions: the closure has 4, the slots hold 1"):
-        witness(mirrored)
+        witness(kinematics, mirrored)
 
 
 SIGMA = real("sigma_elbow")
@@ -148,7 +148,7 @@ def test_a_wrong_formula_is_refused(scara: Kinematics, what: str) -> None:
     """The witness refuses each kind of wrong program with its own message."""
     message, spoil = WRONG[what]
     with pytest.raises(Disagreement) as refused:
-        witness(spoil(scara))
+        witness(spoil(scara), named(SCARA))
     text = str(refused.value)
     assert text.startswith("Kin_Scara4_ZCcoupled_Type1: ")
     assert re.search(message, text), text

@@ -1,0 +1,94 @@
+"""The frames of a chain as CasADi expressions: multiplied out factor by factor, and moved by a small twist."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import casadi as ca
+import sympy as sp
+
+from derive.description.mechanism import Mechanism
+from derive.geometry.frames import Chain, Factor, Motion
+from derive.witness.terms import Symbols, Term, term
+
+
+def frame_at(chain: Chain | None, known: Symbols) -> Term:
+    """The frame at the end of the chain, multiplied out factor by factor."""
+    position, rotation = ca.SX.zeros(3), ca.SX.eye(3)
+    for factor in chain.factors if chain else ():
+        amount = term(factor.amount, known)
+        if factor.motion is Motion.SHIFT:
+            position = position + rotation[:, factor.axis] * amount
+        elif factor.motion is Motion.TURN:
+            rotation = rotation @ turn(factor.axis, ca.cos(amount), ca.sin(amount))
+        else:
+            rotation = rotation @ turn(factor.axis, 1 - 2 * amount, 0)
+    return ca.vertcat(position, ca.reshape(rotation.T, 9, 1))
+
+
+def turn(axis: int, cosine: Term, sine: Term) -> Term:
+    """Rodrigues' formula about a coordinate axis."""
+    direction = ca.DM.zeros(3)
+    direction[axis] = 1
+    return cosine * ca.SX.eye(3) + sine * ca.skew(direction) + (1 - cosine) * (direction @ direction.T)
+
+
+def joint_values(mechanism: Mechanism, motors: Term, known: Symbols) -> Term:
+    """Joint = ratio * motor + coupling of the motors, in radians and lengths."""
+    named = {**known, **{j.motor: motors[i] for i, j in enumerate(mechanism.joints)}}
+    values = (motors[i] * term(j.ratio, named) + term(j.coupling, named) for i, j in enumerate(mechanism.joints))
+    return ca.vertcat(ca.SX.zeros(0, 1), *values)
+
+
+def moved_by(pose: Term, task: tuple[str, ...], twist: Term, axes: Sequence[Term] = ()) -> Term:
+    """The pose moved by a small twist: p + v, (I + [ω]) R. axes: of the pitch and the roll."""
+    shift, spin, tilt = ([ca.SX(0)] * 3 for _ in range(3))
+    parts = {"turn": spin, "tilt": tilt}
+    for i, row in enumerate(task):
+        if row in ("pitch", "roll"):
+            about = axes[("pitch", "roll").index(row)]
+            spin = [spin[k] + about[k] * twist[i] for k in range(3)]
+            continue
+        parts.get(row[:4], shift)["xyz".index(row[-1])] = twist[i]
+    rotation = ca.reshape(pose[3:], 3, 3).T
+    turned = rotation + ca.skew(ca.vertcat(*spin)) @ rotation + rotation @ ca.skew(ca.vertcat(*tilt))
+    return ca.vertcat(pose[:3] + ca.vertcat(*shift), ca.reshape(turned.T, 9, 1))
+
+
+def followed_axes(mechanism: Mechanism, known: Symbols) -> list[Term]:
+    """The axes of the turns that follow the commanded rotation, in the frame of the base."""
+    if mechanism.chain is None or not mechanism.followed_turns:
+        return []
+    factors = mechanism.chain.factors
+    frames = ((factors[k], frame_at(Chain(factors[:k]), known)) for k in _followed(mechanism, factors))
+    return [frame[[3 + factor.axis, 6 + factor.axis, 9 + factor.axis]] for factor, frame in frames]
+
+
+def _followed(mechanism: Mechanism, factors: Sequence[Factor]) -> list[int]:
+    """Where in the chain the last turns by joints are: one factor of each, neighbours about one axis as one turn."""
+    joints = {j.symbol for j in mechanism.solved_joints}
+    turns: list[tuple[int, sp.Expr, int]] = []
+    for k, factor in enumerate(factors):
+        if factor.motion is Motion.SHIFT:
+            continue
+        amount = factor.amount
+        if turns and factor.motion is Motion.TURN and turns[-1][0] == factor.axis:
+            amount = sp.expand(turns.pop()[1] + amount)
+        turns += [(factor.axis, amount, k)] if amount != 0 else []
+    return [k for _, amount, k in turns if amount.free_symbols & joints][-mechanism.followed_turns :]
+
+
+def followed_pose(mechanism: Mechanism, known: Symbols, pose: Term) -> Term:
+    """The pose with its rotation swung, by the smallest turn, until the tool is in the plane in which the pitch moves
+    it.
+    """
+    square, *others = followed_axes(mechanism, known)
+    own = ca.reshape(frame_at(mechanism.chain, known)[3:], 3, 3)  # by rows: this is its transpose
+    tool = own @ others[0] if others else ca.DM([0, 0, 1])
+    rotation = ca.reshape(pose[3:], 3, 3).T
+    commanded = rotation @ tool
+    seen = commanded - square * ca.dot(square, commanded)
+    seen = seen / ca.sqrt(ca.dot(seen, seen))
+    axis = ca.skew(ca.cross(commanded, seen))
+    swung = rotation + axis @ rotation + axis @ axis @ rotation / (1 + ca.dot(commanded, seen))
+    return ca.vertcat(pose[:3], ca.reshape(swung.T, 9, 1))
