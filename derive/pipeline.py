@@ -277,7 +277,8 @@ def _measured(seen: Evidence) -> str:
         return poses
     found = seen.inverted
     solutions = f"{found.solutions} solution{'' if found.solutions == 1 else 's'}"
-    return f"{poses}  round trip {found.round_trip:.0e}  Jacobian {found.jacobian:.0e}  {solutions}"
+    exact = "  exact" if seen.exact.trials else ""
+    return f"{poses}  round trip {found.round_trip:.0e}  Jacobian {found.jacobian:.0e}  {solutions}{exact}"
 
 
 def _attempt(profile: str | None, wanted: Sequence[str], entry: Entry) -> Built | Failure:

@@ -60,6 +60,26 @@ class Inverted:
 
 
 @dataclass(frozen=True)
+class Exact:
+    """The check in a finite field, where equations hold exactly or not at all."""
+
+    trials: int
+    """Random machines and poses at which they hold; 0 where nothing can be asked."""
+    but: str = ""
+    """Why not, or what is not asked."""
+
+    @property
+    def sentence(self) -> str:
+        """What was found."""
+        if not self.trials:
+            return f"The equations were not checked in a finite field: {self.but}."
+        where = f"(checked in a finite field at {self.trials} random machines and poses)"
+        if self.but:
+            return f"The equations of the inverse hold exactly {where}; {self.but}."
+        return f"The equations hold exactly {where}."
+
+
+@dataclass(frozen=True)
 class Evidence:
     """The measurements of the independent witness, rounded up so that every computer prints the same."""
 
@@ -67,6 +87,7 @@ class Evidence:
     closure_residual: float
     inverted: Inverted | None
     """None for a mechanism without joints: there is nothing to invert."""
+    exact: Exact
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ assembly: the assembly mode of a loop that turns its platform, from the closure 
 checks: the checks of forward kinematics, Jacobian and margins, and how errors are measured
 closure: the closure equations as CasADi functions
 disagreement: the errors where a derived formula is wrong, and where there is no pose to measure
+exact/: forward and inverse kinematics against the closure in a finite field, where it holds or not
 frames: the frames of a chain, multiplied out factor by factor
 home_samples: axis values of a loop that turns its platform, around its home pose
 inverse: the checks of the inverse: every slot, the way back, no solution missing
@@ -31,6 +32,7 @@ from derive.kinematics.kinematics import Evidence, Inverted, Kinematics
 from derive.witness.checks import check_forward, check_jacobian, check_margins
 from derive.witness.closure import closure_of
 from derive.witness.disagreement import Disagreement, NoPose
+from derive.witness.exact.proof import check_exactly
 from derive.witness.inverse import check_inverse, check_offset, check_solutions
 from derive.witness.jointless import check_jointless
 from derive.witness.orientation import check_orientation
@@ -49,7 +51,7 @@ def witness(kin: Kinematics, described: Mechanism) -> Evidence:
         closure = closure_of(described, kin.mechanism)
         if not kin.mechanism.joints:
             poses, error = check_jointless(kin, closure)
-            return Evidence(poses, decade(error), None)
+            return Evidence(poses, decade(error), None, check_exactly(kin, described))
         samples = regular_samples(kin, closure)
         forward = max(check_forward(kin, closure, samples), check_orientation(kin, samples))
         jacobian = check_jacobian(kin, closure, samples)
@@ -57,12 +59,14 @@ def witness(kin: Kinematics, described: Mechanism) -> Evidence:
         inverse, round_trip = check_inverse(kin, closure, samples)
         offset, offset_trip = check_offset(kin, closure, samples)
         solutions, missed = check_solutions(kin, closure, samples)
+        exact = check_exactly(kin, described)
     except Disagreement as problem:
         raise type(problem)(f"{kin.mechanism.name}: {problem}") from None
     return Evidence(
         poses=len(samples),
         closure_residual=decade(max(forward, inverse, offset)),
         inverted=Inverted(decade(max(round_trip, offset_trip)), decade(jacobian), solutions, missed),
+        exact=exact,
     )
 
 

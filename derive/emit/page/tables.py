@@ -67,6 +67,7 @@ def measured(kinematics: Kinematics) -> Iterator[Cells]:
     if found.inverted is None:
         return
     inverted = found.inverted
+    yield "In a finite field", "forward and inverse kinematics in the closure, without rounding", found.exact.sentence
     yield "Round trip", "inverse after forward, in the same branch", f"largest difference {inverted.round_trip:.0e}"
     yield (
         "Jacobian",

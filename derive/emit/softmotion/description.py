@@ -169,7 +169,7 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
             f"{inverted.jacobian:.0e}; {inverted.solutions} solutions were found by multi-start root finding, and "
             "each of them is a solution of these formulas"
         )
-    yield from wrap(f"{text}. The block was not run on a controller.", _WIDTH)
+    yield from wrap(f"{text}. {found.exact.sentence} The block was not run on a controller.", _WIDTH)
     if inverted is not None and inverted.missed is not None:
         missed, total = inverted.missed
         text = (
