@@ -67,7 +67,8 @@ class Feed:
 
     def tell(self, status: Status, message: str = "", retry_in: float | None = None) -> None:
         """Note the state of the connection."""
-        self.condition = Condition(status, message, None if retry_in is None else self.clock() + retry_in)
+        plain = "".join(letter if letter.isprintable() else " " for letter in message)  # it is shown in a terminal
+        self.condition = Condition(status, plain, None if retry_in is None else self.clock() + retry_in)
         self._hear(self.condition)
         self._changed.set()
 
