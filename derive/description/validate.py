@@ -34,7 +34,7 @@ _LEG = re.compile(r"[a-z0-9]+(_[a-z0-9]+)*\Z")
 _FAMILY = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 
-_MARKS = ("(*", "*)", '"""', "\\")
+_UNIT = re.compile(r"([\w°^.%]+([/·-][\w°^.%]+)*)?\Z")
 
 Expressions = tuple[tuple[str, sp.Basic], ...]
 
@@ -62,21 +62,26 @@ def _problems(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _texts(mechanism: Mechanism) -> Iterator[str]:
-    """Texts stand in comments and documentation: none may end a comment, or have more than one line."""
+    """Texts are lines. What else they hold is data in every language: each has a function that escapes."""
     stated = [
         *((f"the {word}", text) for word, text in (("summary", mechanism.summary), ("source", mechanism.source))),
         *((f"parameter {p.name!r}", p.meaning) for p in mechanism.parameters),
         *((f"joint {j.name!r}", j.meaning) for j in mechanism.joints),
         *((f"limited quantity {q.name!r}", q.meaning) for q in mechanism.limited),
+        *(("a bound", bound.meaning) for bound in mechanism.bounds),
+        *((f"branch {b.name!r}", meaning) for b in mechanism.branches for meaning in b.meanings),
+        *(("the assembly", meaning) for meaning in (mechanism.assembly.meanings if mechanism.assembly else ())),
         *(("a note", note) for note in mechanism.notes),
         *(("the title", title) for title in (mechanism.title,) if title is not None),
         *(("a constraint", c.message) for c in mechanism.constraints),
     ]
     for place, text in stated:
-        marks = [mark for mark in _MARKS if mark in text]
-        if marks or not text.isprintable():
-            shown = repr(marks[0]) if marks else "a line break, or a character that is not printed"
-            yield f"{place}: its text holds {shown}, which would end a comment or a text: write it without"
+        if not text.isprintable():
+            wrong = next(letter for letter in text if not letter.isprintable())
+            yield f"{place}: its text holds {wrong!r}, a line break or a character that is not printed: leave it out"
+    for p in mechanism.parameters:
+        if not _UNIT.match(p.unit):
+            yield f"parameter {p.name!r}: {p.unit!r} is no unit: letters, digits, / and ^"
 
 
 def _names(mechanism: Mechanism) -> Iterator[str]:
@@ -101,13 +106,15 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
                 yield f"{kind} {name!r} is given {count} times"
         yield from _alike(kind, names)
     yield from _joints_and_parameters(mechanism)
-    for branch in mechanism.branches:
+    for kind, one in (*(("branch", b) for b in mechanism.branches), ("assembly", mechanism.assembly)):
+        words = () if one is None else (one.name, *one.names, one.margin)
         yield from (
-            f"branch {branch.name!r}: {word!r} cannot name it, or a side of it: lower-case words joined by _"
-            for word in (branch.name, *branch.names)
+            f"{kind} {words[0]!r}: {word!r} cannot name it, a side or the margin of it: lower-case words joined by _"
+            for word in words
             if not _BRANCH.match(word)
         )
-    for kind, legs in (("rod", mechanism.rods), ("guide", mechanism.guides)):
+    legs_of = {"rod": mechanism.rods, "guide": mechanism.guides, "bar": mechanism.bars, "limited": mechanism.limited}
+    for kind, legs in legs_of.items():
         yield from (
             f"{leg.name!r} cannot name a {kind}: lower-case letters and digits, words joined by _"
             for leg in legs
@@ -140,8 +147,9 @@ def _joints_and_parameters(mechanism: Mechanism) -> Iterator[str]:
 
 def _parameter(parameter: Parameter) -> Iterator[str]:
     name = parameter.name
-    if not _PARAMETER.match(name):
-        yield f"{name!r} cannot name a parameter: letters, digits and _, and no digit first"
+    for word in (name, parameter.given_name):
+        if not _PARAMETER.match(word):
+            yield f"{word!r} cannot name a parameter: letters, digits and _, and no digit first"
     stated = (
         parameter.nominal,
         parameter.low,

@@ -94,6 +94,7 @@ def test_the_page_and_its_headers(told: Settings, tmp_path: Path) -> None:
             async with session.get(running.url) as answer:
                 assert await answer.text() == "<p>ä</p>" and answer.content_type == "text/html"
                 assert answer.headers["Cache-Control"] == "no-store" and answer.headers["X-Frame-Options"] == "DENY"
+                assert "frame-ancestors 'none'" in answer.headers["Content-Security-Policy"]
             page.write_text("new", encoding="utf-8")
             async with session.get(running.url) as answer:
                 assert await answer.text() == "new"
