@@ -12,6 +12,7 @@ from pathlib import Path
 
 from derive.command.stages import Stages
 from derive.description.catalogue import load
+from derive.description.errors import printable
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.places import line_of
 from derive.faults import CompilerError, GenerationError, error
@@ -26,7 +27,7 @@ _TAKEN = ("softkin", "derive", "numpy", "scipy", "sympy", "casadi", "matplotlib"
 
 def complain(message: str) -> None:
     """Print a message, with paths as the user would type them."""
-    print(f"error: {message.replace(f'{Path.cwd()}/', '')}", file=sys.stderr, flush=True)
+    print(f"error: {printable(message).replace(f'{Path.cwd()}/', '')}", file=sys.stderr, flush=True)
 
 
 def refused(problem: Exception, with_trace: bool, status: int = WRONG) -> int:
