@@ -23,7 +23,7 @@ from derive.report.reasons import workspace
 from derive.report.zero_directions import directions_at_zero
 
 _WIDTH = 100
-_MARKUP = re.compile(r"[\\*`|]|_(?!\w)|(?<!\w)_|(?<=:):|(?<!\S)([!-/:-@\[-`{-~])(?=\1+(?!\S))")
+_MARKUP = re.compile(r"[\\*`|]|_(?!\w)|(?<!\w)_|(?<=:):|(?<!\S)([!-/:-@\[-`{-~])(?=\1{3,}(?!\S))")
 """What begins or ends markup inside a line, and a word that could underline a title."""
 _BLOCK = re.compile(r"[^\w\s\\]|\w+[.)]\s")
 """The beginning of a text that could be an item, a directive, a field or a table."""
