@@ -4,6 +4,7 @@ what to report.
 
 from __future__ import annotations
 
+import errno
 import platform
 import traceback
 from dataclasses import dataclass
@@ -20,6 +21,15 @@ UNFIT = (DescriptionError, Unsolved, Disagreement)
 """The errors of a wrong description: the message says enough."""
 _OF_THE_SYSTEM = (OSError, MemoryError)
 """The errors of the system: the message says enough, and there is nothing to report."""
+_NO_FOLDER = "is a file, where a folder is needed: name another one"
+_REMEDIES = {
+    errno.EEXIST: _NO_FOLDER,
+    errno.ENOTDIR: _NO_FOLDER,
+    errno.EISDIR: "is a folder, where a file is needed: name another one",
+    errno.EACCES: "may not be read or written by this user: change its permissions, or name another one",
+    errno.EROFS: "is on a disk that cannot be written: name another one",
+    errno.ENOSPC: "no space is left on the disk: make room, and run this again",
+}
 
 
 class GenerationError(Exception):
@@ -57,7 +67,7 @@ def failure(path: Path | None, problem: Exception) -> Failure:
         said = one_line(problem)
         return Failure(in_place(path, said) if path else with_remedy(said))
     if isinstance(problem, _OF_THE_SYSTEM):
-        return Failure(f"{_place(path)}{_with_its_kind(problem)}")
+        return Failure(f"{_place(path)}{of_the_system(problem)}")
     return Failure(_to_report(path, problem), "".join(traceback.format_exception(problem)))
 
 
@@ -69,6 +79,14 @@ def error(path: Path | None, problem: Exception) -> GenerationError:
 def one_line(problem: Exception) -> str:
     """The message of a problem as one line."""
     return " ".join(str(problem).split())
+
+
+def of_the_system(problem: Exception) -> str:
+    """The sentence about an error of the system: the file, what is wrong with it, and what to do."""
+    if not isinstance(problem, OSError) or problem.strerror is None:
+        return _with_its_kind(problem)
+    remedy = _REMEDIES.get(problem.errno or 0, problem.strerror.lower())
+    return f"{problem.filename}: {remedy}" if problem.filename is not None else remedy
 
 
 def _to_report(path: Path | None, problem: Exception) -> str:

@@ -55,8 +55,8 @@ def new(options: argparse.Namespace) -> int:
     path = path if path.suffix == ".py" else path.with_name(f"{path.name}.py")
     name = "".join(word[:1].upper() + word[1:] for word in re.split(r"[^A-Za-z0-9]+", path.stem))
     name = name if name[:1].isalpha() else f"Machine{name}"
+    path.parent.mkdir(parents=True, exist_ok=True)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("x", encoding="utf-8") as file:
             file.write(description(path.name, name))
     except FileExistsError:

@@ -12,9 +12,10 @@ from pathlib import Path
 
 from derive.command.stages import Stages
 from derive.description.catalogue import load
+from derive.description.errors import printable
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.places import line_of
-from derive.faults import CompilerError, GenerationError, error
+from derive.faults import CompilerError, GenerationError, error, of_the_system
 from derive.output import ForeignFolder, differences, replace_beside_others, replace_parts
 from derive.pipeline import WRITTEN, derive_one, files_of, languages, unwritten
 
@@ -26,7 +27,7 @@ _TAKEN = ("softkin", "derive", "numpy", "scipy", "sympy", "casadi", "matplotlib"
 
 def complain(message: str) -> None:
     """Print a message, with paths as the user would type them."""
-    print(f"error: {message.replace(f'{Path.cwd()}/', '')}", file=sys.stderr, flush=True)
+    print(f"error: {printable(message).replace(f'{Path.cwd()}/', '')}", file=sys.stderr, flush=True)
 
 
 def refused(problem: Exception, with_trace: bool, status: int = WRONG) -> int:
@@ -34,7 +35,7 @@ def refused(problem: Exception, with_trace: bool, status: int = WRONG) -> int:
 
     with_trace: whether the traceback of such a mistake is printed.
     """
-    complain(str(problem))
+    complain(of_the_system(problem) if isinstance(problem, OSError) else str(problem))
     if not isinstance(problem, CompilerError):
         return status
     if with_trace:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from derive.controller.reading import judged, shown
 from derive.controller.refusal import Refused
 
 
@@ -50,9 +50,10 @@ def of_entry(axis: str, given: object, where: str) -> Channel:
 
 def checked_scale(scale: object, where: str) -> float:
     """The scale as a number. Raises `Refused` where it is not finite, or 0."""
-    if isinstance(scale, bool) or not isinstance(scale, int | float) or not math.isfinite(scale) or scale == 0:
-        raise Refused(f"{where}: a scale is a number other than 0, not {scale!r}")
-    return float(scale)
+    read = judged(scale, 1.0, 0.0)
+    if not read.value:
+        raise Refused(f"{where}: a scale is a number other than 0, not {shown(scale)}")
+    return read.value
 
 
 def in_order(given: Iterable[Channel], axes: tuple[str, ...], *, named: bool) -> tuple[Channel, ...]:

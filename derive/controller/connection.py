@@ -1,4 +1,4 @@
-"""A source whose lost connections are reported, and tried again after longer and longer waits."""
+"""A source whose lost connections are reported, and tried again."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Protocol
 from derive.controller.feed import Feed, Status
 from derive.controller.refusal import Lost, Refused
 
-FIRST_WAIT, LONGEST_WAIT = 0.5, 15.0
-"""The first and the longest wait after a loss, in seconds; each wait is twice the one before."""
+WAIT = 1.0
+"""Seconds from a loss to the next try: a controller that is back is found within three."""
 
 
 class Source(Protocol):
@@ -22,16 +22,13 @@ class Source(Protocol):
 
 async def keep(source: Source, feed: Feed, wait: Callable[[float], Awaitable[None]] = asyncio.sleep) -> None:
     """Read until the source is over, connecting again after every loss. Raises `Refused`."""
-    seconds = FIRST_WAIT
     while True:
         feed.tell(Status.CONNECTING, feed.condition.message)
         try:
             await source.run(feed)
         except Lost as problem:
-            seconds = FIRST_WAIT if feed.condition.status is Status.LIVE else seconds
-            feed.tell(Status.LOST, str(problem), seconds)
-            await wait(seconds)
-            seconds = min(2 * seconds, LONGEST_WAIT)
+            feed.tell(Status.LOST, str(problem), WAIT)
+            await wait(WAIT)
         except Refused as problem:
             feed.tell(Status.REFUSED, str(problem))
             raise

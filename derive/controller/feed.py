@@ -10,6 +10,7 @@ from enum import Enum
 
 from derive.controller.channels import Channel
 from derive.controller.reading import Reading, judged
+from derive.description.errors import printable
 
 
 class Status(Enum):
@@ -67,7 +68,7 @@ class Feed:
 
     def tell(self, status: Status, message: str = "", retry_in: float | None = None) -> None:
         """Note the state of the connection."""
-        self.condition = Condition(status, message, None if retry_in is None else self.clock() + retry_in)
+        self.condition = Condition(status, printable(message), None if retry_in is None else self.clock() + retry_in)
         self._hear(self.condition)
         self._changed.set()
 

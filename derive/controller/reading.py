@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import dataclass
 from enum import Enum
+from reprlib import Repr
+from typing import Any
+
+_SHORT = Repr()
+_SHORT.maxstring = _SHORT.maxother = 40
 
 
 class Quality(Enum):
@@ -45,7 +51,7 @@ def judged(raw: object, scale: float, at: float) -> Reading:
     if isinstance(raw, Unusable):
         return Reading(None, raw.reason, at)
     if isinstance(raw, bool) or not isinstance(raw, int | float):
-        return Reading(None, f"no number: {_shown(raw)}", at)
+        return Reading(None, f"no number: {shown(raw)}", at)
     try:
         value = float(raw) * scale
     except OverflowError:
@@ -55,7 +61,15 @@ def judged(raw: object, scale: float, at: float) -> Reading:
     return Reading(value, "", at)
 
 
-def _shown(raw: object) -> str:
+def read_json(text: str | bytes, **hooks: Any) -> Any:
+    """The value in a text of JSON. hooks: those of `json.loads`. Raises `ValueError`, also where it is too deep."""
+    try:
+        return json.loads(text, **hooks)
+    except RecursionError:
+        raise ValueError("it is too deeply nested") from None
+
+
+def shown(raw: object) -> str:
     """The answer in a few characters."""
-    text = repr(raw)
+    text = _SHORT.repr(raw)
     return text if len(text) <= 40 else f"{text[:37]}..."

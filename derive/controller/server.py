@@ -22,6 +22,7 @@ MOST_PAGES = 16
 """The largest number of pages that may be open at the same time."""
 _HEADERS = {
     "Cache-Control": "no-store",
+    "Content-Security-Policy": "base-uri 'none'; form-action 'none'; frame-ancestors 'none'; object-src 'none'",
     "Referrer-Policy": "no-referrer",
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",

@@ -5,7 +5,6 @@ The format of the JSON is that of docs/LIVE.md.
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from typing import Any
 from derive.controller.addresses import Address, address_of, refuse_secrets
 from derive.controller.channels import Channel, checked_scale, in_order, of_argument, of_entry
 from derive.controller.machine import Machine, machine_of
+from derive.controller.reading import read_json
 from derive.controller.refusal import Refused
 
 RATE, STALE_AFTER, SPEED = 50.0, 1.0, 1.0
@@ -98,7 +98,7 @@ def _read(path: Path) -> dict[str, Any]:
     """The entries of the file; those of a machine alone, as `to_json` writes it, become its entry "machine"."""
     try:
         text = path.read_text(encoding="utf-8")
-        given = json.loads(text, object_pairs_hook=_once, parse_float=_finite, parse_constant=_finite)
+        given = read_json(text, object_pairs_hook=_once, parse_float=_finite, parse_constant=_finite)
     except OSError as problem:
         raise Refused(f"{path}: {problem.strerror or problem}") from None
     except ValueError as problem:

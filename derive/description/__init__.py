@@ -6,7 +6,7 @@ branches: branches and assembly modes: two solutions that the sign of an indicat
 catalogue: the mechanism files of a folder, loaded and checked
 chains/: the amounts of turns and shifts in a chain, and its numbers and gears
 dimensions: the parameters of a machine by their roles, and conditions between them
-errors: the error of a description that cannot be right
+errors: the error of a description that cannot be right, and text of files as a terminal may print it
 fields: the kinds of values that the fields of a mechanism hold
 inner_names: the names that the inputs of a machine have inside a derivation
 joints: how joints move, what their values mean, and their ranges

@@ -77,6 +77,9 @@ def _executed(path: Path) -> ModuleType:
         raise DescriptionError(f"{path}: there is no such file; `softkin new {path}` writes one")
     if path.suffix not in SOURCE_SUFFIXES:
         raise DescriptionError(f"{path}: not a Python file: a description is a file whose name ends in .py")
+    if b"\0" in (data := path.read_bytes()):
+        line = data[: data.index(b"\0")].count(b"\n") + 1
+        raise DescriptionError(f"{path}:{line}: the line holds a byte that is 0, and no text has one: remove it")
     loader = _Loader(f"mechanism_{path.stem}", str(path))
     module = module_from_spec(ModuleSpec(loader.name, loader, origin=loader.path))
     module.__file__ = loader.path

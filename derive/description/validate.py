@@ -33,8 +33,7 @@ _BRANCH = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _LEG = re.compile(r"[a-z0-9]+(_[a-z0-9]+)*\Z")
 _FAMILY = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
 _AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
-
-_MARKS = ("(*", "*)", '"""', "\\")
+_UNIT = re.compile(r"([\w°^.%]+([/·-][\w°^.%]+)*)?\Z")
 
 Expressions = tuple[tuple[str, sp.Basic], ...]
 
@@ -62,21 +61,21 @@ def _problems(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _texts(mechanism: Mechanism) -> Iterator[str]:
-    """Texts stand in comments and documentation: none may end a comment, or have more than one line."""
+    """Texts are lines. What else they hold is data in every language: each has a function that escapes."""
     stated = [
-        *((f"the {word}", text) for word, text in (("summary", mechanism.summary), ("source", mechanism.source))),
+        *((f"the {word}", getattr(mechanism, word) or "") for word in ("summary", "source", "title")),
         *((f"parameter {p.name!r}", p.meaning) for p in mechanism.parameters),
         *((f"joint {j.name!r}", j.meaning) for j in mechanism.joints),
         *((f"limited quantity {q.name!r}", q.meaning) for q in mechanism.limited),
+        *(("a bound", bound.meaning) for bound in mechanism.bounds),
+        *((f"branch {b.name!r}", meaning) for b in mechanism.branches for meaning in b.meanings),
+        *(("the assembly", meaning) for meaning in (mechanism.assembly.meanings if mechanism.assembly else ())),
         *(("a note", note) for note in mechanism.notes),
-        *(("the title", title) for title in (mechanism.title,) if title is not None),
         *(("a constraint", c.message) for c in mechanism.constraints),
     ]
     for place, text in stated:
-        marks = [mark for mark in _MARKS if mark in text]
-        if marks or not text.isprintable():
-            shown = repr(marks[0]) if marks else "a line break, or a character that is not printed"
-            yield f"{place}: its text holds {shown}, which would end a comment or a text: write it without"
+        for wrong in (letter for letter in text if not letter.isprintable()):
+            yield f"{place}: its text holds {wrong!r}, a line break or a character that is not printed: leave it out"
 
 
 def _names(mechanism: Mechanism) -> Iterator[str]:
@@ -101,17 +100,25 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
                 yield f"{kind} {name!r} is given {count} times"
         yield from _alike(kind, names)
     yield from _joints_and_parameters(mechanism)
-    for branch in mechanism.branches:
+    sides = [("branch", (b.name, *b.names, b.margin)) for b in mechanism.branches]
+    sides += [("assembly", (a.name, *a.names, a.margin)) for a in (mechanism.assembly,) if a is not None]
+    for kind, words in sides:
         yield from (
-            f"branch {branch.name!r}: {word!r} cannot name it, or a side of it: lower-case words joined by _"
-            for word in (branch.name, *branch.names)
+            f"{kind} {words[0]!r}: {word!r} cannot name it, a side or the margin of it: lower-case words joined by _"
+            for word in words
             if not _BRANCH.match(word)
         )
-    for kind, legs in (("rod", mechanism.rods), ("guide", mechanism.guides)):
+    legs_of = {
+        "rod": [leg.name for leg in mechanism.rods],
+        "guide": [leg.name for leg in mechanism.guides],
+        "bar": [bar.name for bar in mechanism.bars],
+        "limited quantity": [quantity.name for quantity in mechanism.limited],
+    }
+    for kind, own in legs_of.items():
         yield from (
-            f"{leg.name!r} cannot name a {kind}: lower-case letters and digits, words joined by _"
-            for leg in legs
-            if not _LEG.match(leg.name)
+            f"{name!r} cannot name a {kind}: lower-case letters and digits, words joined by _"
+            for name in own
+            if not _LEG.match(name)
         )
     for joint in mechanism.joints:
         if not _AXIS.match(joint.name):
@@ -140,8 +147,11 @@ def _joints_and_parameters(mechanism: Mechanism) -> Iterator[str]:
 
 def _parameter(parameter: Parameter) -> Iterator[str]:
     name = parameter.name
-    if not _PARAMETER.match(name):
-        yield f"{name!r} cannot name a parameter: letters, digits and _, and no digit first"
+    for word in (name, parameter.given_name):
+        if not _PARAMETER.match(word):
+            yield f"{word!r} cannot name a parameter: letters, digits and _, and no digit first"
+    if not _UNIT.match(parameter.unit):
+        yield f"parameter {name!r}: {parameter.unit!r} is no unit: letters, digits, / and ^"
     stated = (
         parameter.nominal,
         parameter.low,

@@ -1,4 +1,4 @@
-"""The layout of languages with braces: indents, blocks, and long statements broken outside of texts."""
+"""The layout of languages with braces: notes, indents, blocks, and long statements broken outside of texts."""
 
 from __future__ import annotations
 
@@ -21,6 +21,11 @@ _PARTS = re.compile(
     re.VERBOSE,
 )
 """The tokens at which a statement may be broken; the gap is the one between the parts of a text."""
+
+
+def harmless(note: str) -> str:
+    """A note that neither ends its comment nor begins another one."""
+    return note.replace("*/", "* /").replace("/*", "/ *")
 
 
 def indented(lines: Sequence[str]) -> list[str]:
@@ -51,7 +56,7 @@ def _place(text: str, width: int) -> int | None:
     places = [(depth, -at) for at, depth in _places(text)]
     fitting = [place for place in places if -place[1] <= width]
     far = [place for place in fitting if -place[1] > width // 4]
-    bound = text.find(" = ")
+    bound = text.partition('"')[0].find(" = ")
     if not fitting and bound > 0:
         return bound + 3
     return -min(far or fitting or places)[1] if places else None

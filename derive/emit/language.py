@@ -5,6 +5,7 @@ A language is one printer, which spells, and one folder of templates, which arra
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias
@@ -47,10 +48,15 @@ def short_name(mechanism: str) -> str:
     return short if short.isidentifier() else mechanism
 
 
+def markdown(text: str) -> str:
+    """A text in which Markdown finds neither markup nor HTML, nor the end of a cell."""
+    return re.sub(r"[\\*`|<\[\]&~$]|_(?!\w)|(?<!\w)_", r"\\\g<0>", text)
+
+
 def environment(language: str) -> Environment:
     """The templates of a language. An unknown name in a template is an error, never an empty text."""
-    # Nothing is escaped: the output is source text, not a web page.
-    return Environment(
+    # Nothing is escaped by itself: the output is source text. Each language has functions for texts and comments.
+    found = Environment(
         loader=FileSystemLoader(TEMPLATES / language),
         undefined=StrictUndefined,
         autoescape=False,
@@ -58,3 +64,5 @@ def environment(language: str) -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
+    found.filters["markdown"] = markdown
+    return found

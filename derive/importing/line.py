@@ -6,6 +6,7 @@ import argparse
 import re
 from pathlib import Path
 
+from derive.description.errors import printable
 from derive.importing.importing import SNAP, UNITS, Options, import_robot
 from derive.importing.robot import UnreadableRobot
 
@@ -35,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
     if target.exists():
         raise UnreadableRobot(f"{target}: exists, and may have been edited: name another file with --out")
     target.write_text(imported.text, encoding="utf-8")
-    print(imported.report)
+    print(printable(imported.report))
     print(f"Written: {target}. Read it, edit it, then derive it.")
     return 0
 

@@ -10,6 +10,7 @@ from textwrap import wrap
 import numpy as np
 import sympy as sp
 
+from derive.description.errors import printable
 from derive.description.joints import Kind
 from derive.geometry.frames import Motion
 from derive.importing.arms.lines import Arm
@@ -102,8 +103,8 @@ def _docstring(robot: Robot, description: Description, unit: str, notes: Sequenc
 
 
 def _plain(text: str) -> str:
-    """Text of a file without characters that would end a string."""
-    return re.sub(r'["\\\s]+', " ", text)
+    """Text of a file as a part of one line, without characters that would end a string."""
+    return re.sub(r'["\\\s]+', " ", printable(text))
 
 
 def _imports(description: Description, task: Followed, robot: Robot) -> list[str]:

@@ -66,10 +66,11 @@ export class Live {
     this.said(`${source.kind}: connecting`, false);
   }
 
-  #move({ status, message, complete, axes, quality, reasons }) {
+  #move({ status, message, retry_in: wait, complete, axes, quality, reasons }) {
     const doubtful = quality.findIndex((one) => one !== "good");
     const words = doubtful < 0 ? "" : `, axis ${doubtful + 1} ${quality[doubtful]}${reasons[doubtful] ? ` (${reasons[doubtful]})` : ""}`;
-    this.said(`${status}${message ? `: ${message}` : ""}${words}`, status === "live" && doubtful < 0);
+    const next = status === "lost" && wait !== null ? `, next try in ${wait.toFixed(1)} s` : "";
+    this.said(`${status}${message ? `: ${message}` : ""}${next}${words}`, status === "live" && doubtful < 0);
     if (complete && axes.length === this.count && axes.every(Number.isFinite)) this.model.moveAxes(axes);
   }
 }

@@ -68,7 +68,7 @@ class Page {
 
   #about() {
     this.summary = element("p", { class: "soft" });
-    const licence = element("pre", { class: "soft", style: "white-space: pre-wrap" }, this.data.licences);
+    const licence = element("pre", { class: "soft wrapped" }, this.data.licences);
     const keys = element("p", { class: "soft" }, "Keys: T move, R turn, G ghosts, N names, F fit, 0 start, + and - nearer and farther; in the picture, arrows shift it, with Shift they turn it; in a number, arrows step by 1, with Shift by 10, with Alt by 0.1.");
     this.report = element("a", { id: "report" }, "The derivation of this machine");
     const command = this.model.names.length > 1 ? "make report" : "softkin explain --html";

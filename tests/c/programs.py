@@ -39,9 +39,9 @@ def part_of(name: str) -> Part:
     return part
 
 
-def compiled(part: Part) -> Path:
-    """The program of what is written."""
-    return _linked(part, written(files_of(part)), SANITIZED, _common(SANITIZED))
+def compiled(part: Part, options: tuple[str, ...] = SANITIZED) -> Path:
+    """The program of what is written. options: of the compiler."""
+    return _linked(part, written(files_of(part)), options, _common(options))
 
 
 def compiled_with_a_fault(part: Part, file: str, found: str, wrong: str, options: tuple[str, ...]) -> Path:
@@ -77,8 +77,13 @@ def _common(options: tuple[str, ...]) -> tuple[str, str]:
 
 def compile_in(folder: Path, *options: str) -> None:
     """Compile in a folder; every warning is an error. The environment's CC names another compiler, as clang."""
+    assert not (said := refused_in(folder, *options)), said
+
+
+def refused_in(folder: Path, *options: str) -> str:
+    """What the compiler says where it refuses, else an empty text."""
     done = subprocess.run([COMPILER, *STRICT, *options], cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    return done.stderr or "no word" if done.returncode else ""
 
 
 def written(texts: Mapping[str, str]) -> Path:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import random
 from typing import Any
 
+import numpy as np
 import pytest
 import softkin
 
 from derive.emit.c.description import inputs
 from tests.c.machine import ask, described
-from tests.c.programs import program_of
+from tests.c.programs import compiled, files_of, part_of, program_of, refused_in, written
 from tests.catalogue.extreme import extreme_dimensions
 from tests.corpus.dimensions import DIMENSIONS
+from tests.linuxcnc import module
 from tests.mechanisms import kinematics_of, named
 
 NAN, INFINITY = float("nan"), float("inf")
@@ -102,3 +104,25 @@ def test_a_machine_that_cannot_be_is_refused(given: dict[str, float]) -> None:
     assert second["found"] == first["found"] and first["found"][0]["status"] == 0
     (never,) = ask(program_of(NAME), machines[1:])
     assert never["found"][0]["status"] == 1 and never["found"][0]["reason"] == "not initialized"
+
+
+@pytest.mark.parametrize("option", ["-ffast-math", "-Ofast", "-ffinite-math-only", "-D_M_FP_FAST"])
+def test_no_build_that_takes_nan_for_a_number(option: str) -> None:
+    """An option that removes the tests for NaN ends the compilation of every source, that of LinuxCNC too."""
+    linuxcnc = module.part_of(NAME)["files"]
+    folder = written({**files_of(part_of(NAME)), **linuxcnc})
+    sources = {path: () for path in files_of(part_of(NAME)) if path.endswith(".c")}
+    for source, include in {**sources, **dict.fromkeys(linuxcnc, module.includes("2_9"))}.items():
+        assert "they remove the tests for NaN" in refused_in(folder, option, *include, "-c", source), source
+
+
+@pytest.mark.parametrize("options", ["-O3 -funsafe-math-optimizations", "-Ofast -fno-fast-math"])
+def test_a_build_that_is_allowed_refuses_nan(options: str) -> None:
+    """Other options change digits, and no refusal."""
+    axes, frame = [10.0, 20.0, 3.0, 40.0], {"position": [400.0, 0.0, 0.0], "rotation": np.eye(3).tolist()}
+    calls: list[list[Any]] = [["forward", axes], ["inverse", frame, None, axes]]
+    for odd in (NAN, INFINITY, -INFINITY, 1.1e9):
+        calls += [["forward", [odd, *axes[1:]]], ["inverse", frame, None, [*axes[:3], odd]]]
+        calls += [["inverse", {**frame, "position": [odd, 0.0, 0.0]}, None, axes]]
+    (answer,) = ask(compiled(part_of(NAME), tuple(options.split())), [{"parameters": GIVEN, "calls": calls}])
+    assert [found["status"] != 0 for found in answer["found"]] == [False] * 2 + [True] * 12

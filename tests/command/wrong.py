@@ -48,8 +48,12 @@ WRONG: dict[str, str] = {
     "TypeError: …; a chain is a product": changed(ARM, ("Tx(L1) * Rz", "Tx(L1) + Rz")),
     "TypeError: length() missing 1 required …; as in length(": changed(ARM, (", nominal=400.0", "")),
     "parameter '…': '…' is not a number": changed(ARM, ("nominal=400.0", 'nominal="400"')),
-    "…: its text holds …, which would end a comment or a text": changed(ARM, ("Axis A1 to axis A2", "A1 (* to *) A2")),
-    "branch '…': '…' cannot name it, or a side of it: lower-case words": changed(ARM, ('"elbow"', '"my elbow"')),
+    "…: its text holds …, a line break or a character that is not printed": changed(
+        ARM, ("Axis A1 to axis A2", "A1 to\\nA2")
+    ),
+    "branch '…': '…' cannot name it, a side or the margin of it: lower-case words": changed(
+        ARM, ('"elbow"', '"my elbow"')
+    ),
     "rod '…': its ends have 2 and 3 coordinates": changed(
         FIVE_BAR, ('rod("1", KNEE_1, TOOL, ROD_1)', 'rod("1", KNEE_1, (X, Y, 0), ROD_1)')
     ),

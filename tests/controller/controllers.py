@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import socket
 import ssl
 from collections.abc import AsyncIterator, Mapping
@@ -125,6 +126,8 @@ class Ctrlx:
     port: int
     nodes: dict[str, Any]
     """The answers by path: a number, or an object of JSON as it is, or the number of an error."""
+    raw: dict[str, tuple[int, bytes]] = field(default_factory=dict)
+    """Answers as they are, of the "log-in" and of every "node"."""
     tokens: set[str] = field(default_factory=set)
     asked: list[str] = field(default_factory=list)
     log_ins: int = 0
@@ -156,6 +159,8 @@ class Ctrlx:
 
     async def _log_in(self, request: web.Request) -> web.Response:
         self.asked.append(str(request.rel_url))
+        if "log-in" in self.raw:
+            return self._as_it_is("log-in")
         if await request.json() != {"name": USER, "password": PASSWORD}:
             return web.json_response({"type": "about:blank", "title": "Not authorized"}, status=401)
         self.log_ins += 1
@@ -169,10 +174,16 @@ class Ctrlx:
     async def _read(self, request: web.Request) -> web.Response:
         if self._token(request) not in self.tokens:
             return web.json_response({"title": "Not authorized"}, status=401)
+        if "node" in self.raw:
+            return self._as_it_is("node")
         found = self.nodes.get(request.match_info["path"], 404)
         if isinstance(found, int):
             return web.json_response({"title": "a problem", "detail": "of this node"}, status=found)
         return web.json_response(found if isinstance(found, dict) else {"type": "double", "value": found})
+
+    def _as_it_is(self, place: str) -> web.Response:
+        code, body = self.raw[place]
+        return web.Response(status=code, body=body, content_type="application/json")
 
     @staticmethod
     def _token(request: web.Request) -> str:
@@ -189,3 +200,41 @@ async def ctrlx(nodes: Mapping[str, Any]) -> AsyncIterator[Ctrlx]:
     finally:
         await found.stop()
         await asyncio.sleep(0.05)  # for TLS connections to be closed
+
+
+@dataclass
+class Wire:
+    """A connection to a controller which holds back what it carries while it is cut, as a pulled cable does."""
+
+    target: int
+    port: int = field(default_factory=free_port)
+    whole: asyncio.Event = field(default_factory=asyncio.Event)
+    tasks: set[asyncio.Task[None]] = field(default_factory=set)
+
+    async def accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """Carry both directions of a connection."""
+        there = await asyncio.open_connection(HOST, self.target)
+        for source, sink in ((reader, there[1]), (there[0], writer)):
+            self.tasks.add(asyncio.create_task(self._carry(source, sink)))
+
+    async def _carry(self, source: asyncio.StreamReader, sink: asyncio.StreamWriter) -> None:
+        try:
+            with contextlib.suppress(ConnectionError):
+                while data := await source.read(65536):
+                    await self.whole.wait()
+                    sink.write(data)
+        finally:
+            sink.close()
+
+
+@asynccontextmanager
+async def wire(target: int) -> AsyncIterator[Wire]:
+    """A wire to a port of this computer."""
+    found = Wire(target)
+    found.whole.set()
+    async with await asyncio.start_server(found.accept, HOST, found.port):
+        yield found
+        for task in found.tasks:
+            task.cancel()
+        await asyncio.gather(*found.tasks, return_exceptions=True)
+        await asyncio.sleep(0.05)  # for connections to be closed

@@ -16,6 +16,7 @@ import aiohttp
 from derive.controller.connection import Source
 from derive.controller.run import live, source_of, who
 from derive.controller.settings import Security, Settings, settings_of
+from tests.controller.controllers import Wire
 
 PATIENCE = 15.0
 """Seconds after which a test gives up: far more than anything takes on a quiet machine."""
@@ -112,3 +113,23 @@ async def until(holds: Callable[[], bool]) -> None:
     async with asyncio.timeout(PATIENCE):
         while not holds():
             await asyncio.sleep(0.01)
+
+
+async def found_again(told: Settings, wire: Wire) -> list[float]:
+    """The axes after a loss: a cut wire is noticed within a second, and the source is live within three of its return.
+
+    The page counts down to the next try. A busy machine has as much time again.
+    """
+    async with served(told) as running, page_of(running) as page:
+        await message_where(page, lambda m: m["complete"])
+        wire.whole.clear()
+        async with asyncio.timeout(2.0):
+            waits = [(await message_where(page, lambda m: m["status"] == "lost"))["retry_in"]]
+        while (seen := await message_where(page, lambda _: True))["status"] == "lost":
+            waits.append(seen["retry_in"])
+        assert len(waits) > 2 and waits == sorted(waits, reverse=True) and 0.8 <= waits[0] <= 1.0
+        await message_where(page, lambda m: m["status"] == "lost")  # tried once more, and not answered
+        wire.whole.set()
+        async with asyncio.timeout(6.0):
+            found: list[float] = (await message_where(page, lambda m: m["status"] == "live"))["axes"]
+            return found

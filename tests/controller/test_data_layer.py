@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from pathlib import Path
 
 import pytest
 
-from derive.controller.refusal import Refused
+from derive.controller.feed import Feed
+from derive.controller.refusal import Lost, Refused
+from derive.controller.run import source_of, who
 from derive.controller.settings import Security
-from tests.controller.controllers import PASSWORD, USER, Ctrlx, another_authority, ctrlx, trusted
-from tests.controller.pages import GANTRY, PATIENCE, message_where, page_of, served, settings
+from tests.controller.controllers import PASSWORD, USER, Ctrlx, another_authority, ctrlx, trusted, wire
+from tests.controller.pages import GANTRY, PATIENCE, found_again, message_where, page_of, served, settings
 
 POSITION = "motion/axs/AxisX/state/values/actual/pos"
 SYMBOL = "plc/app/Application/sym/GVL/y a#1"
@@ -86,6 +89,58 @@ def test_a_lost_controller_is_found_again(tmp_path: Path) -> None:
                 await controller.start()
                 again = await message_where(page, lambda m: m["status"] == "live")
                 assert again["axes"] == [-7.0, 20.0]
+
+    asyncio.run(run())
+
+
+def test_a_controller_that_does_not_answer_any_more(tmp_path: Path) -> None:
+    """Noticed, and found again, as quickly as by OPC UA."""
+
+    async def run() -> None:
+        async with ctrlx({POSITION: 1.0, SYMBOL: 2.0}) as controller, wire(controller.port) as cable:
+            given = {**GANTRY, **NODES, "source": f"https://127.0.0.1:{cable.port}"}
+            assert await found_again(settings(tmp_path, given, Security(trusted(tmp_path))), cable) == [1.0, 20.0]
+
+    asyncio.run(run())
+
+
+DEEP = 60_000
+_VALUES = (b"[" * DEEP + b"]" * DEEP, b"9" * 9000, b"1e999", b"NaN", b"{}")
+_TYPES = (b"[]", b'["double"]', b"{}", b"null", b"7", b"true", b'"' + b"x" * DEEP + b'"')
+_TITLES = (b"[" * 900 + b"]" * 900, b'"\\ud800\\u001b[2J"', b"7")
+ODD = [
+    *(bytes([one]) * DEEP for one in b'[{"9-'),
+    *(b'{"type":"double","value":' + one + b"}" for one in _VALUES),
+    *(b'{"type":' + one + b',"value":1}' for one in _TYPES),
+    *(b'{"title":' + one + b"}" for one in _TITLES),
+    *(b"", b"null", b"7", b'"\xff"', b"\xff\xfe", b"\xff\xfe[\x00", b"\0", b"<html>", b"x" * 10_000_000),
+]
+"""Bodies of answers that no controller should give: too deep, too long, of other types, not of UTF-8, no JSON."""
+
+
+@pytest.mark.parametrize("place", ["log-in", "node"])
+def test_odd_answers_end_nothing(place: str, tmp_path: Path) -> None:
+    """Where a node answers so, its value is bad; where a log-in does, the connection is lost."""
+
+    async def run() -> None:
+        async with ctrlx({POSITION: 1.0, SYMBOL: 2.0}) as controller:
+            told = settings(tmp_path, {**GANTRY, **NODES, "source": controller.address}, Security(trusted(tmp_path)))
+            data_layer = source_of(told, who(told))
+            feed = Feed(told.channels)
+            for code, body in ((code, body) for body in ODD for code in (200, 201, 401, 500)):
+                controller.raw[place] = (code, body)
+                reading, told_of = map(asyncio.ensure_future, (data_layer.run(feed), feed.changed(PATIENCE)))
+                await asyncio.wait((reading, told_of), return_when=asyncio.FIRST_COMPLETED)
+                reading.cancel()
+                told_of.cancel()
+                with contextlib.suppress(Lost, Refused, asyncio.CancelledError):
+                    await reading
+                said = [feed.condition.message, *(reading.reason for reading in feed.readings.values())]
+                assert all(len(one) < 400 for one in said)
+                assert place == "log-in" or code == 401 or feed.readings["X"].value is None
+            controller.raw.clear()
+            async with served(told) as running, page_of(running) as page:
+                assert (await message_where(page, lambda m: m["complete"]))["axes"] == [1.0, 20.0]
 
     asyncio.run(run())
 

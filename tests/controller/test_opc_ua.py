@@ -13,8 +13,18 @@ from asyncua import ua
 
 from derive.controller.refusal import Refused
 from derive.controller.settings import Security
-from tests.controller.controllers import PASSWORD, USER, VARIABLES, OneUser, Plc, another_authority, plc, trusted
-from tests.controller.pages import GANTRY, PATIENCE, message, message_where, page_of, served, settings, until
+from tests.controller.controllers import PASSWORD, USER, VARIABLES, OneUser, Plc, another_authority, plc, trusted, wire
+from tests.controller.pages import (
+    GANTRY,
+    PATIENCE,
+    found_again,
+    message,
+    message_where,
+    page_of,
+    served,
+    settings,
+    until,
+)
 
 PLAIN = Security(is_unencrypted=True)
 NODES = {"axes": {"X": {"node": "ns=2;s=GVL.x", "scale": 0.001}, "Y": "nsu=urn:plc;s=GVL.y"}}
@@ -112,7 +122,7 @@ def test_a_lost_controller_is_shown_and_found_again(runner: asyncio.Runner, cont
             await message_where(page, lambda m: m["complete"])
             await controller.stop()
             lost = await message_where(page, lambda m: m["status"] == "lost")
-            assert controller.address in lost["message"] and lost["retry_in"] <= 0.5
+            assert controller.address in lost["message"] and lost["retry_in"] <= 1.0
             stale = await message_where(page, lambda m: m["quality"] == ["stale", "stale"])
             assert stale["axes"] == [1.0, 2.0] and min(stale["ages"]) > 0.2 and stale["complete"]
             await controller.write("GVL.x", 4000.0)
@@ -120,6 +130,17 @@ def test_a_lost_controller_is_shown_and_found_again(runner: asyncio.Runner, cont
             again = await message_where(page, lambda m: m["status"] == "live")
             assert again["axes"] == [4.0, 2.0] and again["quality"] == ["good", "good"]
             assert [line.partition(":")[0] for line in running.said[1:]][-3:] == ["live", "lost", "live"]
+
+    runner.run(run())
+
+
+def test_a_controller_that_does_not_answer_any_more(runner: asyncio.Runner, controller: Plc, tmp_path: Path) -> None:
+    """Its connection is not closed, as where a cable is pulled: the loss shows by its silence alone."""
+
+    async def run() -> None:
+        async with wire(controller.port) as cable:
+            told = settings(tmp_path, {**GANTRY, **NODES, "source": f"opc.tcp://127.0.0.1:{cable.port}"}, PLAIN)
+            assert await found_again(told, cable) == [1.0, 2.0]
 
     runner.run(run())
 

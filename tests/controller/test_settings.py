@@ -149,6 +149,9 @@ def test_the_source_and_what_is_told_about_it(tmp_path: Path) -> None:
     [
         ("", "no JSON"),
         ("[]", "an object of JSON, not list"),
+        pytest.param("[" * 60_000, "no JSON: it is too deeply nested", id="deep"),
+        ({**GANTRY, "axes": {"X": {"scale": 10**400}}, "source": "-"}, "axes.X: a scale is a number other than 0"),
+        ({**GANTRY, "source": {"address": "-", "rate": 10**400}}, "rate is a number"),
         ('{"machine": {"mechanism": "Kin_Gantry2"}, "machine": {}}', "the entry 'machine' stands twice"),
         ('{"machine": {"mechanism": "Kin_Gantry2", "offset_x": NaN}}', "NaN is no finite number"),
         ('{"machine": {"mechanism": "Kin_Gantry2", "offset_x": 1e999}}', "1e999 is no finite number"),

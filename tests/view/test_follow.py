@@ -124,7 +124,7 @@ def test_a_controller_moves_the_page(tmp_path: Path) -> None:
             assert np.allclose(after["frame"]["position"], robot.forward(after["axes"])[0].position, rtol=0, atol=1e-9)
             await controller.stop()
             lost = await page.shown_where(lambda shown: shown["said"].startswith("lost"))
-            assert lost["axes"] == after["axes"]
+            assert lost["axes"] == after["axes"] and "next try in " in lost["said"]
             await controller.start()
             await controller.write("GVL.x", -2000.0)
             again = await page.shown_where(lambda shown: shown["axes"][0] == -20)

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import ssl
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -31,17 +30,17 @@ from yarl import URL
 from derive.controller.channels import Channel
 from derive.controller.credentials import Credentials
 from derive.controller.feed import Feed
-from derive.controller.reading import Unusable
+from derive.controller.reading import Unusable, read_json, shown
 from derive.controller.refusal import Lost, Refused
-from derive.controller.sources.pace import Pace
+from derive.controller.sources.pace import ANSWER, Pace
 
 TOKEN_PATH = "/identity-manager/api/v2/auth/token"
 NODES_PATH = "/automation/api/v2/nodes/"
 _INTEGERS = tuple(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))
 _NUMBERS = frozenset({"float", "double", "float32", "float64", *_INTEGERS})
 _CREATED, _OK, _UNAUTHORIZED, _FORBIDDEN = 201, 200, 401, 403
-_PATIENCE = aiohttp.ClientTimeout(total=4.0)
-"""Seconds for an answer."""
+_PATIENCE, _ANSWER = aiohttp.ClientTimeout(total=4.0), aiohttp.ClientTimeout(total=ANSWER)
+"""Seconds for a log-in, and for the answer about a node."""
 _MOST = 65536
 """The largest number of bytes of an answer about one node."""
 
@@ -100,6 +99,8 @@ class DataLayer:
         except _Expired:
             if not is_taken:
                 raise Refused(f"{self.address} has given a token, and does not take it") from None
+        except TimeoutError:  # whoever does not answer is not asked for the end of a session
+            raise
         except BaseException:
             with contextlib.suppress(aiohttp.ClientError, TimeoutError, OSError):
                 async with session.delete(f"{self.address}{TOKEN_PATH}", headers=headers, timeout=_END):
@@ -120,14 +121,15 @@ class DataLayer:
     async def _one(self, session: aiohttp.ClientSession, headers: Mapping[str, str], node: str) -> object:
         """The value of a node, or the reason why it is no number."""
         url = URL(f"{self.address}{NODES_PATH}{quote(node.strip('/'), safe='/')}", encoded=True)
-        async with session.get(url, headers=headers, allow_redirects=False) as answer:
+        async with session.get(url, headers=headers, allow_redirects=False, timeout=_ANSWER) as answer:
             given = await _object(answer)
             if answer.status == _UNAUTHORIZED:
                 raise _Expired
             if answer.status != _OK:
                 return Unusable(_problem(answer, given))
             kind = given.get("type")
-            return given.get("value") if kind in _NUMBERS else Unusable(f"no number, but of the type {kind!r}")
+            is_number = isinstance(kind, str) and kind in _NUMBERS
+            return given.get("value") if is_number else Unusable(f"no number, but of the type {shown(kind)}")
 
 
 _END = aiohttp.ClientTimeout(total=1.0)
@@ -135,9 +137,14 @@ _END = aiohttp.ClientTimeout(total=1.0)
 
 
 async def _object(answer: aiohttp.ClientResponse) -> dict[str, Any]:
-    """The object of JSON in an answer; empty where it is none."""
+    """The object of JSON in an answer; empty where it is none, or is too long."""
+    body = b""
+    async for part in answer.content.iter_any():
+        body += part
+        if len(body) > _MOST:
+            return {}
     try:
-        given = json.loads(await answer.content.read(_MOST))
+        given = read_json(body)
     except ValueError:
         return {}
     return given if isinstance(given, dict) else {}
@@ -145,5 +152,6 @@ async def _object(answer: aiohttp.ClientResponse) -> dict[str, Any]:
 
 def _problem(answer: aiohttp.ClientResponse, given: Mapping[str, Any]) -> str:
     """The error in an answer: its number and the words of its `Problem`."""
-    words = [str(given[name])[:120] for name in ("title", "detail") if given.get(name)]
+    said = [given.get(name) for name in ("title", "detail")]
+    words = [word[:120] for word in said if isinstance(word, str) and word]
     return " ".join([str(answer.status), *(words or [answer.reason or ""])]).strip()

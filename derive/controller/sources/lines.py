@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import os
 import threading
 from collections.abc import Iterator, Sequence
@@ -11,7 +10,7 @@ from dataclasses import dataclass, field
 
 from derive.controller.channels import Channel
 from derive.controller.feed import Feed
-from derive.controller.reading import Unusable
+from derive.controller.reading import Unusable, read_json
 from derive.controller.sources.table import number_of
 
 _LONGEST = 65536
@@ -45,8 +44,8 @@ class Reader:
 
     def _of_json(self, text: str) -> dict[str, object]:
         try:
-            given = json.loads(text)
-        except (ValueError, RecursionError) as problem:
+            given = read_json(text)
+        except ValueError as problem:
             return self._unusable(f"no JSON: {problem}")
         if isinstance(given, list):
             return self._listed(given, [channel.node for channel in self.channels])

@@ -23,14 +23,14 @@ from derive.controller.reading import Unusable
 from derive.controller.refusal import Lost, Refused
 from derive.controller.settings import Security
 from derive.controller.sources import opc_ua_trust
-from derive.controller.sources.pace import Pace
+from derive.controller.sources.pace import ANSWER, Pace
 
 _PORT = 4840
 """The port of OPC UA where an address names none."""
 _PATIENCE = 4.0
-"""Seconds for an answer."""
-_FAREWELL = 2.0
-"""Seconds for the end of a session."""
+"""Seconds for a connection."""
+_FAREWELL, _ABANDONED = 2.0, 0.1
+"""Seconds for the end of a session: usually, and of a server that does not answer."""
 _USER = frozenset({"BadUserAccessDenied", "BadIdentityTokenRejected", "BadIdentityTokenInvalid"})
 _CLIENT = frozenset({"BadSecurityChecksFailed"})
 """The answers of a controller to a wrong user, and (these or `BadCertificate…`) to a client that it does not trust."""
@@ -56,7 +56,8 @@ class OpcUa:
                 nodes = [await _node(client, channel) for channel in self.channels]
                 pace = Pace(self.rate)
                 while True:
-                    values = await client.uaclient.read_attributes(nodes, ua.AttributeIds.Value)
+                    async with asyncio.timeout(ANSWER):
+                        values = await client.uaclient.read_attributes(nodes, ua.AttributeIds.Value)
                     feed.take(dict(zip((c.axis for c in self.channels), map(answer, values), strict=True)))
                     await pace.next()
         except Refused:
@@ -83,12 +84,17 @@ class OpcUa:
         if self.credentials is not None:
             client.set_user(self.credentials.user)
             client.set_password(self.credentials.password)
-        await client.connect()
+        async with asyncio.timeout(_PATIENCE):
+            await client.connect()
+        farewell = _ABANDONED
         try:
             yield client
+        except (Refused, asyncio.CancelledError, ua.UaStatusCodeError):
+            farewell = _FAREWELL
+            raise
         finally:
             try:
-                async with asyncio.timeout(_FAREWELL):
+                async with asyncio.timeout(farewell):
                     await client.disconnect()
             except TimeoutError:  # the server does not answer any more
                 client.disconnect_socket()

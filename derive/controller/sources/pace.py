@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import asyncio
 
+ANSWER = 0.75
+"""Seconds for an answer about values: a controller that is lost is noticed within one second."""
+
 
 class Pace:
     """The moments at which something is done."""

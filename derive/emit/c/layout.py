@@ -5,17 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from textwrap import wrap
 
-from derive.emit.braces import broken
+from derive.emit.braces import broken, harmless
 
 WIDTH = 110
 """The largest number of columns of a line."""
 _COMMENT = 100
 """The largest number of columns of a comment that stands above a statement."""
-
-
-def harmless(note: str) -> str:
-    """A note that neither ends its comment nor begins another one."""
-    return note.replace("*/", "* /").replace("/*", "/ *")
 
 
 def comment(note: str, begin: str = "/*") -> list[str]:

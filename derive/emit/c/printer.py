@@ -79,7 +79,8 @@ def type_of(name: sp.Basic) -> str:
 def text(value: str) -> str:
     """A literal text; the texts that a long one is broken into follow each other."""
     parts = wrap(value, _TEXT, drop_whitespace=False, break_on_hyphens=False) or [""]
-    return " ".join(json.dumps(part, ensure_ascii=False).replace("??", r"?\?") for part in parts)
+    quoted = (json.dumps(part, ensure_ascii=False) for part in parts)
+    return " ".join(re.sub(r"\?(?=\?)", r"?\\", part) for part in quoted)  # ??/ would be a backslash
 
 
 def status(value: Status) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from textwrap import wrap
 
-from derive.emit.braces import broken
+from derive.emit.braces import broken, harmless
 
 WIDTH = 120
 """The most columns of a line."""
@@ -15,7 +15,7 @@ _COMMENT = 100
 
 def comment(note: str) -> list[str]:
     """A note as lines of comment; no line for an empty one."""
-    return wrap(note, _COMMENT, initial_indent="// ", subsequent_indent="// ")
+    return wrap(harmless(note), _COMMENT, initial_indent="// ", subsequent_indent="// ")
 
 
 def commented(line: str, note: str) -> list[str]:

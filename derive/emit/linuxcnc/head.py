@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from textwrap import wrap
 
 from derive.description.mechanism import Parameter, Role
+from derive.emit.braces import harmless
 from derive.emit.c.description import in_words
-from derive.emit.c.layout import harmless
 from derive.emit.linuxcnc.words import Orientation, Words
 from derive.kinematics.kinematics import Kinematics
 

@@ -10,9 +10,10 @@ from typing import Any
 from jinja2 import Environment
 
 from derive.description.mechanism import Role, Turning
+from derive.emit.braces import harmless
 from derive.emit.c import package as c
 from derive.emit.c.description import inputs
-from derive.emit.c.layout import harmless, page
+from derive.emit.c.layout import page
 from derive.emit.c.printer import C, list_of, member, number, text
 from derive.emit.c.program import searches
 from derive.emit.language import GENERATED, Part, environment

@@ -9,6 +9,7 @@ from keyword import iskeyword
 from derive.description.mechanism import Mechanism, Parameter, Role
 from derive.emit.inputs import Inputs, Spelling, inputs_of, word_of
 from derive.emit.language import short_name
+from derive.emit.python.layout import documented, quoted
 from derive.ir.constants import LARGEST
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
@@ -134,7 +135,8 @@ def _operations(cost: Cost) -> str:
 def described(kin: Kinematics) -> list[str]:
     """A line for each parameter: its name in the class, its meaning, and its unit."""
     names = inputs(kin).names
-    return [f"{names[p.name]}: {p.meaning}" + (f" [{p.unit}]" if p.unit else "") for p in kin.parameters]
+    units = {p.name: f" [{p.unit}]" if p.unit else "" for p in kin.parameters}
+    return [documented(f"{names[p.name]}: {p.meaning}{units[p.name]}") for p in kin.parameters]
 
 
 def notes(kin: Kinematics) -> list[str]:
@@ -172,8 +174,7 @@ def example(kin: Kinematics) -> list[str]:
 def literal(value: object) -> str:
     """A value as Python text, with double quotes."""
     if isinstance(value, str):
-        escaped = value.replace("\\", "\\\\").replace('"', '\\"')
-        return f'"{escaped}"'
+        return quoted(value)
     if isinstance(value, tuple):
         return f"({', '.join(map(literal, value))}{',' if len(value) == 1 else ''})"
     return repr(value)

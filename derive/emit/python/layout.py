@@ -40,6 +40,16 @@ def formatted(files: Mapping[str, str]) -> dict[str, str]:
         return {**files, **{path: (Path(folder) / path).read_bytes().decode() for path in python}}
 
 
+def quoted(text: str) -> str:
+    """A text as a literal, with double quotes."""
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
+def documented(line: str) -> str:
+    """A line of a docstring, which neither ends it nor has an escape."""
+    return line.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
+
+
 def tuple_of(parts: Sequence[str]) -> str:
     """Expressions as a tuple."""
     return f"({', '.join(parts)}{',' if len(parts) == 1 else ''})"

@@ -11,7 +11,7 @@ from sympy.core.relational import Relational
 
 from derive.emit.conditions import parts_of, sized
 from derive.emit.python.calls import FOUND
-from derive.emit.python.layout import note_lines
+from derive.emit.python.layout import note_lines, quoted
 from derive.emit.python.printer import ScalarPrinter
 from derive.ir.program import Iterate, Require, Status
 from derive.ir.reason import OtherTurn, Reason, Why
@@ -82,17 +82,17 @@ class Explained(Refusals):
         """
         value, low, high = map(_SCALAR.print, (limits.value, limits.lowest, limits.highest))
         subject = self.reasons.name(limits.reason.subject)
-        given = f'"{subject}", {value}, {low}, {high}'
+        given = f"{quoted(subject)}, {value}, {low}, {high}"
         turns = limits.reason.turns
         if turns == (OtherTurn(subject, limits.value, (limits.lowest,), (limits.highest,)),):
             refused = f"beyond_turn({given})"
         else:
-            others = ", ".join(f'"{turn.name}": {_turn_inside(turn)}' for turn in turns)
+            others = ", ".join(f"{quoted(turn.name)}: {_turn_inside(turn)}" for turn in turns)
             refused = f'beyond({given}, "{limits.reason.unit.value}"{f", {{{others}}}" if others else ""})'
         return [f"if not {low} <= {value} <= {high}:", f"    return {refused}"]
 
     def _refused(self, status: Status, reason: str, missing: str = "0.0") -> str:
-        return f'return Diagnosis({self.answer(status)}, "{reason}", {missing})'
+        return f"return Diagnosis({self.answer(status)}, {quoted(reason)}, {missing})"
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from derive.description.dimensions import Role
 from derive.emit.language import GENERATED, environment
 from derive.emit.python import entries
 from derive.emit.python.arrays import OF_A_SEARCH
+from derive.emit.python.layout import documented
 from derive.emit.python.printer import literal
 from derive.emit.python.rotation import rotation_functions
 from derive.ir import cells, roots
@@ -116,4 +117,4 @@ def _after_docstring(source: str) -> str:
 def _paragraph(text: str, indent: int = 0) -> str:
     """A text broken into the lines of a docstring, each with an indent."""
     space = " " * indent
-    return "\n".join(wrap(text, _TEXT, initial_indent=space, subsequent_indent=space))
+    return "\n".join(map(documented, wrap(text, _TEXT, initial_indent=space, subsequent_indent=space)))

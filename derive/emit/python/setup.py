@@ -9,7 +9,7 @@ import sympy as sp
 from derive.description.mechanism import Parameter, Role
 from derive.emit.inputs import Inputs
 from derive.emit.python.entries import inputs
-from derive.emit.python.layout import assigned
+from derive.emit.python.layout import assigned, quoted
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.emit.python.program import binding_lines
 from derive.emit.python.refusal import conjunction
@@ -94,8 +94,8 @@ def _refusal(statement: Require, given: Inputs) -> list[str]:
     read = {s.name for s in statement.condition.free_symbols}
     names = "".join(f', "{name}"' for inner, name in given.names.items() if inner in read)
     assert statement.reason is not None
-    message = given.told(statement.reason.subject.name).replace('"', "'")
-    return [f"if not ({conjunction([statement.condition])}):", f'    raise machine._refusal("{message}"{names})']
+    message = given.told(statement.reason.subject.name)
+    return [f"if not ({conjunction([statement.condition])}):", f"    raise machine._refusal({quoted(message)}{names})"]
 
 
 def _default(parameter: Parameter) -> str:

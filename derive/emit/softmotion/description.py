@@ -23,6 +23,10 @@ from derive.report.reasons import workspace
 from derive.report.zero_directions import directions_at_zero
 
 _WIDTH = 100
+_MARKUP = re.compile(r"[\\*`|]|_(?!\w)|(?<!\w)_|(?<=:):|(?<!\S)([!-/:-@\[-`{-~])(?=\1{3,}(?!\S))")
+"""What begins or ends markup inside a line, and a word that could underline a title."""
+_BLOCK = re.compile(r"[^\w\s\\]|\w+[.)]\s")
+"""The beginning of a text that could be an item, a directive, a field or a table."""
 _NAMES_DIRECTION = re.compile(r"\b[XYZ]\b")
 _MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "turns, deg; declared linear"}
 _MOTION |= {Kind.GEARED: "geared, deg; declared linear", Kind.DRIVING: "turning motor, deg; declared linear"}
@@ -75,16 +79,16 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
     text = templates.get_template("description.rst.j2").render(
         mechanism=mechanism,
         picture=None if kinematics.undrawn else picture.format(name=block.name),
-        source="\n".join(wrap(source.rstrip(), _WIDTH)),
-        summary="\n".join(wrap(kinematics.mechanism.summary, _WIDTH)),
+        source="\n".join(_lines(source.rstrip())),
+        summary="\n".join(_lines(kinematics.mechanism.summary)),
         rows=", ".join(kinematics.rows),
         axes=_table(("Axis", "Motion", "Meaning"), _axes(kinematics)),
-        parameters=wrap(f"{_refused(kinematics)}The parameters are read by Initialize alone.", _WIDTH),
+        parameters=_lines(f"{_refused(kinematics)}The parameters are read by Initialize alone."),
         configuration=list(_configuration(block)),
         singularities=list(_singularities(kinematics)),
         workspace=list(_workspace(kinematics)),
         costs=[*_costs(costs_of(kinematics), block), *_looped(kinematics, costs_of(kinematics))],
-        tasks=wrap(_TASKS[block.has_settings], _WIDTH),
+        tasks=_lines(_TASKS[block.has_settings]),
         notes=[line for note in mechanism.all_notes for line in _item(respelled(note, names))]
         + [line for note in further for line in _item(note)],
         verification=list(_verification(kinematics)),
@@ -120,12 +124,10 @@ def _configuration(block: Block) -> Iterator[str]:
             numbers, axes = ", ".join(str(p.byte) for p in periods), ", ".join(p.axis for p in periods)
             yield from _item(f"Bytes {numbers}, turns of {axes} (signed): {turns}.")
     yield ""
-    yield from wrap(
-        f"{block.name}_Config sets a configuration, {block.name}_ReadConfig reads one. {_AUTOMATIC}", _WIDTH
-    )
+    yield from _lines(f"{block.name}_Config sets a configuration, {block.name}_ReadConfig reads one. {_AUTOMATIC}")
     if block.periods:
         yield ""
-        yield from wrap(_OPEN_TURN + (_DRIVES if block.has_settings else ""), _WIDTH)
+        yield from _lines(_OPEN_TURN + (_DRIVES if block.has_settings else ""))
 
 
 def _singularities(kinematics: Kinematics) -> Iterator[str]:
@@ -143,15 +145,15 @@ def _workspace(kinematics: Kinematics) -> Iterator[str]:
     if not kinematics.mechanism.joints:
         yield "Every pose: there is no axis."
     elif not bounds:
-        yield from wrap(f"Every position that {limits} allow.", _WIDTH)
+        yield from _lines(f"Every position that {limits} allow.")
     else:
         why = "Diagnose says which of them, and by how much where that can be measured"
-        yield from wrap(f"A pose inside {limits} is refused for these reasons only; {why}:", _WIDTH)
+        yield from _lines(f"A pose inside {limits} is refused for these reasons only; {why}:")
         yield ""
     for bound in bounds:
         yield from _item(f"{bound}.")
     yield ""
-    yield from wrap(_READ if kinematics.reads_rotation else _NOT_READ, _WIDTH)
+    yield from _lines(_READ if kinematics.reads_rotation else _NOT_READ)
 
 
 def _verification(kinematics: Kinematics) -> Iterator[str]:
@@ -169,14 +171,14 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
             f"{inverted.jacobian:.0e}; {inverted.solutions} solutions were found by multi-start root finding, and "
             "each of them is a solution of these formulas"
         )
-    yield from wrap(f"{text}. {found.exact.sentence} The block was not run on a controller.", _WIDTH)
+    yield from _lines(f"{text}. {found.exact.sentence} The block was not run on a controller.")
     if inverted is not None and inverted.missed is not None:
         missed, total = inverted.missed
         text = (
             f"A root scan is no proof: of {total} solutions, most of them close to poses where branches meet, it "
             f"missed {missed}."
         )
-        yield from wrap(text, _WIDTH)
+        yield from _lines(text)
 
 
 def _looped(kinematics: Kinematics, costs: Costs) -> Iterator[str]:
@@ -226,19 +228,30 @@ def _bound(bound: Bound) -> str:
 
 
 def _item(text: str) -> list[str]:
-    return wrap(text, _WIDTH, initial_indent="- ", subsequent_indent="  ")
+    return _lines(text, "- ", "  ")
+
+
+def _lines(text: str, first: str = "", further: str = "") -> list[str]:
+    """A text as the lines of a paragraph."""
+    return wrap(literal(text), _WIDTH, initial_indent=first, subsequent_indent=further, break_long_words=False)
+
+
+def literal(text: str) -> str:
+    """A text in which reStructuredText finds no markup, and Structured Text no end of the comment around it."""
+    found = _MARKUP.sub(r"\\\g<0>", text).replace("*)", "*\\ )")
+    return f"\\{found}" if _BLOCK.match(found) else found
 
 
 def _table(head: Sequence[str], rows: Iterator[Sequence[str]]) -> list[str]:
     """A simple table in reStructuredText. A long text in the last column continues on lines of this column alone."""
-    cells = [head, *rows]
+    cells = [[literal(cell) for cell in row] for row in (head, *rows)]
     widths = [max(len(row[column]) for row in cells) for column in range(len(head) - 1)]
     widths[0] += (sum(widths) + len(widths)) % 2  # the last column begins at an even place, as every indentation does
     last = WIDTH - sum(width + 1 for width in widths)
     lines = [
         " ".join([cell.ljust(width) for cell, width in zip(first, widths, strict=True)] + [text]).rstrip()
         for row in cells
-        for number, text in enumerate(wrap(row[-1], last) or [""])
+        for number, text in enumerate(wrap(row[-1], last, break_long_words=False) or [""])
         for first in [row[:-1] if number == 0 else [""] * len(widths)]
     ]
     rule = " ".join("=" * width for width in [*widths, min(last, max(len(row[-1]) for row in cells))])

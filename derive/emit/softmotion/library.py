@@ -27,7 +27,7 @@ from derive.emit.softmotion.self_test import PROGRAM as SELF_TEST_PROGRAM
 from derive.emit.softmotion.self_test import TOLERANCE, test_of
 from derive.emit.st.contract import Contract, load
 from derive.emit.st.expression import literal
-from derive.emit.st.layout import assigned, beside, case, gathered
+from derive.emit.st.layout import assigned, beside, case, gathered, quoted
 from derive.emit.st.limits import limits_function
 from derive.emit.st.reserved import refuse_clashes
 from derive.emit.st.rotation import rotation_function
@@ -155,6 +155,7 @@ def _templates() -> Environment:
         beside=beside,
         case=case,
         gathered=gathered,
+        quoted=quoted,
         generated=GENERATED,
         degree=literal(math.pi / 180.0),
         radian=literal(180.0 / math.pi),

@@ -135,11 +135,6 @@ def _programs(kinematics: Kinematics) -> dict[str, Program | None]:
     }
 
 
-def _quotable(text: str) -> str:
-    """The text as it is written between the quotes of a string."""
-    return text.replace("$", "$$").replace("'", "$'")
-
-
 def _shared(program: Program | None, kinematics: Kinematics, contract: Contract, ready: set[str]) -> Iterator[_Source]:
     """The shared programs that no earlier method calls."""
     called = shared([program]) if program is not None else ()
@@ -184,7 +179,7 @@ def _method(
     reads = kinematics.reads_rotation
     context: dict[str, object] = {"block": block, "method": name, "reads_rotation": reads}
     if name == "ReasonOf":
-        context["reasons"] = [_quotable(text) for text in texts(kinematics)]
+        context["reasons"] = texts(kinematics)
     if source.search is not None:
         context |= {"shared": search_text(source.search), "search": SEARCH}
     elif source.program is not None:

@@ -12,7 +12,7 @@ from derive.ir.constants import LEAST
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 
-_LONGEST, _MOST_NAMED = 255, 3
+_MOST_NAMED = 3
 
 
 @kept_by_identity(10)
@@ -37,7 +37,7 @@ def refused_texts(kinematics: Kinematics) -> dict[str, str]:
         text = f"{names} {wrong}{needed}".replace(" :", ":") if named else f"the parameters must give {needed}"
         if len(named) > 1:
             text = _spelled(text, named, spelled)
-        found[sentence] = respelled(text, spelled)[:_LONGEST]
+        found[sentence] = respelled(text, spelled)
     return found
 
 

@@ -18,7 +18,18 @@ _LOCAL = re.compile(r"  (\w+) : ([^:;]+);")
 _LONG_CONDITION = 45
 _LEAST_COMMENT = 30
 """The fewest columns of a comment beside a declaration."""
+_LONGEST = 255
 _BREAKS = (" + ", " - ", " AND ", " OR ")
+
+
+def quoted(text: str) -> str:
+    """A text as a literal, with no more characters than a STRING may have."""
+    return "'" + text[:_LONGEST].replace("$", "$$").replace("'", "$'") + "'"
+
+
+def harmless(comment: str) -> str:
+    """A comment without the marks that begin and end comments."""
+    return comment.replace("(*", "( *").replace("*)", "* )")
 
 
 def indented(lines: Sequence[str]) -> list[str]:
@@ -72,6 +83,7 @@ def commented(lines: Sequence[str], comment: str, width: int = WIDTH - INSIDE) -
     """The lines with a comment beside the last one, or above the first one where there is no room."""
     if not comment:
         return list(lines)
+    comment = harmless(comment)
     if len(lines) == 1 and len(f"{lines[0]}  // {comment}") <= width:
         return [f"{lines[0]}  // {comment}"]
     return [*wrap(sentence(comment), width, initial_indent="// ", subsequent_indent="// "), *lines]
@@ -87,7 +99,7 @@ def beside(declaration: str, comment: str) -> list[str]:
     if not comment:
         return [declaration]
     margin = " " * (len(declaration) + 2 + len(declaration) % 2)
-    first, *others = wrap(comment, max(WIDTH - len(margin) - 3 - INSIDE, _LEAST_COMMENT))
+    first, *others = wrap(harmless(comment), max(WIDTH - len(margin) - 3 - INSIDE, _LEAST_COMMENT))
     return [f"{declaration}  // {first}", *(f"{margin}// {line}" for line in others)]
 
 
@@ -123,7 +135,7 @@ def with_gathered(text: str) -> str:
 
 def case(label: int, target: str, text: str) -> list[str]:
     """The lines of `label: target := 'text';`. A long text gets a line of its own, because it cannot be broken."""
-    head, value = f"{label}:", f"'{text}';"
+    head, value = f"{label}:", f"{quoted(text)};"
     if len(f"{head} {target} := {value}") <= WIDTH - INSIDE:
         return [f"{head} {target} := {value}"]
     if len(f"{target} := {value}") <= WIDTH - 2 * INSIDE:

@@ -14,7 +14,7 @@ import sympy as sp
 
 from derive.emit.conditions import is_size_test
 from derive.emit.st.expression import StructuredText, literal
-from derive.emit.st.layout import WIDTH, assigned, conjunction, indented
+from derive.emit.st.layout import WIDTH, assigned, conjunction, indented, quoted
 from derive.emit.st.program import Printed
 from derive.emit.st.refusal import Refusal
 from derive.equations.windows import Window
@@ -47,14 +47,14 @@ class OfInputs(Refusal):
 
     def _refusing(self, require: Require, printer: StructuredText) -> list[str]:
         assert require.reason is not None
-        text = self.texts[require.reason.subject.name].replace("$", "$$").replace("'", "$'")
+        text = quoted(self.texts[require.reason.subject.name])
         if (called := self._called(require.condition, printer)) is not None:
             method, given = called
-            head, tail = f"{method}({', '.join(given)},", f"'{text}');"
+            head, tail = f"{method}({', '.join(given)},", f"{text});"
             return [f"{head} {tail}"] if len(head) + len(tail) < WIDTH else [head, f"    {tail}"]
         parts = [printer.print(part) for part in sp.ordered(sp.And.make_args(require.condition))]
-        whole = f"  {REFUSAL} := '{text}';"
-        refused = [whole] if len(whole) <= WIDTH else [f"  {REFUSAL} :=", f"    '{text}';"]
+        whole = f"  {REFUSAL} := {text};"
+        refused = [whole] if len(whole) <= WIDTH else [f"  {REFUSAL} :=", f"    {text};"]
         return [*conjunction("IF NOT (", parts, ") THEN"), *refused, "  RETURN;", "END_IF"]
 
     def _called(self, condition: sp.Basic, printer: StructuredText) -> tuple[str, tuple[str, ...]] | None:

@@ -65,7 +65,7 @@ REFUSED: dict[str, tuple[Callable[[], object], str]] = {
     ),
     "a text with a bell": (
         lambda: validate(described(summary="An arm \x07 that rings.")),
-        "its text holds a line break, or a character that is not printed, which would end a comment or a text: write",
+        "a line break or a character that is not printed: leave it out",
     ),
     "a heading of a chain that never turns": (
         lambda: build(
