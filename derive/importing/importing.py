@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -22,11 +23,13 @@ from derive.importing.formats.urdf import read_urdf
 from derive.importing.naming import axis_names, place_names
 from derive.importing.report import Bounds, bounds, closed_form, neighbours, snaps
 from derive.importing.robot import Robot, UnreadableRobot, about
-from derive.importing.writing import Description, description_of, written
+from derive.importing.writing import FAR, Description, description_of, written
 
 SNAP = 1e-6
 UNITS = {"mm": 1000.0, "m": 1.0}
 _LARGEST_SNAP = 0.05
+_MOST_AXES = 30
+"""An arm with more of them is a snake, whose joints a program moves one by one."""
 _SLIDE = 2.0
 """The assumed travel of a slide without limits, in sizes of the machine, for the bound on forward kinematics."""
 Reader = Callable[[Path, str | None, str | None, float], Robot]
@@ -67,9 +70,13 @@ def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa:
         raise UnreadableRobot(
             f"--snap {options.snap:g} is not between 0 and {_LARGEST_SNAP:g}: more would be another machine"
         )
-    robot = _reader(path)(path, options.base, options.tip, UNITS[options.unit])
-    if not robot.axes:
-        raise UnreadableRobot(f"{path}: no joint moves between {robot.base!r} and {robot.tip!r}")
+    try:
+        robot = _reader(path)(path, options.base, options.tip, UNITS[options.unit])
+    except RecursionError:
+        raise UnreadableRobot(f"{path}: its parts stand in each other too deeply: no robot is that deep") from None
+    if not 0 < len(robot.axes) <= _MOST_AXES:
+        count = "no joint moves" if not robot.axes else f"{len(robot.axes)} joints move (at most {_MOST_AXES} can)"
+        raise UnreadableRobot(f"{path}: {count} between {robot.base!r} and {robot.tip!r}")
     try:
         return _imported(robot, options)
     except UnreadableRobot as problem:
@@ -79,8 +86,6 @@ def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa:
 def _reader(path: Path) -> Reader:
     """The reader of a file, by the file's name; for XML, by its content."""
     suffix = path.suffix.lower()
-    if suffix == ".xacro":
-        raise UnreadableRobot(f"{path}: expand it first: `xacro {path.name} > {path.stem}.urdf`, and import that")
     if suffix in (".toml", ".csv"):
         return read_table
     return read_mjcf if parsed(path).tag == "mujoco" else read_urdf
@@ -108,6 +113,7 @@ def _imported(robot: Robot, options: Options) -> Imported:
             *notes,
         ]
     )
+    report = "".join(c if c.isprintable() or c == "\n" else " " for c in report)
     text = written(robot, description, task, options.unit, notes)
     return Imported(description.name, text, report, moved, found, robot, axes, task.facing)
 
@@ -140,7 +146,8 @@ def _held(robot: Robot, axes: Sequence[str], names: Sequence[str]) -> tuple[int,
 def _strokes(robot: Robot, arm: Arm) -> float:
     """The total travel of all slides."""
     slides = [a for a in robot.axes if a.kind is Kind.LINEAR]
-    return sum(max(map(abs, a.limits)) if a.limits else _SLIDE * arm.size for a in slides)
+    ends = [max(map(abs, a.limits)) if a.limits else math.inf for a in slides]
+    return sum(end if end < FAR else _SLIDE * arm.size for end in ends)
 
 
 def _head(robot: Robot, description: Description, task: Followed, unit: str) -> str:

@@ -21,7 +21,7 @@ from derive.importing.naming import axis_names, block_name, place_names
 from derive.importing.robot import Axis, Robot, UnreadableRobot
 
 _WIDTH = 118
-_FAR = 1e6
+FAR = 1e6
 """A limit beyond this many degrees or units of length counts as no limit."""
 _FRAMES = ("Rx", "Ry", "Rz", "Tx", "Ty", "Tz", "flip_x")
 
@@ -102,8 +102,9 @@ def _docstring(robot: Robot, description: Description, unit: str, notes: Sequenc
 
 
 def _plain(text: str) -> str:
-    """Text of a file without characters that would end a string."""
-    return re.sub(r'["\\\s]+', " ", text)
+    """Text of a file without characters that would end a string or a comment."""
+    printed = "".join(c if c.isprintable() else " " for c in text)
+    return re.sub(r'["\\\s]+|\((?=\*)|(?<=\*)\)', " ", printed).strip()
 
 
 def _imports(description: Description, task: Followed, robot: Robot) -> list[str]:
@@ -141,7 +142,7 @@ def _dimension(dimension: Dimension) -> str:
 def _axis(name: str, axis: Axis) -> str:
     kind = "linear" if axis.kind is Kind.LINEAR else "rotary"
     arguments = [f'"{name}"', f'"{_plain(axis.name)}"']
-    if axis.limits is not None and limits_of(axis) != (-_FAR, _FAR):
+    if axis.limits is not None and limits_of(axis) != (-FAR, FAR):
         low, high = limits_of(axis)
         arguments.append(f"limits=({low!r}, {high!r})")
     return _call(f"{name} = {kind}", arguments)
@@ -151,7 +152,7 @@ def limits_of(axis: Axis) -> tuple[float, float]:
     """The limits in the units of the interface, rounded to 1e-6: a file writes pi/2 as 1.570796325."""
     assert axis.limits is not None
     unit = 1.0 if axis.kind is Kind.LINEAR else 180.0 / np.pi
-    low, high = (min(max(round(float(end * unit), 6) + 0.0, -_FAR), _FAR) for end in axis.limits)
+    low, high = (min(max(round(float(end * unit), 6) + 0.0, -FAR), FAR) for end in axis.limits)
     return low, high
 
 

@@ -25,7 +25,7 @@ REFUSALS: Mapping[str, tuple[str, str, str]] = {
     "copies": (
         "r.xml",
         '<mujoco><worldbody><replicate count="2"><body name="a"/></replicate></worldbody></mujoco>',
-        "replicates or attaches parts: save the expanded model, and import that$",
+        "replicates or attaches bodies: save the expanded model and import that, or choose with --tip$",
     ),
     "gradians": (
         "r.xml",
