@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from derive.description.joints import Kind
+from derive.importing.arms.aligned import aligned
 from derive.importing.arms.lines import Arm, arm_of
 from derive.importing.arms.pieces import simple
 from derive.importing.arms.rounded import nearly, snapped_robot
-from derive.importing.arms.snapping import Snapped
+from derive.importing.arms.snapping import SNAP, Snapped
 from derive.importing.arms.tasks import Followed, followed
 from derive.importing.branches import Named
 from derive.importing.formats.documents import parsed
@@ -25,7 +26,6 @@ from derive.importing.report import Bounds, bounds, closed_form, neighbours, sna
 from derive.importing.robot import Robot, UnreadableRobot, about
 from derive.importing.writing import FAR, Description, description_of, written
 
-SNAP = 1e-6
 UNITS = {"mm": 1000.0, "m": 1.0}
 _LARGEST_SNAP = 0.05
 _MOST_AXES = 30
@@ -93,16 +93,16 @@ def _reader(path: Path) -> Reader:
 
 def _imported(robot: Robot, options: Options) -> Imported:
     raw = arm_of(robot)
-    put_back, moved = snapped_robot(robot, options.snap)
-    arm = arm_of(put_back)
+    put_back, rounded = snapped_robot(robot, options.snap)
     axes = axis_names(robot)
-    places = place_names(arm, axes)
+    places = place_names(raw, axes)
+    arm, turned = aligned(arm_of(put_back), places, options.snap)
     task = followed(arm, len(axes), _held(robot, axes, options.hold))
-    arm, turned = _faced(arm, task)
+    arm, faced = _faced(arm, task)
     chain = simple(arm, places, options.snap)
-    moved += chain.moved
+    moved = (*rounded, *turned, *chain.moved)
     description = description_of(robot, arm, chain, task)
-    notes = (*turned, *robot.notes)
+    notes = (*faced, *robot.notes)
     found = bounds(moved, raw, _strokes(robot, raw))
     report = "\n".join(
         [

@@ -98,10 +98,10 @@ def _above(amount: float) -> str:
 def snaps(moved: Sequence[Snapped], missed: Sequence[float], found: Bounds, snap: float, unit: str) -> Iterator[str]:
     """The changes that were made, and their largest effect on a pose."""
     if missed:
-        count, them = f"{len(missed)} angles of the file are nearly multiples", "them"
-        if len(missed) == 1:
-            count, them = "1 angle of the file is nearly a multiple", "it"
-        yield f"{count} of 15°: --snap {_above(max(missed))} puts {them} back."
+        yield (
+            f"Angles with two decimals that may be rounded multiples of 15°: {len(missed)}. "
+            f"--snap {_above(max(missed))} reads them so."
+        )
     if not moved:
         yield f"Nothing was snapped (--snap {snap:g})."
         return

@@ -48,12 +48,10 @@ def description_of(robot: Robot, arm: Arm, chain: Simple, task: Followed) -> Des
     factors = tuple(factor_text(p, axes, d, flips) for p, d in zip(chain.pieces, dimensions, strict=True))
     symbols: dict[str, object] = {name: sp.Symbol(name, real=True) for name in axes}
     symbols |= {d.variable: sp.Symbol(d.variable, positive=True) for d in dimensions if d is not None}
-    symbols |= {"pi": sp.pi, "radians": lambda angle: angle * sp.Symbol("DEGREE", positive=True)}
+    symbols |= {"pi": sp.pi, "radians": lambda angle: sp.Symbol(f"radians({angle})", real=True)}
     texts = [amount_text(p, axes, d) for p, d in zip(chain.pieces, dimensions, strict=True)]
     amounts = [sp.sympify(text, locals=symbols) for text in texts]
     found = branches(chain.pieces, amounts, task)
-    if any(b.indicator.has(sp.Symbol("DEGREE", positive=True)) for b in found):
-        found = ()
     return Description(block_name(robot), axes, tuple(d for d in dimensions if d is not None), factors, found)
 
 

@@ -15,6 +15,8 @@ _LARGEST = 1e6
 _SHOWN = 40
 _FEWEST_DECIMALS = 3
 """1.57 may be an angle of its own; 1.571 is a right angle, rounded."""
+COARSE = 5e-3
+"""The `rounding` of an angle with two decimals: whether it is one, the user says."""
 
 
 def parsed(path: Path) -> Element:
@@ -103,11 +105,12 @@ def numbers(path: Path, element: Element, attribute: str, place: str, default: t
     return found
 
 
-def rounding(text: str) -> float:
+def rounding(text: str, with_coarse: bool = False) -> float:
     """The largest distance of a number from the exact one that the file has rounded, by its number of decimals.
 
     With three decimals it is half a unit of the last one; with more a whole unit, because 3.1415 is cut off; with fewer
-    it is 0, because nothing is known. Zeros behind the fourth decimal only pad a number that was rounded before.
+    it is 0, because nothing is known, or with two `COARSE`, if that is asked for. Zeros behind the fourth decimal only
+    pad a number that was rounded before.
     """
     try:
         stated = Decimal(text).as_tuple()
@@ -118,10 +121,10 @@ def rounding(text: str) -> float:
         digits = "".join(map(str, stated.digits))
         padding = len(digits) - len(digits.rstrip("0"))
         return float(10.0 ** -max(decimals - padding, _FEWEST_DECIMALS + 1))
-    return 0.5 * 10.0**-decimals if decimals == _FEWEST_DECIMALS else 0.0
+    return 0.5 * 10.0**-decimals if decimals == _FEWEST_DECIMALS else COARSE if decimals == 2 and with_coarse else 0.0
 
 
-def roundings(element: Element, attribute: str, count: int) -> tuple[float, ...]:
+def roundings(element: Element, attribute: str, count: int, with_coarse: bool = False) -> tuple[float, ...]:
     """The `rounding` of each of the `count` numbers of an attribute; 0 where the attribute is missing."""
     words = (element.get(attribute) or "").split()
-    return tuple(rounding(word) for word in words) if words else (0.0,) * count
+    return tuple(rounding(word, with_coarse) for word in words) if words else (0.0,) * count

@@ -174,7 +174,7 @@ def _steps(table: Table, index: int, kinds: Mapping[str, Kind | None]) -> tuple[
 
 def _rounding(table: Table, index: int, entry: str) -> float:
     """The largest distance of an angle from the exact one; zero in degrees, in which 15 is written exactly."""
-    return rounding(_text(table.rows[index].get(entry, 0))) if table.settings["angles"] == "radians" else 0.0
+    return rounding(_text(table.rows[index].get(entry, 0)), True) if table.settings["angles"] == "radians" else 0.0
 
 
 def _drives(table: Table, index: int, kinds: Mapping[str, Kind | None]) -> tuple[tuple[str, float], ...]:

@@ -150,7 +150,7 @@ def _places(path: Path, joint: Element, name: str, scale: float) -> tuple[Place,
         return ()
     x, y, z = numbers(path, origin, "xyz", f"joint {name!r}", (0.0, 0.0, 0.0))
     angles = numbers(path, origin, "rpy", f"joint {name!r}", (0.0, 0.0, 0.0))
-    rounded = roundings(origin, "rpy", 3)
+    rounded = roundings(origin, "rpy", 3, with_coarse=True)
     turns = tuple(Turned(k, angles[k], rounded[k]) for k in (2, 1, 0) if angles[k] != 0.0)
     return (Shifted((x * scale, y * scale, z * scale)), *turns)
 
