@@ -15,14 +15,14 @@ from derive.importing.arms.lines import Arm, arm_of
 from derive.importing.arms.pieces import simple
 from derive.importing.arms.rounded import nearly, snapped_robot
 from derive.importing.arms.snapping import SNAP, Snapped
-from derive.importing.arms.tasks import Followed, followed
+from derive.importing.arms.tasks import Followed, followed, on_axis
 from derive.importing.branches import Named
 from derive.importing.formats.documents import parsed
 from derive.importing.formats.mjcf import read_mjcf
 from derive.importing.formats.tables import read_table
 from derive.importing.formats.urdf import read_urdf
 from derive.importing.naming import axis_names, place_names
-from derive.importing.report import Bounds, bounds, closed_form, neighbours, snaps
+from derive.importing.report import Bounds, bounds, closed_form, neighbours, snaps, weak_axes
 from derive.importing.robot import Robot, UnreadableRobot, about
 from derive.importing.writing import FAR, Description, description_of, written
 
@@ -58,8 +58,8 @@ class Imported:
     """The largest difference of the description's forward kinematics from the file's."""
     robot: Robot
     axes: tuple[str, ...]
-    facing: int
-    """The axis of the file's tip (0, 1, 2) that is z in the description: 2, unless the task is about another one."""
+    task: Followed
+    """The task; the description's tip is that of the file, moved and turned as it says."""
 
 
 def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa: B008
@@ -98,11 +98,13 @@ def _imported(robot: Robot, options: Options) -> Imported:
     places = place_names(raw, axes)
     arm, turned = aligned(arm_of(put_back), places, options.snap)
     task = followed(arm, len(axes), _held(robot, axes, options.hold))
-    arm, faced = _faced(arm, task)
+    weak = list(weak_axes(arm, task, axes))
+    arm, faced = _faced(on_axis(arm, task), task)
+    faced = (*_moved_tip(task, axes, options.unit), *faced)
     chain = simple(arm, places, options.snap)
     moved = (*rounded, *turned, *chain.moved)
     description = description_of(robot, arm, chain, task)
-    notes = (*faced, *robot.notes)
+    notes = (*weak, *faced, *robot.notes)
     found = bounds(moved, raw, _strokes(robot, raw))
     report = "\n".join(
         [
@@ -115,7 +117,7 @@ def _imported(robot: Robot, options: Options) -> Imported:
     )
     report = "".join(c if c.isprintable() or c == "\n" else " " for c in report)
     text = written(robot, description, task, options.unit, notes)
-    return Imported(description.name, text, report, moved, found, robot, axes, task.facing)
+    return Imported(description.name, text, report, moved, found, robot, axes, task)
 
 
 def _faced(arm: Arm, task: Followed) -> tuple[Arm, tuple[str, ...]]:
@@ -130,6 +132,16 @@ def _faced(arm: Arm, task: Followed) -> tuple[Arm, tuple[str, ...]]:
         f"The tip is turned by {turn}: the tool points along {letter} of the file's tip, which a description calls z."
     )
     return replace(arm, tip=arm.tip @ frame), (note,)
+
+
+def _moved_tip(task: Followed, axes: Sequence[str], unit: str) -> tuple[str, ...]:
+    if task.beside is None:
+        return ()
+    by = ", ".join(f"{letter} {value:.6g}" for letter, value in zip("xyz", task.beside, strict=True))
+    return (
+        f"The tip is moved by {by} {unit} (in its own frame) onto the axis of {axes[-1]}, where the position decides "
+        "its heading: what stands beside the axis is a tool, whose offset is taken off the commanded position.",
+    )
 
 
 def _held(robot: Robot, axes: Sequence[str], names: Sequence[str]) -> tuple[int, ...]:
