@@ -115,7 +115,9 @@ def each(
 ) -> int:
     """Do the work for every file, and print the result of each; returns the worst status."""
     statuses: list[int] = []
+    tried = 0
     for path in files:
+        tried += 1
         stages = Stages(sys.stdout)
         try:
             stages.line(str(path))
@@ -127,7 +129,8 @@ def each(
             if not keep_going:
                 break
     if len(files) > 1:
-        print(f"{len(files) - len(statuses)} of {len(files)} machines")
+        left = f", {len(files) - tried} not tried" if tried < len(files) else ""
+        print(f"{tried - len(statuses)} of {len(files)} derived, {len(statuses)} refused{left}")
     return max(statuses, default=0)
 
 
