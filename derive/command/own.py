@@ -159,6 +159,7 @@ def _described(mechanism: Mechanism) -> str:
     task = ", ".join(mechanism.task.position)
     turning = mechanism.task.turning.value
     commanded = {"none": task, "about z": f"{task} and the turn about z", "direction": f"{task} and a direction"}
+    commanded |= {word: f"{task}, {word}" for word in ("pitch", "pitch and roll")}
     text = commanded.get(turning, f"{task} and the whole rotation" if task else "the rotation")
     axes = " ".join(j.name for j in mechanism.joints) or "none"
     return f"{mechanism.name}: axes {axes}; commanded: {text or turning}"

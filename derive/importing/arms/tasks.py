@@ -47,7 +47,7 @@ def followed(arm: Arm, count: int, held: Sequence[int] = ()) -> Followed:
     solved = seen.of(free)
     if rank == 5 or (rank == 4 and solved.rank(slice(0, 3)) == 3 and len(solved.span(slice(3, 6))) > 1):
         return _with_direction(solved, arm, rank, tuple(held))
-    position, turning = _task(solved, rank)
+    position, turning = _task(solved, arm, rank)
     return Followed(position, turning, tuple(held))
 
 
@@ -57,7 +57,7 @@ def _with_direction(seen: Motions, arm: Arm, rank: int, held: tuple[int, ...]) -
     """
     found: list[tuple[float, Followed]] = []
     for turning, axis in _pitches(arm) if rank == 4 else _directions(arm):
-        task = Followed("xyz", turning, held, axis, _beside(arm, axis) if turning == "PITCH_ROLL" else None)
+        task = Followed("xyz", turning, held, axis, _beside(arm) if turning == "PITCH_ROLL" else None)
         of = motions(on_axis(arm, task), _count(arm)).of(_free(arm, held)) if task.beside else seen
         least = float(of.own_shares("xyz", turning, axis).min())
         if least > WEAK or rank == 4:
@@ -114,12 +114,11 @@ def _seen_from_tip(arm: Arm) -> Array:
     return np.abs(arm.tip[:3, :3].T @ turns[-1].direction) if turns else np.zeros(3)
 
 
-def _beside(arm: Arm, axis: int) -> tuple[float, float, float] | None:
+def _beside(arm: Arm) -> tuple[float, float, float] | None:
     """The shift, in the frame of the tip, that puts the tip on the axis of the last turn; None where it is on it."""
     line, tip = _turns(arm)[-1], arm.tip[:3, 3]
     foot = line.point + line.direction * float((tip - line.point) @ line.direction)
     shift = arm.tip[:3, :3].T @ (foot - tip)
-    shift[axis] = 0.0
     return tuple(map(float, shift)) if np.linalg.norm(shift) > _NEARLY * arm.size else None  # type: ignore[return-value]
 
 
@@ -130,7 +129,7 @@ def on_axis(arm: Arm, task: Followed) -> Arm:
     return replace(arm, tip=arm.tip @ frame)
 
 
-def _task(seen: Motions, rank: int) -> tuple[str, str]:
+def _task(seen: Motions, arm: Arm, rank: int) -> tuple[str, str]:
     shifts, turns = seen.span(slice(0, 3)), seen.span(slice(3, 6))
     if seen.rank(slice(0, 3)) == rank:
         return _position(shifts, rank), "NONE"
@@ -145,6 +144,11 @@ def _task(seen: Motions, rank: int) -> tuple[str, str]:
         return "", "FULL"
     if rank == 6:
         return "xyz", "FULL"
+    if arm.lines[-1].kind is Kind.ROTARY and _beside(arm) is None:
+        raise UnreadableRobot(
+            "its tip lies on the axis of its last joint, which turns it and shifts it nowhere: choose the link before "
+            "that joint as --tip, or one beside its axis"
+        )
     raise UnreadableRobot(
         f"its tip moves in {rank} ways that are no task of a description: choose another base or tip, or write the "
         "description by hand"
