@@ -116,7 +116,9 @@ def each(
 ) -> int:
     """Do the work for every file, and print the result of each; returns the worst status."""
     statuses: list[int] = []
+    tried = 0
     for path in files:
+        tried += 1
         stages = Stages(sys.stdout)
         try:
             stages.line(str(path))
@@ -128,7 +130,8 @@ def each(
             if not keep_going:
                 break
     if len(files) > 1:
-        print(f"{len(files) - len(statuses)} of {len(files)} machines")
+        left = f", {len(files) - tried} not tried" if tried < len(files) else ""
+        print(f"{tried - len(statuses)} of {len(files)} derived, {len(statuses)} refused{left}")
     return max(statuses, default=0)
 
 
@@ -157,6 +160,7 @@ def _described(mechanism: Mechanism) -> str:
     task = ", ".join(mechanism.task.position)
     turning = mechanism.task.turning.value
     commanded = {"none": task, "about z": f"{task} and the turn about z", "direction": f"{task} and a direction"}
+    commanded |= {word: f"{task}, {word}" for word in ("pitch", "pitch and roll")}
     text = commanded.get(turning, f"{task} and the whole rotation" if task else "the rotation")
     axes = " ".join(j.name for j in mechanism.joints) or "none"
     return f"{mechanism.name}: axes {axes}; commanded: {text or turning}"

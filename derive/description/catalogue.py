@@ -134,7 +134,8 @@ def _in_files(mechanism: Mechanism) -> set[str]:
 def _line_of(problem: BaseException, path: Path) -> str:
     """The file with the line of it that failed."""
     if isinstance(problem, SyntaxError):
-        return f"{problem.filename or path}:{problem.lineno}"
+        data = path.read_bytes()
+        return f"{problem.filename or path}:{problem.lineno or data.count(bytes([10]), 0, data.find(0)) + 1}"
     frames = traceback.extract_tb(problem.__traceback__)
     lines = [frame.lineno for frame in frames if Path(frame.filename).resolve() == path.resolve()]
     return f"{path}:{lines[-1]}" if lines else str(path)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from derive.description.errors import DescriptionError
@@ -58,11 +58,20 @@ def as_stated(values: Mapping[str, Any]) -> dict[str, Any]:
         if not isinstance(value, tuple | list):
             more = ": a comma makes the tuple" if _is(value, (kind,)) else ""
             raise DescriptionError(f"{name} must be a tuple, not {_what(value)}{more}, as in {name}={example}")
-        for one in value:
+        found[name] = tuple(_flat(value))
+        for one in found[name]:
             if kind and not _is(one, (kind,)):
                 raise DescriptionError(f"{name} must not hold {_what(one)}: as in {name}={example}")
-        found[name] = tuple(value)
     return found
+
+
+def _flat(values: Iterable[Any]) -> Iterator[Any]:
+    """The values, and those of a tuple or list among them: a comma too many makes one."""
+    for one in values:
+        if isinstance(one, tuple | list):
+            yield from _flat(one)
+        else:
+            yield one
 
 
 def is_field(name: str) -> bool:

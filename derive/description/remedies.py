@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
-from dataclasses import fields
 from difflib import get_close_matches
+from inspect import signature
 
+from derive.description import mechanism
+from derive.description.joints import JointDetails
 from derive.description.mechanism import Mechanism
 
+_FRAMES = ("Rx", "Ry", "Rz", "Tx", "Ty", "Tz", "Txyz", "flip_x")
 _EXPLAIN = "`softkin explain` prints the determinant of every step"
 REMEDIES: tuple[tuple[str, str], ...] = (
     (r"with offset_interface=False it could be", "write offset_interface=False, unless such points are commanded"),
@@ -32,7 +35,7 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"^joint .* and parameter .* differ in case alone", "name the joint's value, as in rotary('A1', …, value='q1')"),
     (r"differ in case alone", "give each thing a name of its own, whatever its capital letters"),
     (r"its range .* is empty", "state the lower end first"),
-    (r"(offset_range|limit_range|domain) .* is empty", "state the lower end first"),
+    (r"(offset_range|limit_range|limits|domain) .* (is|are) empty", "state the lower end first"),
     (r"is outside its (range|domain)", "widen the range, or take a value inside it"),
     (r"needs a limit_range", "a joint that carries a pitch always has limits: limit_range=(lower, upper)"),
     (r"which is not the motor of an earlier joint", "list the joint whose motor is read before this one"),
@@ -78,8 +81,16 @@ REMEDIES: tuple[tuple[str, str], ...] = (
 
 def remedy_of(problem: str) -> str:
     """What to do about a refusal; empty where its sentence says it."""
-    if (word := re.search(r"unexpected keyword argument '(\w+)'", problem)) is not None:
-        return _another_field(word[1])
+    if (
+        word := re.search(r"(?:(\w+)(?:\.__init__)?\(\) got an )?unexpected keyword argument '(\w+)'", problem)
+    ) is not None:
+        return _another_field(word[1] or "Mechanism", word[2])
+    if (word := re.search(r"name '(\w+)' is not defined|cannot import name '(\w+)'", problem)) is not None:
+        return _another_name(word[1] or word[2]) or _first_remedy(problem)
+    return _first_remedy(problem)
+
+
+def _first_remedy(problem: str) -> str:
     return next((remedy for pattern, remedy in REMEDIES if re.search(pattern, problem)), "")
 
 
@@ -89,8 +100,17 @@ def with_remedy(problem: str) -> str:
     return f"{problem}; {remedy}" if remedy else problem
 
 
-def _another_field(word: str) -> str:
-    """The field that was meant."""
-    known = [f.name for f in fields(Mechanism)]
+def _another_field(owner: str, word: str) -> str:
+    """The field that was meant, of a mechanism, a joint, or what else is called with fields."""
+    known = list(signature(getattr(mechanism, owner, Mechanism)).parameters)
+    if owner == "Joint":
+        known = ["name", "meaning", "value", *JointDetails.__annotations__]
     close = get_close_matches(word, known, 1)
     return f"did you mean {close[0]!r}?" if close else f"the fields are {', '.join(known)}"
+
+
+def _another_name(word: str) -> str:
+    """The word of the vocabulary that was meant, whatever its capital letters; empty where none is like it."""
+    known = {name.lower(): name for name in (*mechanism.__all__, *_FRAMES, "sin", "cos", "sqrt", "pi")}
+    close = get_close_matches(word.lower(), known, 1, 0.8)
+    return f"did you mean {known[close[0]]!r}?" if close and known[close[0]] != word else ""

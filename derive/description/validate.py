@@ -195,7 +195,7 @@ def _joint(mechanism: Mechanism, joint: Joint) -> Iterator[str]:
         return
     for word, interval in ranges.items():
         if interval is not None and not interval[0] < interval[1]:
-            yield f"joint {joint.name!r}: its {word} {interval} is empty"
+            yield f"joint {joint.name!r}: its {word} {interval} {'are' if word == 'limits' else 'is'} empty"
     if joint.domain is not None and not joint.domain[0] <= joint.nominal <= joint.domain[1]:
         yield f"joint {joint.name!r}: its nominal value {joint.nominal:g} is outside its domain {joint.domain}"
     if joint.pitch != 0 and joint.limit_range is None:

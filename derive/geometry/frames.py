@@ -60,7 +60,15 @@ class Chain:
     factors: tuple[Factor, ...]
 
     def __mul__(self, other: Chain) -> Chain:
+        if not isinstance(other, Chain):
+            raise TypeError(_no_frame(other))
         return Chain(self.factors + other.factors)
+
+    def __rmul__(self, other: object) -> Chain:
+        raise TypeError(_no_frame(other))
+
+    def _sympy_(self) -> sp.Expr:
+        raise TypeError("a chain is a product of frames, not a number: as in Rz(A1) * Tx(L1)")
 
     def matrix(self) -> sp.ImmutableMatrix:
         """The homogeneous 4 x 4 matrix of the product."""
@@ -68,6 +76,12 @@ class Chain:
         for factor in self.factors:
             product = product * factor.matrix()
         return sp.ImmutableMatrix(product)
+
+
+def _no_frame(value: object) -> str:
+    """The sentence about a factor of a chain that is no frame."""
+    name = getattr(value, "name", value)
+    return f"{name} is a number, not a frame: as in Rz({name}) or Tz({name})"
 
 
 LETTERS = {Motion.TURN: "R", Motion.SHIFT: "T", Motion.FLIP: "flip_"}

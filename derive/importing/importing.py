@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,24 +10,26 @@ from pathlib import Path
 import numpy as np
 
 from derive.description.joints import Kind
+from derive.importing.arms.aligned import aligned
 from derive.importing.arms.lines import Arm, arm_of
 from derive.importing.arms.pieces import simple
 from derive.importing.arms.rounded import nearly, snapped_robot
-from derive.importing.arms.snapping import Snapped
-from derive.importing.arms.tasks import Followed, followed
+from derive.importing.arms.snapping import SNAP, Snapped
+from derive.importing.arms.tasks import Followed, followed, on_axis
 from derive.importing.branches import Named
 from derive.importing.formats.documents import parsed
 from derive.importing.formats.mjcf import read_mjcf
 from derive.importing.formats.tables import read_table
 from derive.importing.formats.urdf import read_urdf
 from derive.importing.naming import axis_names, place_names
-from derive.importing.report import Bounds, bounds, closed_form, neighbours, snaps
+from derive.importing.report import Bounds, bounds, closed_form, neighbours, snaps, weak_axes
 from derive.importing.robot import Robot, UnreadableRobot, about
-from derive.importing.writing import Description, description_of, written
+from derive.importing.writing import FAR, Description, description_of, written
 
-SNAP = 1e-6
 UNITS = {"mm": 1000.0, "m": 1.0}
 _LARGEST_SNAP = 0.05
+_MOST_AXES = 30
+"""An arm with more of them is a snake, whose joints a program moves one by one."""
 _SLIDE = 2.0
 """The assumed travel of a slide without limits, in sizes of the machine, for the bound on forward kinematics."""
 Reader = Callable[[Path, str | None, str | None, float], Robot]
@@ -55,8 +58,8 @@ class Imported:
     """The largest difference of the description's forward kinematics from the file's."""
     robot: Robot
     axes: tuple[str, ...]
-    facing: int
-    """The axis of the file's tip (0, 1, 2) that is z in the description: 2, unless the task is about another one."""
+    task: Followed
+    """The task; the description's tip is that of the file, moved and turned as it says."""
 
 
 def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa: B008
@@ -67,9 +70,13 @@ def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa:
         raise UnreadableRobot(
             f"--snap {options.snap:g} is not between 0 and {_LARGEST_SNAP:g}: more would be another machine"
         )
-    robot = _reader(path)(path, options.base, options.tip, UNITS[options.unit])
-    if not robot.axes:
-        raise UnreadableRobot(f"{path}: no joint moves between {robot.base!r} and {robot.tip!r}")
+    try:
+        robot = _reader(path)(path, options.base, options.tip, UNITS[options.unit])
+    except RecursionError:
+        raise UnreadableRobot(f"{path}: its parts stand in each other too deeply: no robot is that deep") from None
+    if not 0 < len(robot.axes) <= _MOST_AXES:
+        count = "no joint moves" if not robot.axes else f"{len(robot.axes)} joints move (at most {_MOST_AXES} can)"
+        raise UnreadableRobot(f"{path}: {count} between {robot.base!r} and {robot.tip!r}")
     try:
         return _imported(robot, options)
     except UnreadableRobot as problem:
@@ -79,8 +86,6 @@ def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa:
 def _reader(path: Path) -> Reader:
     """The reader of a file, by the file's name; for XML, by its content."""
     suffix = path.suffix.lower()
-    if suffix == ".xacro":
-        raise UnreadableRobot(f"{path}: expand it first: `xacro {path.name} > {path.stem}.urdf`, and import that")
     if suffix in (".toml", ".csv"):
         return read_table
     return read_mjcf if parsed(path).tag == "mujoco" else read_urdf
@@ -88,16 +93,18 @@ def _reader(path: Path) -> Reader:
 
 def _imported(robot: Robot, options: Options) -> Imported:
     raw = arm_of(robot)
-    put_back, moved = snapped_robot(robot, options.snap)
-    arm = arm_of(put_back)
+    put_back, rounded = snapped_robot(robot, options.snap)
     axes = axis_names(robot)
-    places = place_names(arm, axes)
+    places = place_names(raw, axes)
+    arm, turned = aligned(arm_of(put_back), places, options.snap)
     task = followed(arm, len(axes), _held(robot, axes, options.hold))
-    arm, turned = _faced(arm, task)
+    weak = list(weak_axes(arm, task, axes))
+    arm, faced = _faced(on_axis(arm, task), task)
+    faced = (*_moved_tip(task, axes, options.unit), *faced)
     chain = simple(arm, places, options.snap)
-    moved += chain.moved
+    moved = (*rounded, *turned, *chain.moved)
     description = description_of(robot, arm, chain, task)
-    notes = (*turned, *robot.notes)
+    notes = (*weak, *faced, *robot.notes)
     found = bounds(moved, raw, _strokes(robot, raw))
     report = "\n".join(
         [
@@ -108,8 +115,9 @@ def _imported(robot: Robot, options: Options) -> Imported:
             *notes,
         ]
     )
+    report = "".join(c if c.isprintable() or c == "\n" else " " for c in report)
     text = written(robot, description, task, options.unit, notes)
-    return Imported(description.name, text, report, moved, found, robot, axes, task.facing)
+    return Imported(description.name, text, report, moved, found, robot, axes, task)
 
 
 def _faced(arm: Arm, task: Followed) -> tuple[Arm, tuple[str, ...]]:
@@ -126,6 +134,16 @@ def _faced(arm: Arm, task: Followed) -> tuple[Arm, tuple[str, ...]]:
     return replace(arm, tip=arm.tip @ frame), (note,)
 
 
+def _moved_tip(task: Followed, axes: Sequence[str], unit: str) -> tuple[str, ...]:
+    if task.beside is None:
+        return ()
+    by = ", ".join(f"{letter} {value:.6g}" for letter, value in zip("xyz", task.beside, strict=True))
+    return (
+        f"The tip is moved by {by} {unit} (in its own frame) onto the axis of {axes[-1]}, where the position decides "
+        "its heading: what stands beside the axis is a tool, whose offset is taken off the commanded position.",
+    )
+
+
 def _held(robot: Robot, axes: Sequence[str], names: Sequence[str]) -> tuple[int, ...]:
     """The numbers of axes, by their names or those of the file."""
     found = []
@@ -140,7 +158,8 @@ def _held(robot: Robot, axes: Sequence[str], names: Sequence[str]) -> tuple[int,
 def _strokes(robot: Robot, arm: Arm) -> float:
     """The total travel of all slides."""
     slides = [a for a in robot.axes if a.kind is Kind.LINEAR]
-    return sum(max(map(abs, a.limits)) if a.limits else _SLIDE * arm.size for a in slides)
+    ends = [max(map(abs, a.limits)) if a.limits else math.inf for a in slides]
+    return sum(end if end < FAR else _SLIDE * arm.size for end in ends)
 
 
 def _head(robot: Robot, description: Description, task: Followed, unit: str) -> str:

@@ -7,7 +7,8 @@ import re
 from pathlib import Path
 
 from derive.description.errors import printable
-from derive.importing.importing import SNAP, UNITS, Options, import_robot
+from derive.importing.arms.snapping import SNAP
+from derive.importing.importing import UNITS, Options, import_robot
 from derive.importing.robot import UnreadableRobot
 
 
@@ -21,7 +22,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
         type=float,
         default=SNAP,
         metavar="SHARE",
-        help="put back what the file has rounded, up to this share of the size, or of one radian",
+        help="make axes meet, or put them at a multiple of 15°, by up to this share of the size, or of a radian",
     )
     command.add_argument("--unit", choices=tuple(UNITS), default="mm", help="the unit of length that is written")
     command.add_argument("--hold", nargs="+", default=[], metavar="AXIS", help="axes that the inverse does not move")

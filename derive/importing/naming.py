@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 
 from derive.importing.arms.lines import Arm
@@ -13,6 +14,7 @@ _SHORT = re.compile(r"[A-Z][0-9]\Z")
 _TAKEN = {"X", "Y", "Z", "Rx", "Ry", "Rz", "Tx", "Ty", "Tz", "TURN", "ROTATION", "MECHANISM"}
 """The names that a mechanism file imports or defines."""
 LETTERS = "xyz"
+_FOLLOWING = "abcdefghijklmnopqrstuvwxyz"
 
 
 def words(name: str) -> list[str]:
@@ -32,10 +34,12 @@ def axis_names(robot: Robot) -> tuple[str, ...]:
 def place_names(arm: Arm, axes: Sequence[str]) -> list[str]:
     """A name for every line: its axis; where an axis moves several, A2, A2b, A2c."""
     names: list[str] = []
+    counted: Counter[str] = Counter()
     for line in arm.lines:
         axis = axes[line.drives[0][0]]
-        others = sum(name.rstrip("bcdefgh") == axis for name in names)
-        names.append(f"{axis}{'abcdefgh'[others] if others else ''}")
+        others = counted[axis]
+        counted[axis] += 1
+        names.append(f"{axis}{_FOLLOWING[others % 26] * (others // 26 + 1)}" if others else axis)
     return names
 
 

@@ -9,8 +9,10 @@ from itertools import pairwise
 import numpy as np
 
 from derive.description.joints import Kind
+from derive.importing.arms.conditions import motions
 from derive.importing.arms.lines import ROUNDING, Arm, relation, spread
 from derive.importing.arms.snapping import Snapped
+from derive.importing.arms.tasks import WEAK, Followed, on_axis
 
 _NEARLY = 2e-2
 """The share of the size (or of one radian) up to which a relation of axes is called near."""
@@ -68,6 +70,18 @@ def closed_form(arm: Arm, names: Sequence[str], limit: float) -> str:
     return f"No three neighbouring axes meet in one point or are parallel; with --snap {_above(amount)} {words}."
 
 
+def weak_axes(arm: Arm, task: Followed, axes: Sequence[str]) -> Iterator[str]:
+    """A line for each axis that hardly moves what is commanded beyond what the other axes do."""
+    free = [k for k in range(len(axes)) if k not in task.held]
+    shares = motions(on_axis(arm, task), len(axes)).of(free).own_shares(task.position, task.turning, task.facing)
+    for k, share in zip(free, shares, strict=True):
+        if share < WEAK:
+            yield (
+                f"{axes[k]} hardly moves what is commanded: {share:.2g} of its own motion, beyond the other axes. "
+                "Near most poses targets are out of reach: hold it (--hold), or choose another --tip."
+            )
+
+
 def _distance_hints(distance: float, put_back: float, limit: float) -> Iterator[str]:
     """distance, put_back: in the file, and with exact angles, both as shares of the size."""
     if distance <= ROUNDING * 100:
@@ -98,10 +112,10 @@ def _above(amount: float) -> str:
 def snaps(moved: Sequence[Snapped], missed: Sequence[float], found: Bounds, snap: float, unit: str) -> Iterator[str]:
     """The changes that were made, and their largest effect on a pose."""
     if missed:
-        count, them = f"{len(missed)} angles of the file are nearly multiples", "them"
-        if len(missed) == 1:
-            count, them = "1 angle of the file is nearly a multiple", "it"
-        yield f"{count} of 15°: --snap {_above(max(missed))} puts {them} back."
+        yield (
+            f"Angles with two decimals that may be rounded multiples of 15°: {len(missed)}. "
+            f"--snap {_above(max(missed))} reads them so."
+        )
     if not moved:
         yield f"Nothing was snapped (--snap {snap:g})."
         return

@@ -22,7 +22,7 @@ from derive.importing.naming import axis_names, block_name, place_names
 from derive.importing.robot import Axis, Robot, UnreadableRobot
 
 _WIDTH = 118
-_FAR = 1e6
+FAR = 1e6
 """A limit beyond this many degrees or units of length counts as no limit."""
 _FRAMES = ("Rx", "Ry", "Rz", "Tx", "Ty", "Tz", "flip_x")
 
@@ -49,12 +49,10 @@ def description_of(robot: Robot, arm: Arm, chain: Simple, task: Followed) -> Des
     factors = tuple(factor_text(p, axes, d, flips) for p, d in zip(chain.pieces, dimensions, strict=True))
     symbols: dict[str, object] = {name: sp.Symbol(name, real=True) for name in axes}
     symbols |= {d.variable: sp.Symbol(d.variable, positive=True) for d in dimensions if d is not None}
-    symbols |= {"pi": sp.pi, "radians": lambda angle: angle * sp.Symbol("DEGREE", positive=True)}
+    symbols |= {"pi": sp.pi, "radians": lambda angle: sp.Symbol(f"radians({angle})", real=True)}
     texts = [amount_text(p, axes, d) for p, d in zip(chain.pieces, dimensions, strict=True)]
     amounts = [sp.sympify(text, locals=symbols) for text in texts]
     found = branches(chain.pieces, amounts, task)
-    if any(b.indicator.has(sp.Symbol("DEGREE", positive=True)) for b in found):
-        found = ()
     return Description(block_name(robot), axes, tuple(d for d in dimensions if d is not None), factors, found)
 
 
@@ -104,7 +102,7 @@ def _docstring(robot: Robot, description: Description, unit: str, notes: Sequenc
 
 def _plain(text: str) -> str:
     """Text of a file as a part of one line, without characters that would end a string."""
-    return re.sub(r'["\\\s]+', " ", printable(text))
+    return re.sub(r'["\\\s]+', " ", printable(text)).strip()
 
 
 def _imports(description: Description, task: Followed, robot: Robot) -> list[str]:
@@ -142,7 +140,7 @@ def _dimension(dimension: Dimension) -> str:
 def _axis(name: str, axis: Axis) -> str:
     kind = "linear" if axis.kind is Kind.LINEAR else "rotary"
     arguments = [f'"{name}"', f'"{_plain(axis.name)}"']
-    if axis.limits is not None and limits_of(axis) != (-_FAR, _FAR):
+    if axis.limits is not None and limits_of(axis) != (-FAR, FAR):
         low, high = limits_of(axis)
         arguments.append(f"limits=({low!r}, {high!r})")
     return _call(f"{name} = {kind}", arguments)
@@ -152,7 +150,7 @@ def limits_of(axis: Axis) -> tuple[float, float]:
     """The limits in the units of the interface, rounded to 1e-6: a file writes pi/2 as 1.570796325."""
     assert axis.limits is not None
     unit = 1.0 if axis.kind is Kind.LINEAR else 180.0 / np.pi
-    low, high = (min(max(round(float(end * unit), 6) + 0.0, -_FAR), _FAR) for end in axis.limits)
+    low, high = (min(max(round(float(end * unit), 6) + 0.0, -FAR), FAR) for end in axis.limits)
     return low, high
 
 

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import sympy as sp
 
+from derive.equations.known_turns import joints_of
 from derive.equations.problem import Equation, Problem
 from derive.ir.interpret import Array, evaluate
 from derive.ir.symbols import POSITION, cosine, sine
@@ -67,6 +68,11 @@ def _more(problem: Problem, unknowns: Sequence[sp.Symbol], free: int) -> str:
 
 def _help(problem: Problem) -> str:
     """The advice on what would make the problem solvable."""
+    if problem.followed > 1 and _roll_moves_position(problem):
+        return (
+            "it would help if the tip were on the axis of the roll: leave out the shift across it behind that turn, "
+            "which is the offset of a tool"
+        )
     if problem.turns and len(problem.columns) < 3:  # with a free twist only points on the tool's axis are known
         return "it would help if the line of the tool, through its point, met the axis of the last joint" + _ONE_KNOWN
     if problem.turns:
@@ -75,6 +81,13 @@ def _help(problem: Problem) -> str:
         "it would help if one equation had one of them alone, or if two equations were the coordinates of a point that "
         "one of them turns"
     )
+
+
+def _roll_moves_position(problem: Problem) -> bool:
+    """Whether the last turn moves the commanded point."""
+    moving = [joints for turn in problem.turns if (joints := joints_of(problem, turn))]
+    read = {u.name for e in problem.equations if e.is_length for u in problem.unknowns_of(e.expression)}
+    return bool(moving) and not read.isdisjoint(moving[-1])
 
 
 def _count(unknowns: Sequence[sp.Symbol]) -> str:

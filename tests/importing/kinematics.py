@@ -78,10 +78,12 @@ def by_yourdfpy(path: Path, base: str, tip: str) -> Pose:
 
 
 def facing(found: Imported) -> Array:
-    """The turn that makes the tool's direction z, where the file has it along x or y."""
-    if found.facing == 2:
-        return np.eye(4)
-    return elementary(Motion.TURN, *((1, np.pi / 2), (0, -np.pi / 2))[found.facing])
+    """From the file's tip (in metres) to the description's: onto the axis of the roll, then z along the tool."""
+    shift = np.eye(4)
+    shift[:3, 3] = np.array(found.task.beside or (0.0, 0.0, 0.0)) / 1000.0
+    if found.task.facing == 2:
+        return shift
+    return shift @ elementary(Motion.TURN, *((1, np.pi / 2), (0, -np.pi / 2))[found.task.facing])
 
 
 def samples(found: Imported, count: int = 12) -> list[dict[str, float]]:

@@ -71,3 +71,12 @@ def test_an_odd_file_is_what_it_says(seed: int, tmp_path: Path) -> None:
         assert rotation <= found.bounds.rotation + 1e-11
         assert snap > 0.0 or found.bounds.position == found.bounds.rotation == 0.0
         assert sum(len(name) > 3 for name in found.axes) == 0
+
+
+def test_a_small_arm_far_from_its_base(tmp_path: Path) -> None:
+    path = tmp_path / "far.urdf"
+    arm = [joint("a", "revolute", "40 0 3"), joint("b", "revolute", "0.1 0 0"), joint("tip", "fixed", "0.1 0 0")]
+    path.write_text(urdf("far", *arm), encoding="utf-8")
+    found = imported(path)
+    position, rotation = differences(found, described(found, tmp_path), by_yourdfpy(path, "link0", "link3"))
+    assert position <= found.bounds.position + 1e-8 and rotation <= found.bounds.rotation + 1e-11

@@ -25,7 +25,7 @@ REFUSALS: Mapping[str, tuple[str, str, str]] = {
     "copies": (
         "r.xml",
         '<mujoco><worldbody><replicate count="2"><body name="a"/></replicate></worldbody></mujoco>',
-        "replicates or attaches parts: save the expanded model, and import that$",
+        "replicates or attaches bodies: save the expanded model and import that, or choose with --tip$",
     ),
     "gradians": (
         "r.xml",
@@ -119,10 +119,21 @@ REFUSALS: Mapping[str, tuple[str, str, str]] = {
         "its tip has 2 free motions and moves along x, y, z, and a description commands each coordinate that moves: "
         "choose a base link whose axes are along the motions, or another tip$",
     ),
+    "a tip on the last axis": (
+        "r.urdf",
+        urdf(
+            "r",
+            joint("a", "revolute"),
+            joint("b", "revolute", "0.2 0 0", axis="0 1 0"),
+            joint("c", "revolute", "0.2 0 0", axis="1 0 0"),
+        ),
+        "its tip lies on the axis of its last joint, which turns it and shifts it nowhere: choose the link before that "
+        "joint as --tip, or one beside its axis$",
+    ),
     "ways that are no task": (
         "r.urdf",
-        urdf("r", joint("a", "revolute"), joint("b", "revolute", axis="1 0 0")),
-        "its tip moves in 2 ways that are no task of a description: choose another base or tip, or write the "
+        urdf("r", joint("a", "revolute"), joint("b", "revolute", axis="1 0 0"), joint("c", "prismatic", axis="1 0 0")),
+        "its tip moves in 3 ways that are no task of a description: choose another base or tip, or write the "
         "description by hand$",
     ),
 }

@@ -13,7 +13,7 @@ from derive.importing.arms.rounded import snapped_robot
 from derive.importing.formats.documents import rounding
 from derive.importing.importing import SNAP
 from derive.importing.robot import Robot, Step, Turned
-from tests.importing.kinematics import by_yourdfpy, described, differences, imported
+from tests.importing.kinematics import by_yourdfpy, chain_pose, described, differences, facing, imported
 from tests.importing.robots import joint, urdf
 from tests.importing.test_mjcf import by_mujoco
 
@@ -146,3 +146,24 @@ def test_the_offset_of_a_joint_that_follows_is_put_back(tmp_path: Path) -> None:
     assert "radians(" not in found.text
     position, rotation = differences(found, described(found, tmp_path), by_yourdfpy(path, "link0", "link5"))
     assert position <= found.bounds.position + 1e-9 and rotation <= found.bounds.rotation + 1e-12
+
+
+def test_a_wide_limit_turns_axes_and_no_joint(tmp_path: Path) -> None:
+    """A calibrated arm: every offset stays, the axes become parallel or square, and what that moves is little."""
+    path = tmp_path / "arm.toml"
+    offsets, tilts = (0.11, -0.08, 0.13, 0.07), (0.02, -0.03, 0.01, 0.05)
+    rows = zip(offsets, tilts, (90.0, 0.0, 0.0, 90.0), (0.0, 400.0, 300.0, 0.0), strict=True)
+    text = "".join(
+        f"[[joints]]\ntheta = {theta}\nd = 100.0\na = {a}\nalpha = {alpha + tilt}\n" for theta, tilt, alpha, a in rows
+    )
+    path.write_text(f'convention = "standard"\nangles = "degrees"\nlengths = "mm"\n{text}', encoding="utf-8")
+    found, exact = imported(path, snap=0.002), imported(path, snap=0.0)
+    angles = [m.amount for m in found.moved if m.is_angle]
+    assert np.allclose(sorted(angles), sorted(np.radians(np.abs(tilts))), rtol=1e-6, atol=0.0)
+    assert found.text.count(" = angle(") == 2, "the offset of A1, and those of three parallel axes together"
+    mechanism, unchanged = described(found, tmp_path), described(exact, tmp_path)
+    for values in np.random.default_rng(4).uniform(-3.0, 3.0, (20, 4)):
+        row = dict(zip(found.axes, map(float, values), strict=True))
+        stated = chain_pose(unchanged, row) @ facing(exact).T @ facing(found)
+        off = np.abs(chain_pose(mechanism, row) - stated)
+        assert off[:3, 3].max() < 3.0 and off[:3, :3].max() < 1.2 * sum(angles)

@@ -75,6 +75,6 @@ def test_with_three_digits_it_is_an_angle_of_its_own(name: str, tmp_path: Path) 
     """3.14 may be meant: the report says which `--snap` would make it pi, and with that it is."""
     file = written(name, 3, tmp_path)
     report = imported(file.path).report
-    snap = re.search(r"nearly multiples? of 15°: --snap (\S+) puts", report)
+    snap = re.search(r"may be rounded multiples of 15°: \d+\. --snap (\S+) reads", report)
     assert snap is not None
     assert imported(file.path, snap=float(snap[1])).text == imported(written(name, 17, tmp_path).path).text

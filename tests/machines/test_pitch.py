@@ -237,6 +237,12 @@ def test_what_cannot_be_commanded_is_refused(mechanism: Mechanism, message: str)
     assert str(refusal.value) == message
 
 
+def test_a_tip_beside_the_roll_is_refused_with_what_helps() -> None:
+    beside = LINKS * Ry(A4) * Tz(L4) * Rz(A5) * Tx(L2)
+    with pytest.raises(Unsolved, match="it would help if the tip were on the axis of the roll: leave out the shift"):
+        build(_arm(beside, Turning.PITCH_ROLL, (A1, A2, A3, A4, A5)))
+
+
 def carried_tool(machine: Made) -> Frame:
     """A tool to every side, a tenth of the reach long, and inclined."""
     shift = (0.06 * machine.reach, -0.04 * machine.reach, 0.07 * machine.reach)

@@ -2,6 +2,8 @@
 
 Like `importing`, it may import the folders from `ir` to `mechanisms`.
 
+aligned: neighbouring axes at nearly a multiple of 15 degrees, put at it
+conditions: how much each axis moves what a task commands, beyond what the other axes do
 headings: the direction x, y or z along which every axis moves, and the fixed turns between their frames
 lines: a robot as lines: the positions of its axes at joint values of zero
 pieces: the chain of an arm in its simple form, with the fewest shifts

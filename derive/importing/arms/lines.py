@@ -15,6 +15,8 @@ from derive.importing.robot import Array, Moving, Robot, about
 
 ROUNDING = 2e-14
 """Below this share a difference is the rounding of our own calculation, and is not listed."""
+_SMALLEST = 1e-9
+"""A machine that is smaller (in the unit of the description) has no size."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ def arm_of(robot: Robot) -> Arm:
             if drives:
                 lines.append(Line(step.moving.kind, frame[:3, 3].copy(), direction, drives))
             frame = frame @ motion(step.moving, step.moving.offset)
-    size = way or base or 1.0
+    size = next((length for length in (way, base) if length > _SMALLEST), 1.0)
     return Arm(tuple(lines), frame, size, ROUNDING * (size + base))
 
 

@@ -12,7 +12,7 @@ from derive.geometry.frames import Motion
 from derive.importing.arms.headings import Heading, headings, orientation, product
 from derive.importing.arms.lines import ROUNDING, Arm
 from derive.importing.arms.points import points
-from derive.importing.arms.snapping import Snapped
+from derive.importing.arms.snapping import SNAP, Snapped
 from derive.importing.robot import Array, about
 
 
@@ -55,7 +55,8 @@ class Simple:
 
 def simple(arm: Arm, names: Sequence[str], limit: float) -> Simple:
     """The chain with the fewest shifts. limit: a share of the size (lengths), and of one radian (angles)."""
-    ways, turned = headings(arm, names, limit)
+    narrow = min(limit, SNAP)  # what is left are offsets of joints, and turns of the base and the tip
+    ways, turned = headings(arm, names, narrow)
     straight = replace(
         arm,
         lines=tuple(
@@ -63,7 +64,7 @@ def simple(arm: Arm, names: Sequence[str], limit: float) -> Simple:
         ),
     )
     last = ways[-1].frame if ways else np.eye(3)
-    turns, amount = orientation(last.T @ arm.tip[:3, :3], limit)
+    turns, amount = orientation(last.T @ arm.tip[:3, :3], narrow)
     moved = [*turned, *([Snapped("tip: its orientation", amount, True)] if amount > 10 * ROUNDING else [])]
     smallest = max(limit * arm.size, arm.rounding)
     targets = [*points(straight, ways, last @ product(turns), smallest), arm.tip[:3, 3]]

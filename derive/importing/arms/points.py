@@ -16,7 +16,7 @@ from derive.importing.arms.lines import Arm, Line, feet
 from derive.importing.robot import Array
 
 _FAR = 20.0
-"""Candidates farther away than this many sizes of the machine are feet of axes that are nearly parallel."""
+"""Candidates farther away than this many times the machine, with its base, are feet of nearly parallel axes."""
 Cost = tuple[int, int, int, int, float]
 """Shifts that remain, lines that miss the points, shifts between axes, places with a shift, and their length."""
 
@@ -87,6 +87,7 @@ def _extended(
 def _candidates(arm: Arm, limit: float) -> list[list[Array]]:
     """The points that a line may be placed at, for every line."""
     lines = arm.lines
+    far = _FAR * max(arm.size, *(float(np.linalg.norm(line.point)) for line in lines))
     rotary = [k for k, line in enumerate(lines) if line.kind is Kind.ROTARY]
     found: dict[int, list[Array]] = {k: [lines[k].point] for k in rotary}
     for k, other in zip(rotary, rotary[1:], strict=False):
@@ -103,8 +104,8 @@ def _candidates(arm: Arm, limit: float) -> list[list[Array]]:
         for k, other in zip(rotary, rotary[1:], strict=False):
             found[k] += [_projected(lines[k], p) for p in before[other]]
             found[other] += [_projected(lines[other], p) for p in before[k]]
-        found = {k: _distinct(some, arm.size, limit) for k, some in found.items()}
-    every = _distinct([np.zeros(3), *(p for some in found.values() for p in some), arm.tip[:3, 3]], arm.size, limit)
+        found = {k: _distinct(some, far, limit) for k, some in found.items()}
+    every = _distinct([np.zeros(3), *(p for some in found.values() for p in some), arm.tip[:3, 3]], far, limit)
     return [found.get(k, every) for k in range(len(lines))]
 
 
@@ -113,10 +114,10 @@ def _projected(line: Line, point: Array) -> Array:
     return np.asarray(line.point + line.direction * float((point - line.point) @ line.direction))
 
 
-def _distinct(some: list[Array], size: float, limit: float) -> list[Array]:
+def _distinct(some: list[Array], far: float, limit: float) -> list[Array]:
     """The points that differ, without those that are far away."""
     kept: list[Array] = []
     for point in some:
-        if np.linalg.norm(point) <= _FAR * size and all(np.linalg.norm(point - k) > limit for k in kept):
+        if np.linalg.norm(point) <= far and all(np.linalg.norm(point - k) > limit for k in kept):
             kept.append(point)
     return kept

@@ -1,7 +1,8 @@
 """The exact values of angles that a file has rounded: 1.5708 is a right angle, and so is 1.570796325.
 
 An angle becomes a multiple of 15 degrees where it equals that multiple rounded to the decimals that the file writes, or
-where the difference is within the limit. With a limit of 0 no angle is changed.
+where the difference is within the default limit. With two decimals it does where the limit allows that. With a limit
+of 0 no angle is changed.
 """
 
 from __future__ import annotations
@@ -12,24 +13,25 @@ import numpy as np
 
 from derive.importing.arms.headings import orientation, product
 from derive.importing.arms.lines import ROUNDING
-from derive.importing.arms.snapping import Snapped, angle_between, nearest_angle, right_angled
+from derive.importing.arms.snapping import SNAP, Snapped, angle_between, nearest_angle, right_angled
+from derive.importing.formats.documents import COARSE
 from derive.importing.robot import Array, Moving, Place, Robot, Shifted, Step, Triple, Turned
-
-_NEARLY = 2e-3
-"""An angle that differs more from a multiple of 15 degrees was not meant to be one: 1.57 differs by 8e-4."""
 
 
 def snapped_robot(robot: Robot, limit: float) -> tuple[Robot, tuple[Snapped, ...]]:
-    """The robot with the exact angles, and the record of the changes."""
+    """The robot with the exact angles, and the record of the changes. limit: 0 changes nothing."""
     moved: list[Snapped] = []
     steps = tuple(_step(step, limit, moved) for step in robot.steps)
     return replace(robot, steps=steps), tuple(moved)
 
 
 def nearly(robot: Robot) -> list[float]:
-    """The small amounts by which unchanged angles miss a multiple of 15 degrees."""
-    angles = [p.angle for s in robot.steps for p in s.places if isinstance(p, Turned)]
-    return [m for a in angles if ROUNDING < (m := abs(a - nearest_angle(a))) < _NEARLY]
+    """The amounts by which unchanged angles miss a multiple of 15 degrees that they round to two decimals."""
+    places = [p for s in robot.steps for p in s.places if isinstance(p, Turned)]
+    missed = [(nearest_angle(p.angle), abs(p.angle - nearest_angle(p.angle)), p.rounding) for p in places]
+    return [
+        amount for nearest, amount, rounding in missed if amount > ROUNDING and _is_rounded(nearest, amount, rounding)
+    ]
 
 
 def _step(step: Step, limit: float, moved: list[Snapped]) -> Step:
@@ -66,15 +68,20 @@ def _moving(step: Step, moving: Moving | None, limit: float, moved: list[Snapped
 def _angle(place: str, angle: float, rounding: float, limit: float, moved: list[Snapped]) -> float:
     nearest = nearest_angle(angle)
     amount = abs(nearest - angle)
-    if amount <= max(limit, ROUNDING):
+    if amount <= max(min(limit, SNAP), ROUNDING):
         words = f"{angle:.10g} read as {np.degrees(nearest):g}°"
-    elif limit > 0.0 and nearest != 0.0 and _is_within(amount, rounding):  # a file that means 0 writes 0
+    elif _is_rounded(nearest, amount, rounding) and limit > 0.0 and (rounding < COARSE or amount <= limit):
         words = f"{angle:.10g} is {np.degrees(nearest):g}° rounded, off"
     else:
         return angle
     if amount > ROUNDING:
         moved.append(Snapped(f"{place}: {words}", amount, True))
     return nearest
+
+
+def _is_rounded(nearest: float, amount: float, rounding: float) -> bool:
+    """Whether an angle is the nearest multiple, rounded; a file that means 0 writes 0."""
+    return nearest != 0.0 and _is_within(amount, rounding)
 
 
 def _is_within(amount: float, rounding: float) -> bool:
@@ -85,7 +92,7 @@ def _is_within(amount: float, rounding: float) -> bool:
 def _simple(stated: Array, rounding: float, limit: float) -> tuple[Array, str]:
     """The rotation by right angles, or by multiples of 15 degrees, that a rotation stands for; else the rotation."""
     right = right_angled(stated)
-    if right is not None and angle_between(right, stated) <= max(limit, ROUNDING):
+    if right is not None and angle_between(right, stated) <= max(min(limit, SNAP), ROUNDING):
         return right, "read as one of right angles"
     if limit > 0.0 and rounding > 0.0:
         turns, _ = orientation(stated, rounding)

@@ -12,6 +12,8 @@ import numpy as np
 
 from derive.importing.robot import Array
 
+SNAP = 1e-6
+"""The default limit; angles that no structure needs are never changed by more, unless the file has rounded them."""
 STEP = np.pi / 12
 """Angles become multiples of 15 degrees: right angles, and those of inclined wrists."""
 

@@ -1,20 +1,22 @@
 """The part of a commanded pose that a chain can follow, and the joints that have to be held: by the rank of its
-Jacobian."""
+Jacobian, and by how well its axes move what is commanded."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from derive.description.joints import Kind
-from derive.importing.arms.lines import Arm, Line, moved, relation, spread
+from derive.importing.arms.conditions import Motions, motions
+from derive.importing.arms.lines import Arm, Line, relation, spread
 from derive.importing.robot import Array, UnreadableRobot
 
-_SAMPLES = 6
 _SMALL = 1e-9
+WEAK = 0.03
+"""An axis that moves less than this share of the size, or this many radians, beyond the others hardly counts."""
 _NEARLY = 1e-6
 _WELL = 5e-3
 """A motion smaller than this share comes from axes that nearly meet, and is no reason to hold a joint."""
@@ -29,68 +31,8 @@ class Followed:
     held: tuple[int, ...] = ()
     facing: int = 2
     """The axis x, y or z (0, 1, 2) of the tip that is the direction of the tool, which a description calls z."""
-
-
-@dataclass(frozen=True)
-class Motions:
-    """Jacobians of the tip at some joint values (samples x 6 x axes, lengths over the size), its rotations there."""
-
-    jacobians: Array
-    rotations: Array
-
-    def rank(self, rows: slice = slice(0, 6), axes: Sequence[int] | None = None, least: float = 1e-7) -> int:
-        """The rank of some rows at a general position; singular values below the least one count as zero."""
-        chosen = self.jacobians[:, rows] if axes is None else self.jacobians[:, rows][:, :, list(axes)]
-        return int(max(np.linalg.matrix_rank(j, tol=least) for j in chosen))
-
-    def least(self, axes: Sequence[int]) -> float:
-        """The least singular value with some axes, the mean of all samples."""
-        return float(np.mean([np.linalg.svd(j[:, list(axes)], compute_uv=False)[-1] for j in self.jacobians]))
-
-    def span(self, rows: slice) -> Array:
-        """Directions (rows) that the motions of all samples span."""
-        every = np.concatenate(list(self.jacobians[:, rows]), axis=1)
-        left, sizes, _ = np.linalg.svd(every)
-        return np.asarray(left[:, : int(np.sum(sizes > 1e-7))].T)
-
-
-def motions(arm: Arm, count: int) -> Motions:
-    """Jacobians at general joint values, which are always the same."""
-    rng = np.random.default_rng(5)
-    jacobians, rotations = [], []
-    for _ in range(_SAMPLES):
-        values = rng.uniform(0.3, 1.2, count) * rng.choice([-1.0, 1.0], count)
-        sized = np.array([v * _unit(arm, k) for k, v in enumerate(values)])
-        jacobian, frame = _jacobian(arm, sized)
-        jacobians.append(jacobian)
-        rotations.append(frame[:3, :3])
-    return Motions(np.array(jacobians), np.array(rotations))
-
-
-def _unit(arm: Arm, axis: int) -> float:
-    """The size of a slide's values; 1 for an angle."""
-    kinds = [line.kind for line in arm.lines for k, _ in line.drives if k == axis]
-    return arm.size if Kind.LINEAR in kinds else 1.0
-
-
-def _jacobian(arm: Arm, values: Array) -> tuple[Array, Array]:
-    frame = np.eye(4)
-    columns: list[tuple[Line, Array, Array]] = []
-    for line in arm.lines:
-        columns.append((line, frame[:3, :3] @ line.direction, (frame @ np.append(line.point, 1.0))[:3]))
-        frame = frame @ moved(line, float(sum(values[k] * m for k, m in line.drives)))
-    tip = (frame @ arm.tip)[:3, 3]
-    size = arm.size
-    jacobian = np.zeros((6, len(values)))
-    for line, direction, point in columns:
-        for axis, multiplier in line.drives:
-            if line.kind is Kind.LINEAR:
-                jacobian[:3, axis] += multiplier * direction * _unit(arm, axis) / size
-            else:
-                unit = multiplier * _unit(arm, axis)
-                jacobian[:3, axis] += unit * np.cross(direction, tip - point) / size
-                jacobian[3:, axis] += unit * direction
-    return jacobian, frame @ arm.tip
+    beside: tuple[float, float, float] | None = None
+    """The shift, in the frame of the file's tip, onto the axis of the roll; None where the tip is on it."""
 
 
 def followed(arm: Arm, count: int, held: Sequence[int] = ()) -> Followed:
@@ -102,35 +44,92 @@ def followed(arm: Arm, count: int, held: Sequence[int] = ()) -> Followed:
         held = tuple(sorted((*held, *_to_hold(arm, seen, free, len(free) - rank))))
         free = [k for k in range(count) if k not in held]
         rank = seen.rank(axes=free)
-    solved = Motions(seen.jacobians[:, :, free], seen.rotations)
+    solved = seen.of(free)
     if rank == 5 or (rank == 4 and solved.rank(slice(0, 3)) == 3 and len(solved.span(slice(3, 6))) > 1):
         return _with_direction(solved, arm, rank, tuple(held))
-    position, turning = _task(solved, rank)
+    position, turning = _task(solved, arm, rank)
     return Followed(position, turning, tuple(held))
 
 
 def _with_direction(seen: Motions, arm: Arm, rank: int, held: tuple[int, ...]) -> Followed:
-    """The task of a chain that follows a part of the tool's direction: which axis of its tip that is."""
-    last = next((line.direction for line in reversed(arm.lines) if line.kind is Kind.ROTARY), np.zeros(3))
-    seen_from_tip = np.abs(arm.tip[:3, :3].T @ last)
-    if rank == 4:
-        square = [k for k in (2, 0, 1) if seen_from_tip[k] < _NEARLY]
-        found = [("PITCH", k) for k in square]
-    else:
-        along = [("PITCH_ROLL", k) for k in range(3) if seen_from_tip[k] > 1.0 - _NEARLY]
-        aimed = [("DIRECTION", k) for k in (2, 0, 1) if _aims(seen, k)]
-        is_arm = all(line.kind is Kind.ROTARY for line in arm.lines)
-        found = [*(a for a in aimed if a[1] == 2), *along, *aimed]
-        if is_arm and along:  # a tip that turns about the last axis points along it
-            found = [a for a in aimed if a[1] == along[0][1]] or along
+    """The task of a chain that follows a part of the tool's direction: the first one, of those that are wanted, that
+    every axis moves well; else the one that they move best.
+    """
+    found: list[tuple[float, Followed]] = []
+    for turning, axis in _pitches(arm) if rank == 4 else _directions(arm):
+        task = Followed("xyz", turning, held, axis, _beside(arm) if turning == "PITCH_ROLL" else None)
+        of = motions(on_axis(arm, task), _count(arm)).of(_free(arm, held)) if task.beside else seen
+        least = float(of.own_shares("xyz", turning, axis).min())
+        if least > WEAK or rank == 4:
+            return task
+        if least > _SMALL:
+            found.append((least, task))
     if not found:
         raise UnreadableRobot(
             "no axis of its tip is a direction that the chain can follow: choose a --tip whose z axis is the tool's"
         )
-    return Followed("xyz", found[0][0], held, found[0][1])
+    return max(found, key=lambda one: one[0])[1]
 
 
-def _task(seen: Motions, rank: int) -> tuple[str, str]:
+def _count(arm: Arm) -> int:
+    return 1 + max(axis for line in arm.lines for axis, _ in line.drives)
+
+
+def _free(arm: Arm, held: Sequence[int]) -> list[int]:
+    return [k for k in range(_count(arm)) if k not in held]
+
+
+def _turns(arm: Arm) -> list[Line]:
+    """The turns of a chain, of parallel neighbours the last one."""
+    found: list[Line] = []
+    for line in arm.lines:
+        if line.kind is Kind.ROTARY:
+            is_same = bool(found) and relation(found[-1], line).angle < _NEARLY
+            found = [*(found[:-1] if is_same else found), line]
+    return found
+
+
+def _pitches(arm: Arm) -> list[tuple[str, int]]:
+    """The axes of the tip that stay square to the last turn."""
+    last = _seen_from_tip(arm)
+    return [("PITCH", k) for k in (2, 0, 1) if last[k] < _NEARLY]
+
+
+def _directions(arm: Arm) -> list[tuple[str, int]]:
+    """The tasks of five axes, those first that a user wants.
+
+    Pitch and roll need a plane that all solutions share: a heading, turns that are parallel, and the roll. There a tip
+    that turns about the last axis points along it; elsewhere its z axis is the tool's, if it can be.
+    """
+    last, turns = _seen_from_tip(arm), _turns(arm)
+    rolls = [("PITCH_ROLL", k) for k in range(3) if last[k] > 1.0 - _NEARLY and len(turns) <= 3]
+    is_arm = len(turns) == 3 and all(line.kind is Kind.ROTARY for line in arm.lines)
+    first = [("DIRECTION", k) for _, k in rolls] + rolls if is_arm else []
+    return [*first, ("DIRECTION", 2), *rolls, ("DIRECTION", 0), ("DIRECTION", 1)]
+
+
+def _seen_from_tip(arm: Arm) -> Array:
+    """The direction of the last turn, in the frame of the tip; without signs."""
+    turns = _turns(arm)
+    return np.abs(arm.tip[:3, :3].T @ turns[-1].direction) if turns else np.zeros(3)
+
+
+def _beside(arm: Arm) -> tuple[float, float, float] | None:
+    """The shift, in the frame of the tip, that puts the tip on the axis of the last turn; None where it is on it."""
+    line, tip = _turns(arm)[-1], arm.tip[:3, 3]
+    foot = line.point + line.direction * float((tip - line.point) @ line.direction)
+    shift = arm.tip[:3, :3].T @ (foot - tip)
+    return tuple(map(float, shift)) if np.linalg.norm(shift) > _NEARLY * arm.size else None  # type: ignore[return-value]
+
+
+def on_axis(arm: Arm, task: Followed) -> Arm:
+    """The arm with its tip moved onto the axis of the last turn, where the task asks for that."""
+    frame = np.eye(4)
+    frame[:3, 3] = task.beside or (0.0, 0.0, 0.0)
+    return replace(arm, tip=arm.tip @ frame)
+
+
+def _task(seen: Motions, arm: Arm, rank: int) -> tuple[str, str]:
     shifts, turns = seen.span(slice(0, 3)), seen.span(slice(3, 6))
     if seen.rank(slice(0, 3)) == rank:
         return _position(shifts, rank), "NONE"
@@ -145,6 +144,11 @@ def _task(seen: Motions, rank: int) -> tuple[str, str]:
         return "", "FULL"
     if rank == 6:
         return "xyz", "FULL"
+    if arm.lines[-1].kind is Kind.ROTARY and _beside(arm) is None:
+        raise UnreadableRobot(
+            "its tip lies on the axis of its last joint, which turns it and shifts it nowhere: choose the link before "
+            "that joint as --tip, or one beside its axis"
+        )
     raise UnreadableRobot(
         f"its tip moves in {rank} ways that are no task of a description: choose another base or tip, or write the "
         "description by hand"
@@ -160,16 +164,6 @@ def _position(shifts: Array, rank: int) -> str:
         "description commands each coordinate that moves: choose a base link whose axes are along the motions, or "
         "another tip"
     )
-
-
-def _aims(seen: Motions, axis: int) -> bool:
-    """Whether all positions and directions of an axis of the tip can be commanded together."""
-    ranks = []
-    others = [k for k in range(3) if k != axis]
-    for jacobian, rotation in zip(seen.jacobians, seen.rotations, strict=True):
-        aimed = np.concatenate([jacobian[:3], rotation[:, others].T @ jacobian[3:]])
-        ranks.append(np.linalg.matrix_rank(aimed, tol=1e-7))
-    return bool(max(ranks) == 5)
 
 
 def _to_hold(arm: Arm, seen: Motions, free: Sequence[int], count: int) -> tuple[int, ...]:

@@ -3,6 +3,8 @@
 Like `importing`, it may import the folders from `ir` to `mechanisms`.
 
 documents: XML and the numbers in it; any fault is reported in one sentence
+loops: closed loops of a file: an arm is not imported without one that binds its joints
+macros: what is left of xacro in a URDF: reported where the chain does not need it
 mimics: joints that follow others
 mjcf: MJCF: the chain between two bodies or sites
 orientations: the five ways in which MJCF gives an orientation

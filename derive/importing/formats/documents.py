@@ -10,8 +10,13 @@ from xml.etree import ElementTree
 from derive.importing.robot import UnreadableRobot
 
 Element = ElementTree.Element
+_LARGEST = 1e6
+"""In size, of the numbers of a file (metres, millimetres, degrees, radians): a larger one is a slip."""
+_SHOWN = 40
 _FEWEST_DECIMALS = 3
 """1.57 may be an angle of its own; 1.571 is a right angle, rounded."""
+COARSE = 5e-3
+"""The `rounding` of an angle with two decimals: whether it is one, the user says."""
 
 
 def parsed(path: Path) -> Element:
@@ -21,6 +26,8 @@ def parsed(path: Path) -> Element:
         return ElementTree.fromstring(data)
     except ElementTree.ParseError as problem:
         raise UnreadableRobot(f"{path}:{problem.position[0]}: broken XML: {problem.msg}") from None
+    except (LookupError, ValueError) as problem:
+        raise UnreadableRobot(f"{path}: its encoding cannot be read ({problem}): save it in UTF-8") from None
 
 
 def without_namespace(root: Element) -> Element:
@@ -49,8 +56,8 @@ def _bytes_of(path: Path) -> bytes:
 
 
 def limit(path: Path, text: str, place: str) -> float:
-    """A number that may be infinite: no limit on that side."""
-    return float(text) if text.strip().lstrip("+-").lower() in ("inf", "infinity") else number(path, text, place)
+    """A number that may be as large as it likes, or infinite: no limit on that side."""
+    return number(path, text, place, math.inf)
 
 
 def required(path: Path, element: Element, attribute: str) -> str:
@@ -62,15 +69,28 @@ def required(path: Path, element: Element, attribute: str) -> str:
     return value
 
 
-def number(path: Path, text: str, place: str) -> float:
-    """A finite number."""
+def number(path: Path, text: str, place: str, largest: float = _LARGEST) -> float:
+    """A number, at most the largest in size."""
     try:
         value = float(text)
     except ValueError:
         value = math.nan
-    if not math.isfinite(value):
-        raise UnreadableRobot(f"{path}: {place}: {text!r} is no number")
+    if not abs(value) <= largest:
+        why = "is no number" if math.isnan(value) else f"is more than {largest:g}"
+        raise UnreadableRobot(f"{path}: {place}: {shown(text)} {why}")
     return value
+
+
+def between(path: Path, place: str, low: float, high: float, unit: float) -> tuple[float, float] | None:
+    """The limits of a joint in our unit; None where both ends are the same, which files write for no limits."""
+    if low > high:
+        raise UnreadableRobot(f"{path}: {place}: its lower limit {low:g} is above its upper limit {high:g}")
+    return (low * unit, high * unit) if low < high else None
+
+
+def shown(text: str) -> str:
+    """A text of a file as a message quotes it: its beginning, where it is long."""
+    return repr(text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…")
 
 
 def numbers(path: Path, element: Element, attribute: str, place: str, default: tuple[float, ...]) -> tuple[float, ...]:
@@ -80,28 +100,31 @@ def numbers(path: Path, element: Element, attribute: str, place: str, default: t
         return default
     found = tuple(number(path, word, f"{place}, {attribute}") for word in stated.split())
     if len(found) != len(default):
-        raise UnreadableRobot(f"{path}: {place}, {attribute}: {stated!r} has {len(found)} numbers, not {len(default)}")
+        said = f"{shown(stated)} has {len(found)} numbers, not {len(default)}"
+        raise UnreadableRobot(f"{path}: {place}, {attribute}: {said}")
     return found
 
 
-def rounding(text: str) -> float:
+def rounding(text: str, with_coarse: bool = False) -> float:
     """The largest distance of a number from the exact one that the file has rounded, by its number of decimals.
 
     With three decimals it is half a unit of the last one; with more a whole unit, because 3.1415 is cut off; with fewer
-    it is 0, because nothing is known. Zeros behind the fourth decimal only pad a number that was rounded before.
+    it is 0, because nothing is known, or with two `COARSE`, if that is asked for. Zeros behind the fourth decimal only
+    pad a number that was rounded before.
     """
     try:
-        exponent = Decimal(text).as_tuple().exponent
+        stated = Decimal(text).as_tuple()
     except InvalidOperation:
         return 0.0
-    decimals = -exponent if isinstance(exponent, int) else 0
+    decimals = -stated.exponent if isinstance(stated.exponent, int) else 0
     if decimals > _FEWEST_DECIMALS:
-        digits = f"{Decimal(text).copy_abs():f}".partition(".")[2].rstrip("0")
-        return float(10.0 ** -max(len(digits), _FEWEST_DECIMALS + 1))
-    return 0.5 * 10.0**-decimals if decimals == _FEWEST_DECIMALS else 0.0
+        digits = "".join(map(str, stated.digits))
+        padding = len(digits) - len(digits.rstrip("0"))
+        return float(10.0 ** -max(decimals - padding, _FEWEST_DECIMALS + 1))
+    return 0.5 * 10.0**-decimals if decimals == _FEWEST_DECIMALS else COARSE if decimals == 2 and with_coarse else 0.0
 
 
-def roundings(element: Element, attribute: str, count: int) -> tuple[float, ...]:
+def roundings(element: Element, attribute: str, count: int, with_coarse: bool = False) -> tuple[float, ...]:
     """The `rounding` of each of the `count` numbers of an attribute; 0 where the attribute is missing."""
     words = (element.get(attribute) or "").split()
-    return tuple(rounding(word) for word in words) if words else (0.0,) * count
+    return tuple(rounding(word, with_coarse) for word in words) if words else (0.0,) * count

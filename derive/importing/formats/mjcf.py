@@ -7,15 +7,17 @@ tip are not.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 from derive.description.joints import Kind
-from derive.importing.formats.documents import number, numbers, parsed, required, rounding
+from derive.importing.formats.documents import between, limit, number, numbers, parsed, rounding, shown
+from derive.importing.formats.loops import Joints, Loop, loop_notes
 from derive.importing.formats.mimics import Follower, driven
 from derive.importing.formats.orientations import File, places_of
+from derive.importing.formats.trees import listed
 from derive.importing.formats.whole import whole
 from derive.importing.robot import Axis, Moving, Place, Robot, Shifted, Step, Triple, UnreadableRobot, reversed_step
 
@@ -42,31 +44,44 @@ def read_mjcf(path: Path, base: str | None, tip: str | None, scale: float) -> Ro
     for word, name in (("base", base), ("tip", tip)):
         if name is not None and name not in frames:
             raise UnreadableRobot(
-                f"{path}: no body or site is called {name!r} (--{word}); there are {', '.join(frames)}"
+                f"{path}: no body or site is called {name!r} (--{word}); there are {listed(list(frames))}"
             )
     base = base or WORLD
-    tip = tip or _only_end(path, frames)
-    up, down = _to_world(frames, base), _to_world(frames, tip)
-    while up and down and up[-1] == down[-1]:
-        up, down = up[:-1], down[:-1]
-    if not up and not down:
+    tip = tip or _only_end(path, file.root, frames)
+    passed = _passed(frames, base, tip)
+    if not passed:
         raise UnreadableRobot(f"{path}: base and tip are the same body, {base!r}")
     joints = _joints(file, frames)
-    followers = _followers(file, joints)
-    passed = [*((name, True) for name in up), *((name, False) for name in reversed(down))]
+    own = {name for frame, _ in passed for name, _ in _own_joints(frames[frame])}
+    followers = _followers(file, joints, own)
     steps = tuple(s for name, is_up in passed for s in _steps(file, frames[name], joints, followers, is_up))
     used = dict.fromkeys(name for s in steps if s.moving for name, _ in s.moving.drives)
     axes = tuple(_axis(file, name, joints[name]) for name in used)
     title = file.root.get("model") or path.stem
-    return Robot(title, f"{path.name} (MJCF)", base, tip, steps, axes, _notes(file, joints, used, steps))
+    notes = _notes(file, joints, {*used, *(s.name for s in steps if s.moving)})
+    loops = _loop_notes(file, frames, joints, {*used, *own})
+    return Robot(title, f"{path.name} (MJCF)", base, tip, steps, axes, (*notes, *loops))
+
+
+def _passed(frames: Mapping[str, Frame], base: str, tip: str) -> list[tuple[str, bool]]:
+    """The bodies from the base to the tip, each with whether it is passed from itself to its parent."""
+    up, down = _to_world(frames, base), _to_world(frames, tip)
+    while up and down and up[-1] == down[-1]:
+        up.pop()
+        down.pop()
+    return [*((name, True) for name in up), *((name, False) for name in reversed(down))]
+
+
+def _own_joints(frame: Frame) -> list[tuple[str, Element]]:
+    """The joints in a body, with their names."""
+    joints = frame.element.findall("joint")
+    return [(joint.get("name") or f"{frame.name}.{index}", joint) for index, joint in enumerate(joints)]
 
 
 def _file(path: Path, root: Element, scale: float) -> File:
     if root.tag != "mujoco":
         raise UnreadableRobot(f"{path}: its root is <{root.tag}>, not <mujoco>: this is no MJCF")
     root = whole(path, root)
-    if root.find(".//replicate") is not None or root.find(".//attach") is not None:
-        raise UnreadableRobot(f"{path}: replicates or attaches parts: save the expanded model, and import that")
     settings: dict[str, str] = {}
     for compiler in root.findall("compiler"):
         settings |= dict(compiler.attrib)
@@ -139,14 +154,18 @@ def _below(file: File, parent: Element, body: Frame, label: str) -> Iterator[Fra
             yield from _below(file, element, replace(frame, before=()), own)
 
 
-def _only_end(path: Path, frames: Mapping[str, Frame]) -> str:
+def _only_end(path: Path, root: Element, frames: Mapping[str, Frame]) -> str:
+    if root.find(".//replicate//body") is not None or root.find(".//attach") is not None:
+        raise UnreadableRobot(
+            f"{path}: replicates or attaches bodies: save the expanded model and import that, or choose with --tip"
+        )
     parents = {frame.parent for frame in frames.values() if frame.element.tag == "body"}
     ends = [f.name for f in frames.values() if f.element.tag == "body" and f.name not in parents]
     if len(ends) == 1:
         return ends[0]
     if not ends:
         raise UnreadableRobot(f"{path}: has no bodies")
-    raise UnreadableRobot(f"{path}: has {len(ends)} possible tips: choose with --tip: {', '.join(ends)}")
+    raise UnreadableRobot(f"{path}: has {len(ends)} possible tips: choose with --tip: {listed(ends)}")
 
 
 def _to_world(frames: Mapping[str, Frame], name: str) -> list[str]:
@@ -165,8 +184,7 @@ def _steps(
     steps = [Step(frame.name, (*frame.before, *places))]
     if frame.element.find("freejoint") is not None:
         raise UnreadableRobot(f"{file.path}: body {frame.name!r} {_FREE['free']}: choose a base that it carries")
-    for index, joint in enumerate(frame.element.findall("joint")):
-        name = joint.get("name") or f"{frame.name}.{index}"
+    for name, _ in _own_joints(frame):
         steps += _joint_steps(file, name, joints[name], followers)
     return [back for s in reversed(steps) for back in reversed_step(s)] if is_up else steps
 
@@ -211,35 +229,42 @@ def _joints(file: File, frames: Mapping[str, Frame]) -> dict[str, dict[str, str]
     """Every joint of the file, by its name, with its defaults."""
     found: dict[str, dict[str, str]] = {}
     for frame in frames.values():
-        for index, joint in enumerate(frame.element.findall("joint")):
-            name = joint.get("name") or f"{frame.name}.{index}"
+        for name, joint in _own_joints(frame):
             if name in found:
                 raise UnreadableRobot(f"{file.path}: two joints are called {name!r}")
             found[name] = _defaults(file, joint, frame.body_class)
     return found
 
 
-def _followers(file: File, joints: Mapping[str, Mapping[str, str]]) -> dict[str, Follower]:
-    """Joints that an equality makes follow another one: y - y0 = a0 + a1 (x - x0), in radians and lengths."""
+def _followers(file: File, joints: Mapping[str, Mapping[str, str]], passed: Container[str]) -> dict[str, Follower]:
+    """Joints that an equality makes follow another one: y - y0 = a0 + a1 (x - x0), in radians and lengths; those that
+    are passed, and those that they follow. Others may follow by a curve.
+    """
+    stated = {e.get("joint1", ""): e for e in file.root.findall("equality/joint") if e.get("active") != "false"}
     found: dict[str, Follower] = {}
-    for equality in file.root.findall("equality/joint"):
-        own, leader = required(file.path, equality, "joint1"), equality.get("joint2")
-        if equality.get("active") == "false" or own not in joints:
-            continue
-        words = equality.get("polycoef", "0 1").split()
-        numbers_ = [number(file.path, w, f"equality of {own!r}") for w in words]
-        a0, a1, *rest = (*numbers_, 0.0, 0.0)
-        if any(rest) or leader is None or leader not in joints:
-            raise UnreadableRobot(
-                f"{file.path}: joint {own!r} follows no joint, or by a curve: only `joint1 = a0 + a1 * joint2` is known"
-            )
-        sizes = [file.scale if _kind(file, n, joints[n]) is Kind.LINEAR else 1.0 for n in (own, leader)]
-        multiplier = a1 * sizes[0] / sizes[1]
-        start = _start(file, own, joints[own]) - multiplier * _start(file, leader, joints[leader])
-        roundings = [_start_rounding(file, n, joints[n]) for n in (own, leader)]
-        off = rounding(words[0]) + roundings[0] + abs(multiplier) * roundings[1]
-        found[own] = Follower(leader, multiplier, a0 * sizes[0] + start, off)
+    left = [own for own in stated if own in passed]
+    while left:
+        own = left.pop()
+        found[own] = _follower(file, joints, own, stated[own])
+        if found[own].leader in stated and found[own].leader not in found:
+            left.append(found[own].leader)
     return found
+
+
+def _follower(file: File, joints: Mapping[str, Mapping[str, str]], own: str, equality: Element) -> Follower:
+    leader = equality.get("joint2")
+    words = equality.get("polycoef", "0 1").split()
+    a0, a1, *rest = (*(number(file.path, w, f"equality of {own!r}") for w in words), 0.0, 0.0)
+    if any(rest) or leader is None or leader not in joints:
+        raise UnreadableRobot(
+            f"{file.path}: joint {own!r} follows no joint, or by a curve: only `joint1 = a0 + a1 * joint2` is known"
+        )
+    sizes = [file.scale if _kind(file, n, joints[n]) is Kind.LINEAR else 1.0 for n in (own, leader)]
+    multiplier = a1 * sizes[0] / sizes[1]
+    start = _start(file, own, joints[own]) - multiplier * _start(file, leader, joints[leader])
+    roundings = [_start_rounding(file, n, joints[n]) for n in (own, leader)]
+    off = (rounding(words[0]) if words else 0.0) + roundings[0] + abs(multiplier) * roundings[1]
+    return Follower(leader, multiplier, a0 * sizes[0] + start, off)
 
 
 def _axis(file: File, name: str, stated: Mapping[str, str]) -> Axis:
@@ -249,27 +274,44 @@ def _axis(file: File, name: str, stated: Mapping[str, str]) -> Axis:
     if not words or is_limited == "false" or (is_limited == "auto" and not file.limits_by_range):
         return Axis(name, kind)
     unit = file.scale if kind is Kind.LINEAR else file.degree
-    element = Element("joint", {"range": stated["range"]})
-    low, high = (v * unit for v in numbers(file.path, element, "range", f"joint {name!r}", (0.0, 0.0)))
-    if low > high:
-        raise UnreadableRobot(f"{file.path}: joint {name!r}: its lower limit {low:g} is above its upper limit {high:g}")
-    return Axis(name, kind, (low, high) if low < high else None)
+    if len(words) != 2:
+        raise UnreadableRobot(f"{file.path}: joint {name!r}, range: {shown(stated['range'])} is not two numbers")
+    low, high = (limit(file.path, word, f"joint {name!r}, range") for word in words)
+    return Axis(name, kind, between(file.path, f"joint {name!r}", low, high, unit))
 
 
-def _notes(
-    file: File, joints: Mapping[str, object], used: Mapping[str, None], steps: Sequence[Step]
-) -> tuple[str, ...]:
-    passed = {*used, *(s.name for s in steps if s.moving)}
+def _notes(file: File, joints: Mapping[str, object], passed: Container[str]) -> tuple[str, ...]:
     left = [name for name in joints if name not in passed]
-    notes = [f"Left out, because they are not between base and tip: {', '.join(left)}."] if left else []
+    notes = [f"Left out, because they are not between base and tip: {listed(left)}."] if left else []
     if file.root.find(".//geom") is not None:
         notes.append("Not read, because kinematics does not need them: masses, meshes, collision bodies.")
-    loops = [tag for tag in ("connect", "weld") if file.root.find(f"equality/{tag}") is not None]
-    if loops:
-        notes.append(
-            f"Not read: {' and '.join(loops)} of the equalities. Where they close a loop that the chain is part of, "
-            "describe the machine by equations."
-        )
     if file.root.find("tendon") is not None:
         notes.append("Not read: tendons. Axis values are the joint values of the file.")
     return tuple(notes)
+
+
+def _loop_notes(
+    file: File, frames: Mapping[str, Frame], joints: Mapping[str, Mapping[str, str]], moving: Container[str]
+) -> Iterator[str]:
+    """The notes on the loops that equalities close. A body that moves freely, or that a program moves (mocap), is bound
+    by one, and closes none. moving: the joints that move the chain.
+    """
+    inside = []
+    for tag in ("connect", "weld"):
+        for equality in file.root.findall(f"equality/{tag}"):
+            first, second = (equality.get(f"body{k}") or equality.get(f"site{k}") or WORLD for k in (1, 2))
+            if equality.get("active") == "false" or first not in frames or second not in frames:
+                continue
+            passed = [frames[name] for name, _ in _passed(frames, first, second)]
+            if not any(_is_free(frame, joints) for frame in passed):
+                names = [name for frame in passed for name, _ in _own_joints(frame)]
+                inside.append((Loop(f"a {tag} of {first!r} and {second!r}", first, second), names))
+    driven = {e.get("joint") for e in file.root.findall("actuator/*")}
+    followers = [e.get("joint1") for e in file.root.findall("equality/joint") if e.get("active") != "false"]
+    yield from loop_notes(file.path, inside, Joints(moving, followers, driven))
+
+
+def _is_free(frame: Frame, joints: Mapping[str, Mapping[str, str]]) -> bool:
+    element = frame.element
+    is_free = element.find("freejoint") is not None or element.get("mocap") == "true"
+    return is_free or any(joints[name].get("type") == "free" for name, _ in _own_joints(frame))

@@ -49,7 +49,7 @@ def _euler(file: File, element: Element, place: str) -> tuple[Place, ...]:
     sequence = file.sequence
     if len(sequence) != 3 or set(sequence.lower()) - set("xyz") or sequence not in (sequence.lower(), sequence.upper()):
         raise UnreadableRobot(f"{file.path}: its sequence of angles {sequence!r} is not three of xyz, or of XYZ")
-    rounded = roundings(element, "euler", 3) if file.degree == 1.0 else (0.0, 0.0, 0.0)
+    rounded = roundings(element, "euler", 3, with_coarse=True) if file.degree == 1.0 else (0.0, 0.0, 0.0)
     turns = [
         Turned("xyz".index(c.lower()), a * file.degree, r) for c, a, r in zip(sequence, angles, rounded, strict=True)
     ]

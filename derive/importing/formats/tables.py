@@ -16,7 +16,7 @@ from decimal import Decimal
 from pathlib import Path
 
 from derive.description.joints import Kind
-from derive.importing.formats.documents import number, rounding, text_of
+from derive.importing.formats.documents import between, limit, number, rounding, shown, text_of
 from derive.importing.robot import Axis, Moving, Place, Robot, Shifted, Step, Turned, UnreadableRobot
 
 _SETTINGS: Mapping[str, tuple[str, ...]] = {
@@ -52,7 +52,7 @@ def read_table(path: Path, base: str | None, tip: str | None, scale: float) -> R
     settings, rows = (_toml if path.suffix.lower() == ".toml" else _csv)(path)
     for key, known in _SETTINGS.items():
         if settings.get(key) not in known:
-            said = f"{settings[key]!r}" if key in settings else "nothing"
+            said = shown(settings[key]) if key in settings else "nothing"
             raise UnreadableRobot(f"{path}: says {said} for {key}: it must be {' or '.join(known)}")
     degree = math.pi / 180.0 if settings["angles"] == "degrees" else 1.0
     table = Table(path, settings, rows, _METRES[settings["lengths"]] * scale, degree)
@@ -70,19 +70,34 @@ def read_table(path: Path, base: str | None, tip: str | None, scale: float) -> R
 def _toml(path: Path) -> tuple[dict[str, str], tuple[Mapping[str, object], ...]]:
     try:
         data = tomllib.loads(text_of(path), parse_float=Decimal)
-    except tomllib.TOMLDecodeError as problem:
+    except ValueError as problem:  # of the syntax, or of an integer with thousands of digits
         raise UnreadableRobot(f"{path}: broken TOML: {problem}") from None
     rows = data.get("joints", [])
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise UnreadableRobot(f"{path}: its rows must be tables [[joints]]")
-    return {k.lower(): _setting(k, str(v)) for k, v in data.items() if k != "joints"}, tuple(
-        {k.lower(): value for k, value in row.items()} for row in rows
-    )
+    settings = {key: _setting(key, _text(value)) for key, value in _lowered(path, data).items() if key != "joints"}
+    return settings, tuple(_lowered(path, row) for row in rows)
+
+
+def _lowered(path: Path, entries: Mapping[str, object]) -> dict[str, object]:
+    """The entries by their names in small letters."""
+    found = {key.strip().lower(): value for key, value in entries.items()}
+    if len(found) < len(entries):
+        raise UnreadableRobot(f"{path}: two entries differ in capital letters alone: {', '.join(map(shown, entries))}")
+    return found
+
+
+def _text(value: object) -> str:
+    """A value of TOML as text; Python does not write an integer of thousands of digits."""
+    try:
+        return str(value)
+    except ValueError:
+        return "an integer of thousands of digits"
 
 
 def _setting(key: str, value: str) -> str:
     """The value of a setting, whatever its capital letters; a name keeps them."""
-    return value if key.lower() == "name" else value.lower()
+    return value if key == "name" else value.lower()
 
 
 def _csv(path: Path) -> tuple[dict[str, str], tuple[Mapping[str, object], ...]]:
@@ -91,16 +106,24 @@ def _csv(path: Path) -> tuple[dict[str, str], tuple[Mapping[str, object], ...]]:
     for line in lines:
         key, colon, value = line.strip("# ").partition(":")
         if line.startswith("#") and colon:
-            settings[key.strip().lower()] = _setting(key.strip(), value.strip(" ,;\t"))
+            settings[key.strip().lower()] = _setting(key.strip().lower(), value.strip(" ,;\t"))
     table = [line for line in lines if not line.startswith("#")]
     delimiter = max(",;\t", key=table[0].count) if table else ","
-    found = list(csv.reader(table, delimiter=delimiter))
+    try:
+        found = list(csv.reader(table, delimiter=delimiter))
+    except csv.Error as problem:
+        raise UnreadableRobot(f"{path}: broken CSV: {problem}") from None
     if not found:
         return settings, ()
     header = [word.strip().lower() for word in found[0]]
+    twice = [word for k, word in enumerate(header) if word in header[:k]]
+    if twice:
+        raise UnreadableRobot(f"{path}: two columns are called {shown(twice[0])}")
     for row in found[1:]:
         if len(row) != len(header):
-            raise UnreadableRobot(f"{path}: the row {row[0]!r} has {len(row)} cells, and the header has {len(header)}")
+            raise UnreadableRobot(
+                f"{path}: the row {shown(row[0])} has {len(row)} cells, and the header has {len(header)}"
+            )
     rows = [{k: c.strip() for k, c in zip(header, row, strict=True) if c.strip()} for row in found[1:]]
     return settings, tuple(rows)
 
@@ -111,28 +134,30 @@ def _unquoted(line: str) -> str:
 
 
 def _name(table: Table, index: int) -> str:
-    return str(table.rows[index].get("name", f"A{index + 1}"))
+    return _text(table.rows[index].get("name", f"A{index + 1}"))
 
 
 def _kind(table: Table, index: int) -> Kind | None:
     row = table.rows[index]
-    place = f"{table.path}: row {_name(table, index)!r}"
+    place = f"{table.path}: row {shown(_name(table, index))}"
     strange = [key for key in row if key not in _ENTRIES]
     if strange:
-        raise UnreadableRobot(f"{place} has an unknown entry {strange[0]!r}; there are {', '.join(_ENTRIES)}")
-    stated = str(row.get("type", "revolute")).lower()
+        raise UnreadableRobot(f"{place} has an unknown entry {shown(strange[0])}; there are {', '.join(_ENTRIES)}")
+    stated = _text(row.get("type", "revolute")).lower()
     if stated not in _KINDS:
-        raise UnreadableRobot(f"{place} has the unknown type {stated!r}; there are {', '.join(_KINDS)}")
+        raise UnreadableRobot(f"{place} has the unknown type {shown(stated)}; there are {', '.join(_KINDS)}")
     return _KINDS[stated]
 
 
 def _number(table: Table, index: int, entry: str, default: float = 0.0) -> float:
-    stated = str(table.rows[index].get(entry, default))
+    stated, place = _text(table.rows[index].get(entry, default)), f"row {shown(_name(table, index))}, {entry}"
+    read = limit if entry in ("lower", "upper") else number
     in_pi = _IN_PI.fullmatch(stated.replace(" ", "")) if table.degree == 1.0 else None
-    if in_pi is not None:
-        sign, multiple, divisor = in_pi.groups()
-        return float(f"{sign}1") * int(multiple or 1) * math.pi / int(divisor or 1)
-    return number(table.path, stated, f"row {_name(table, index)!r}, {entry}")
+    if in_pi is None:
+        return read(table.path, stated, place)
+    sign, *factors = in_pi.groups()
+    multiple, divisor = (number(table.path, word or "1", place) for word in factors)
+    return float(f"{sign}1") * multiple * math.pi / divisor
 
 
 def _steps(table: Table, index: int, kinds: Mapping[str, Kind | None]) -> tuple[Step, ...]:
@@ -149,27 +174,30 @@ def _steps(table: Table, index: int, kinds: Mapping[str, Kind | None]) -> tuple[
 
 def _rounding(table: Table, index: int, entry: str) -> float:
     """The largest distance of an angle from the exact one; zero in degrees, in which 15 is written exactly."""
-    return rounding(str(table.rows[index].get(entry, 0))) if table.settings["angles"] == "radians" else 0.0
+    return rounding(_text(table.rows[index].get(entry, 0)), True) if table.settings["angles"] == "radians" else 0.0
 
 
 def _drives(table: Table, index: int, kinds: Mapping[str, Kind | None]) -> tuple[tuple[str, float], ...]:
     """The axis of a row, and others that move its joint: `coupling = {A2 = -1}`, in CSV `A2:-1`."""
     name, stated = _name(table, index), table.rows[index].get("coupling", {})
-    place = f"{table.path}: row {name!r}"
+    place = f"{table.path}: row {shown(name)}"
     if isinstance(stated, str):
         pairs: Sequence[tuple[str, str]] = [
             (axis.strip(), by.strip()) for axis, _, by in (word.partition(":") for word in stated.split())
         ]
     elif isinstance(stated, dict):
-        pairs = [(str(axis), str(by)) for axis, by in stated.items()]
+        pairs = [(str(axis), _text(by)) for axis, by in stated.items()]
     else:
-        raise UnreadableRobot(f"{place}: its coupling {stated!r} is not like {{A2 = -1}}")
-    found = [(name, 1.0)]
+        said = _text(stated) if isinstance(stated, list) else repr(stated)
+        raise UnreadableRobot(f"{place}: its coupling {said[:40]} is not like {{A2 = -1}}")
+    found = {name: 1.0}
     for axis, by in pairs:
         if kinds.get(axis) is None or kinds[axis] is not kinds[name]:
-            raise UnreadableRobot(f"{place} is coupled to {axis!r}, which is no joint of its kind in the table")
-        found.append((axis, number(table.path, by, f"row {name!r}, coupling")))
-    return tuple(found)
+            raise UnreadableRobot(f"{place} is coupled to {shown(axis)}, which is no joint of its kind in the table")
+        if axis in found:
+            raise UnreadableRobot(f"{place} is coupled to {shown(axis)} twice: a joint turns with itself once")
+        found[axis] = number(table.path, by, f"row {shown(name)}, coupling")
+    return tuple((axis, by) for axis, by in found.items() if by != 0.0)
 
 
 def _axis(table: Table, index: int) -> Axis:
@@ -179,6 +207,4 @@ def _axis(table: Table, index: int) -> Axis:
     if "lower" not in row and "upper" not in row:
         return Axis(name, kind)
     low, high = (_number(table, index, end) for end in ("lower", "upper"))
-    if low > high:
-        raise UnreadableRobot(f"{table.path}: row {name!r}: its lower limit {low:g} is above its upper limit {high:g}")
-    return Axis(name, kind, (low * unit, high * unit) if low < high else None)
+    return Axis(name, kind, between(table.path, f"row {shown(name)}", low, high, unit))

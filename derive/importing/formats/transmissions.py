@@ -5,17 +5,17 @@ Those of `transmission_interface` are read, as a child of the robot or of its `r
 
 from __future__ import annotations
 
+import math
 from collections.abc import Container, Iterator
-from pathlib import Path
 from xml.etree import ElementTree
 
-from derive.importing.formats.documents import number
+from derive.importing.formats.documents import shown
 
 Element = ElementTree.Element
 _REDUCTIONS = ("mechanicalReduction", "mechanical_reduction")
 
 
-def transmission_notes(path: Path, root: Element, axes: Container[str]) -> Iterator[str]:
+def transmission_notes(root: Element, axes: Container[str]) -> Iterator[str]:
     """The notes on transmissions that move axes: the reductions, and a line for motors that share joints."""
     reductions: list[str] = []
     found = False
@@ -24,7 +24,7 @@ def transmission_notes(path: Path, root: Element, axes: Container[str]) -> Itera
         if not any(name in axes for name in joints):
             continue
         found = True
-        reductions += _reductions(path, element, joints)
+        reductions += _reductions(element, joints)
         if len(joints) > 1:
             yield (
                 f"The {_kind(element)} {element.get('name')!r} couples {' and '.join(joints)}: a motor moves both. "
@@ -42,12 +42,20 @@ def _kind(element: Element) -> str:
     return stated.strip().rpartition("/")[2]
 
 
-def _reductions(path: Path, element: Element, joints: list[str]) -> Iterator[str]:
+def _reductions(element: Element, joints: list[str]) -> Iterator[str]:
     """Joint and reduction, of those that are not 1, wherever the file states them."""
     owners = [element, *element.findall("actuator"), *element.findall("joint")]
     for owner in owners:
         for text in (owner.findtext(tag) for tag in _REDUCTIONS):
-            place = f"the reduction of {owner.get('name')!r}"
-            if text is not None and (value := number(path, text.strip(), place)) != 1.0:
-                name = joints[0] if len(joints) == 1 else owner.get("name")
-                yield f"{name} {value:g}"
+            name = joints[0] if len(joints) == 1 else owner.get("name")
+            if text is not None and (value := _number(text)) != 1.0:
+                yield f"{name} {value:g}" if value else f"{name} {shown(text.strip())} (no number)"
+
+
+def _number(text: str) -> float | None:
+    """The number of a text; None where it is none: kinematics needs no reduction."""
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None

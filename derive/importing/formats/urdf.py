@@ -1,4 +1,4 @@
-"""URDF, with its macros expanded: the chain of joints between two links.
+"""URDF: the chain of joints between two links.
 
 It is read with the standard library: kinematics needs few elements, while existing readers depend on meshes, graphs and
 a viewer, and accept a file with a wrong number or an unknown joint type without a message.
@@ -7,12 +7,13 @@ a viewer, and accept a file with a wrong number or an unknown joint type without
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
 from derive.description.joints import Kind
 from derive.importing.formats.documents import (
+    between,
     limit,
     number,
     numbers,
@@ -22,9 +23,11 @@ from derive.importing.formats.documents import (
     roundings,
     without_namespace,
 )
+from derive.importing.formats.loops import Joints, Loop, loop_notes
+from derive.importing.formats.macros import macro_notes, refuse_macros, refuse_macros_inside
 from derive.importing.formats.mimics import Follower, driven
 from derive.importing.formats.transmissions import transmission_notes
-from derive.importing.formats.trees import Edge, ends_of, path_between
+from derive.importing.formats.trees import Edge, ends_of, listed, path_between, tree_of
 from derive.importing.robot import (
     Axis,
     Moving,
@@ -48,12 +51,15 @@ def read_urdf(path: Path, base: str | None, tip: str | None, scale: float) -> Ro
     root = without_namespace(parsed(path))
     if root.tag != "robot":
         raise UnreadableRobot(f"{path}: its root is <{root.tag}>, not <robot>: this is no URDF")
-    _refuse_macros(path, root)
+    refuse_macros(path, root, (base, tip))
     edges = [_edge(path, joint) for joint in root.findall("joint")]
     links = [required(path, link, "name") for link in root.findall("link")]
+    if not links:
+        raise UnreadableRobot(f"{path}: has no links")
     base, tip = ends_of(path, edges, links, base, tip)
     joints = {required(path, j, "name"): j for j in root.findall("joint")}
-    passed = path_between(path, edges, links, base, tip)
+    above, loops = tree_of(edges)
+    passed = path_between(path, above, base, tip)
     followers = _followers(path, joints, [edge.name for edge, _ in passed], scale)
     steps = tuple(
         step
@@ -65,19 +71,40 @@ def read_urdf(path: Path, base: str | None, tip: str | None, scale: float) -> Ro
     notes = (
         *_left_out(root, [edge.name for edge, _ in passed], used),
         *_ignored(root),
-        *transmission_notes(path, root, used),
+        *transmission_notes(root, used),
+        *_loop_notes(path, root, (*loops, *_loops(root)), above, {*used, *(s.name for s in steps if s.moving)}),
+        *macro_notes(root),
     )
     return Robot(root.get("name") or path.stem, f"{path.name} (URDF)", base, tip, steps, axes, notes)
 
 
-def _refuse_macros(path: Path, root: Element) -> None:
-    for element in root.iter():
-        if "xacro" in element.tag or any("${" in value or "$(" in value for value in element.attrib.values()):
-            raise UnreadableRobot(
-                f"{path}: its macros are not expanded: write `xacro {path.name} > {path.stem}.urdf` and import that"
-            )
-        if element.tag.rpartition("}")[2] == "include":
-            raise UnreadableRobot(f"{path}: includes another file, which URDF does not know: expand it with xacro")
+def _loops(root: Element) -> Iterator[Loop]:
+    """The loops that simulators let a file close: the loop joints of Drake, and joints for Gazebo."""
+    for element in root:
+        if element.tag.rpartition("}")[2] == "loop_joint":
+            ends = [end.get("link", "") if (end := element.find(tag)) is not None else "" for tag in ("link1", "link2")]
+            yield Loop(f"loop joint {element.get('name')!r}", ends[0], ends[1])
+        for joint in element.findall("joint") if element.tag == "gazebo" else ():
+            first, second = ((joint.findtext(tag) or "").strip() for tag in ("parent", "child"))
+            yield Loop(f"joint {joint.get('name')!r} of Gazebo", first, second)
+
+
+def _loop_notes(
+    path: Path, root: Element, loops: Sequence[Loop], above: Mapping[str, Edge], moving: Container[str]
+) -> Iterator[str]:
+    """The notes on loops. moving: the joints that move the chain."""
+    joints = {j.get("name", ""): j for j in root.findall("joint")}
+    links = {link.get("name") for link in root.findall("link")}
+    inside = []
+    for loop in loops:
+        if loop.first != loop.second and {loop.first, loop.second} <= links:
+            passed = [edge.name for edge, _ in path_between(path, above, loop.first, loop.second)]
+            inside.append((loop, [name for name in passed if joints[name].get("type") != "fixed"]))
+    driven = {
+        j.get("name") for tag in ("transmission", "ros2_control") for e in root.iter(tag) for j in e.iter("joint")
+    }
+    followers = [name for name, joint in joints.items() if joint.find("mimic") is not None]
+    yield from loop_notes(path, inside, Joints(moving, followers, driven))
 
 
 def _edge(path: Path, joint: Element) -> Edge:
@@ -92,6 +119,7 @@ def _edge(path: Path, joint: Element) -> Edge:
 
 
 def _step(path: Path, joint: Element, followers: Mapping[str, Follower], scale: float) -> Step:
+    refuse_macros_inside(path, joint)
     name = joint.get("name", "")
     places = _places(path, joint, name, scale)
     kind = _kind(path, joint)
@@ -122,7 +150,7 @@ def _places(path: Path, joint: Element, name: str, scale: float) -> tuple[Place,
         return ()
     x, y, z = numbers(path, origin, "xyz", f"joint {name!r}", (0.0, 0.0, 0.0))
     angles = numbers(path, origin, "rpy", f"joint {name!r}", (0.0, 0.0, 0.0))
-    rounded = roundings(origin, "rpy", 3)
+    rounded = roundings(origin, "rpy", 3, with_coarse=True)
     turns = tuple(Turned(k, angles[k], rounded[k]) for k in (2, 1, 0) if angles[k] != 0.0)
     return (Shifted((x * scale, y * scale, z * scale)), *turns)
 
@@ -175,6 +203,7 @@ def _commanded(path: Path, joints: Mapping[str, Element], name: str) -> Element:
 
 
 def _axis(path: Path, joint: Element, scale: float) -> Axis:
+    refuse_macros_inside(path, joint)
     name, kind = joint.get("name", ""), _kind(path, joint)
     if kind is None:
         raise UnreadableRobot(f"{path}: a joint mimics {name!r}, which is fixed")
@@ -182,16 +211,14 @@ def _axis(path: Path, joint: Element, scale: float) -> Axis:
     if joint.get("type") == "continuous" or limits is None:
         return Axis(name, kind)
     unit = scale if kind is Kind.LINEAR else 1.0
-    low, high = (limit(path, limits.get(end, "0"), f"joint {name!r}, {end} limit") * unit for end in ("lower", "upper"))
-    if low > high:
-        raise UnreadableRobot(f"{path}: joint {name!r}: its lower limit {low:g} is above its upper limit {high:g}")
-    return Axis(name, kind, (low, high) if low < high else None)
+    low, high = (limit(path, limits.get(end, "0"), f"joint {name!r}, {end} limit") for end in ("lower", "upper"))
+    return Axis(name, kind, between(path, f"joint {name!r}", low, high, unit))
 
 
 def _left_out(root: Element, passed: list[str], used: Mapping[str, None]) -> tuple[str, ...]:
     names = {*passed, *used}
     left = [j.get("name", "") for j in root.findall("joint") if j.get("type") != "fixed" and j.get("name") not in names]
-    return (f"Left out, because they are not between base and tip: {', '.join(left)}.",) if left else ()
+    return (f"Left out, because they are not between base and tip: {listed(left)}.",) if left else ()
 
 
 def _ignored(root: Element) -> tuple[str, ...]:

@@ -153,6 +153,35 @@ FAULTS = {
         "ValueError: not enough values to unpack (expected 4, got 3)",
     ),
     "a length divided by zero": (written(chain=CHAIN.replace("Tx(L1)", "Tx(L1 / 0)")), "holds what is no number"),
+    "a field of a joint with a typing error": (
+        written('A2 = rotary("A2", "turn", limit=(-90, 90))'),
+        "unexpected keyword argument 'limit'; did you mean 'limits'?",
+    ),
+    "a field of a length with a typing error": (
+        written('L1 = length("link_1", "link", nominl=1)'),
+        "unexpected keyword argument 'nominl'; did you mean 'nominal'?",
+    ),
+    "a frame in capitals": (
+        written(chain=CHAIN.replace("Rz(A2)", "RZ(A2)")),
+        "name 'RZ' is not defined; did you mean 'Rz'?",
+    ),
+    "a misspelt import": (
+        written("from derive.mechanism import Mechanizm"),
+        "did you mean 'Mechanism'?",
+    ),
+    "limits the wrong way round": (
+        written('A2 = rotary("A2", "turn", limits=(90, -90))'),
+        "joint 'A2': its limits (90, -90) are empty; state the lower end first",
+    ),
+    "a joint as a factor": (
+        written(chain=CHAIN.replace("Rz(A2)", "A2")),
+        "TypeError: A2 is a number, not a frame: as in Rz(A2) or Tz(A2)",
+    ),
+    "a joint as the first factor": (
+        written(chain=CHAIN.replace("Rz(A1)", "A1")),
+        "TypeError: a chain is a product of frames, not a number: as in Rz(A1) * Tx(L1)",
+    ),
+    "a character of zero": (written() + "A9 = 1\0", ":10: SyntaxError: source code string cannot contain null bytes"),
     "six axes at any angles": (
         written(joints=SIX, chain=f"denavit_hartenberg({GENERAL})", task='Task("xyz", Turning.FULL)', branches=""),
         "no subproblem determines a1, a2, a3, a4, a5, a6: 6 unknowns in 3 equations (x, y, z) and the comm",

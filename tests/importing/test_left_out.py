@@ -1,0 +1,140 @@
+"""What kinematics does not need is a line of the report; a loop that binds the arm is a refusal."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from derive.importing.robot import UnreadableRobot
+from tests.importing.kinematics import imported
+from tests.importing.robots import joint, urdf
+
+PLAIN = urdf(
+    "arm",
+    joint("turn", "revolute", "0 0 0.4"),
+    joint("lift", "revolute", "0.1 0 0", axis="0 1 0"),
+    joint("bend", "revolute", "0 0 0.5", axis="0 1 0"),
+    joint("tool", "fixed", "0 0 0.1"),
+)
+XACRO = PLAIN.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+ENDS = ("link0", "link4")
+MACROS: Mapping[str, tuple[str, tuple[str | None, str | None], str]] = {
+    "a property": ('<xacro:property name="mass" value="2"/>', (None, None), "property"),
+    "an argument": ('<xacro:arg name="prefix" default=""/>', (None, None), "arg"),
+    "a macro that nothing calls": (
+        '<xacro:macro name="box" params="m"><inertial><mass value="${m}"/></inertial></xacro:macro>',
+        (None, None),
+        "macro",
+    ),
+    "a call, with both ends named": ('<xacro:gripper parent="link4"/>', ENDS, "gripper"),
+    "an include, with both ends named": ('<xacro:include filename="$(find x)/colours.xacro"/>', ENDS, "include"),
+    "a condition, with both ends named": ('<xacro:if value="$(arg s)"><gazebo/></xacro:if>', ENDS, "if"),
+}
+
+
+@pytest.mark.parametrize("name", MACROS)
+@pytest.mark.parametrize("file", ["arm.urdf", "arm.xacro", "arm.urdf.xacro"])
+def test_a_macro_that_the_chain_does_not_need_is_told(name: str, file: str, tmp_path: Path) -> None:
+    macro, ends, told = MACROS[name]
+    (tmp_path / "plain.urdf").write_text(PLAIN, encoding="utf-8")
+    (tmp_path / file).write_text(XACRO.replace("</robot>", f"{macro}</robot>"), encoding="utf-8")
+    found = imported(tmp_path / file, *ends)
+    assert f"Not read, because nothing between base and tip needs them: macros ({told}" in found.report
+    chain = found.text.split("chain=")[1].split("\n")[0]
+    assert chain == imported(tmp_path / "plain.urdf").text.split("chain=")[1].split("\n")[0]
+
+
+def test_expressions_in_masses_and_meshes_are_not_read(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    shape = '<visual><origin xyz="${x} 0 0"/><geometry><mesh filename="$(find p)/a.stl"/></geometry></visual>'
+    text = XACRO.replace('<link name="link1"/>', f'<link name="link1">{shape}</link>')
+    path.write_text(text.replace('effort="1"', 'effort="${e}"'), encoding="utf-8")
+    assert imported(path).axes == ("A1", "A2", "A3")
+
+
+ACTUATORS = '<actuator><position joint="m1"/><motor joint="m2"/></actuator>'
+LEGS = """<mujoco><worldbody><body name="k1" pos="-0.1 0 0"><joint name="m1"/><body name="r1" pos="0.3 0 0">
+  <joint name="p1"/><site name="end1" pos="0.4 0 0"/>{0}</body></body><body name="k2" pos="0.1 0 0"><joint name="m2"/>
+  <body name="r2" pos="0.3 0 0"><joint name="p2"/><site name="end2" pos="0.4 0 0"/></body></body>
+  <body name="part" pos="1 0 0"><freejoint/></body><body name="goal" mocap="true"/></worldbody>
+  <equality>{1}</equality>{2}</mujoco>"""
+CONNECT = '<connect body1="r1" body2="r2" anchor="0.4 0 0"/>'
+BOUND: Mapping[str, tuple[str, str]] = {
+    "connect": (CONNECT, "a connect of 'r1' and 'r2' closes a loop of the joints"),
+    "connect of sites": ('<connect site1="end1" site2="end2"/>', "a connect of 'end1' and 'end2'"),
+    "weld": ('<weld body1="r1" body2="r2"/>', "a weld of 'r1' and 'r2'"),
+    "weld to the world": ('<weld body1="r1"/>', "a weld of 'r1' and 'world' closes a loop of the joints 'p1', 'm1'"),
+}
+OPEN: Mapping[str, str] = {
+    "switched off": CONNECT.replace("/>", ' active="false"/>'),
+    "what it holds": '<weld body1="r1" body2="part"/>',
+    "where a program leads it": '<weld body1="r1" body2="goal"/>',
+    "a loop of other joints": CONNECT.replace("r1", "k2"),
+}
+
+
+@pytest.mark.parametrize("name", BOUND)
+def test_a_loop_that_binds_the_arm_is_refused(name: str, tmp_path: Path) -> None:
+    closed, sentence = BOUND[name]
+    path = tmp_path / "r.xml"
+    path.write_text(LEGS.format("", closed, ACTUATORS), encoding="utf-8")
+    with pytest.raises(UnreadableRobot) as refusal:
+        imported(path, tip="end1")
+    said = str(refusal.value)
+    assert sentence in said and "describe it with rods" in said
+    assert ("'p1', 'p2' are passive" if "'r2'" in sentence else "passive") in said or "end" in sentence
+
+
+@pytest.mark.parametrize("name", OPEN)
+def test_a_loop_that_does_not_bind_it_is_not(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "r.xml"
+    path.write_text(LEGS.format("", OPEN[name], ACTUATORS), encoding="utf-8")
+    found = imported(path, tip="end1")
+    assert ("closes a loop" in found.report) == name.startswith("a loop")
+
+
+def test_a_loop_whose_joints_follow_each_other_is_that_of_the_arm(tmp_path: Path) -> None:
+    """A parallelogram, with its equality, and the bar that a simulator closes."""
+    path = tmp_path / "r.xml"
+    path.write_text(
+        """<mujoco><worldbody><body name="k"><joint name="m0"/><body name="l" pos="0.3 0 0"><joint name="m1"/>
+        <body name="r" pos="0.4 0 0"><joint name="p"/><site name="end" pos="0.1 0 0"/></body></body></body></worldbody>
+        <equality><joint joint1="p" joint2="m1" polycoef="0 -1 0 0 0"/><connect body1="k" body2="r" anchor="0 0.1 0"/>
+        </equality></mujoco>""",
+        encoding="utf-8",
+    )
+    found = imported(path, tip="end")
+    assert "Not read, because its joints follow each other: a connect of 'k' and 'r' closes a loop" in found.report
+
+
+URDF_LOOPS = {
+    "a joint for Gazebo": '<gazebo><joint name="c" type="revolute"><parent>{0}</parent><child>{1}</child></joint>'
+    "</gazebo>",
+    "a loop joint": '<loop_joint name="c" type="revolute"><link1 link="{0}"/><link2 link="{1}"/></loop_joint>',
+    "a second joint above a link": '<joint name="c" type="revolute"><parent link="{1}"/><child link="{0}"/></joint>',
+}
+FINGER = "".join(
+    f'<link name="{child}"/><joint name="j_{child}" type="revolute"><parent link="{parent}"/><child link="{child}"/>'
+    "</joint>"
+    for parent, child in (("link4", "finger"), ("finger", "nail"))
+)
+
+
+@pytest.mark.parametrize("name", URDF_LOOPS)
+def test_a_loop_of_a_urdf_is_refused_and_told_where_it_is_beside_the_chain(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "r.urdf"
+    path.write_text(PLAIN.replace("</robot>", URDF_LOOPS[name].format("link2", "link0") + "</robot>"), encoding="utf-8")
+    with pytest.raises(UnreadableRobot, match=r"joint 'c'.* closes a loop of the joints '.*: as an open arm"):
+        imported(path, *ENDS)
+    beside = FINGER + URDF_LOOPS[name].format("nail", "link4")
+    path.write_text(PLAIN.replace("</robot>", f"{beside}</robot>"), encoding="utf-8")
+    assert "Not read, because no joint between base and tip is in it: " in imported(path, *ENDS).report
+
+
+def test_a_joint_of_gazebo_to_the_world_closes_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "r.urdf"
+    fixed = '<gazebo><joint name="c" type="fixed"><parent>world</parent><child>link0</child></joint></gazebo>'
+    path.write_text(PLAIN.replace("</robot>", f"{fixed}</robot>"), encoding="utf-8")
+    assert "loop" not in imported(path).report
