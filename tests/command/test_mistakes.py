@@ -85,7 +85,7 @@ def test_one_mistake_stops_no_other_machine(folder: Folder, monkeypatch: pytest.
     folder.write("machines/b.py", RAIL.replace('"Rail"', '"Other"'))
     folder.write("machines/c.py", RAIL)
     said = folder.run("check", "machines")
-    assert said.status == 3 and "1 of 3 machines" in said.out
+    assert said.status == 3 and "1 of 3 derived, 2 refused" in said.out
     assert "a.py:9: NameError: name 'A9' is not defined; define it above this line" in said.err
     assert "b.py: this is a mistake of the compiler" in said.err
     folder.write("machines/b.py", RAIL)
