@@ -101,10 +101,12 @@ def _made(files: Mapping[str, str]) -> ModuleType:
 
 
 def _refuse_another_runtime(found: ModuleType, files: Mapping[str, str]) -> None:
+    """Compare the modules that live modules import; files that only build the package are not installed with it."""
     folder = Path(str(found.__file__)).parents[1]
     for name, text in files.items():
         path = folder / name
-        if not name.endswith(".py") or name == f"{package.PACKAGE}/__init__.py":  # that file lists the mechanisms
+        is_imported = name.startswith(f"{package.PACKAGE}/") and name.endswith(".py")
+        if not is_imported or name == f"{package.PACKAGE}/__init__.py":  # that file lists the mechanisms
             continue
         if not path.is_file() or path.read_text(encoding="utf-8") != text:
             raise GenerationError(

@@ -8,7 +8,6 @@ import re
 import shutil
 from collections.abc import Callable
 from dataclasses import replace
-from io import StringIO
 from pathlib import Path
 
 import pytest
@@ -21,7 +20,6 @@ from derive.command.catalogue import OUTPUT
 from derive.command.line import main
 from derive.description.catalogue import MECHANISMS, load
 from derive.output import differences
-from derive.progress import Progress
 
 ROOT = MECHANISMS.parents[1]
 FILES = ("kin_gantry2.py", "kin_polar.py")
@@ -228,37 +226,3 @@ def test_the_entries_last_used_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         os.utime(tmp_path / key_of(name), (1000 - age, 1000 - age))
     cache.tidy()
     assert [cache.read(key_of(name)) for name in ("new", "old", "oldest")] == ["new", "old", None]
-
-
-class Terminal(StringIO):
-    """A stream that says it is a terminal."""
-
-    def isatty(self) -> bool:
-        return True
-
-
-def test_a_terminal_shows_a_bar_and_the_time_left() -> None:
-    """On a terminal the progress is a bar with the time left."""
-    seconds = iter((0.0, 5.0, 10.0, 15.0))
-    stream = Terminal()
-    progress = Progress(4, stream, lambda: next(seconds))
-    progress.step("first", took_time=True)
-    progress.step("second", took_time=True)
-    progress.end()
-    bars = stream.getvalue().split("\r\033[K")
-    assert bars == [
-        "[........................] 0 of 4",
-        "first\n[######..................] 1 of 4, about 15 s left",
-        "second\n[############............] 2 of 4, about 10 s left",
-        "",
-    ]
-
-
-def test_a_file_gets_lines_alone() -> None:
-    """In a file the progress consists of plain lines."""
-    stream = StringIO()
-    progress = Progress(2, stream)
-    progress.step("first", took_time=False)
-    progress.step("second", took_time=True)
-    progress.end()
-    assert stream.getvalue() == "first\nsecond\n"

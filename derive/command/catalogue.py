@@ -13,6 +13,7 @@ from pathlib import Path
 
 from derive.cache import Cache, foundation
 from derive.command.own import complain, refused
+from derive.command.stages import Stages
 from derive.description.catalogue import MECHANISMS, Entry, catalogue, catalogue_and_faults
 from derive.faults import Failure, GenerationError
 from derive.output import differences, replace_folder, replace_parts
@@ -28,7 +29,8 @@ def generate(options: argparse.Namespace) -> int:
     if options.output == OUTPUT and (options.only or options.language):
         what = "--only" if options.only else "--language"
         raise GenerationError(f"{what} needs --output: the output folder of the project holds every mechanism")
-    entries, unread = catalogue_and_faults(options.mechanisms)
+    with Stages(sys.stdout):
+        entries, unread = catalogue_and_faults(options.mechanisms)
     for fault in unread:
         complain(fault)
     if unread and not (options.keep_going and entries):
@@ -58,7 +60,9 @@ def compare(options: argparse.Namespace) -> int:
 
 def machine_files(options: argparse.Namespace) -> dict[str, bytes]:
     """The files of all mechanisms in the languages that are asked for. Raises `GenerationError` at the first fault."""
-    files, faults = _files(options, catalogue(options.mechanisms))
+    with Stages(sys.stdout):
+        entries = catalogue(options.mechanisms)
+    files, faults = _files(options, entries)
     if faults:
         raise faults[0].error
     return files

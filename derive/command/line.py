@@ -167,8 +167,9 @@ def _catalogue_commands(commands: argparse._SubParsersAction[argparse.ArgumentPa
 
 
 def _catalogue_options(parser: argparse.ArgumentParser) -> None:
+    names = ("--out", "--output")
     parser.add_argument(
-        "--out", "--output", dest="output", type=Path, default=catalogue.OUTPUT, metavar="DIR", help="the output folder"
+        *names, dest="output", type=Path, default=catalogue.OUTPUT, metavar="DIR", help="the output folder"
     )
     parser.add_argument("--mechanisms", type=Path, default=MECHANISMS, metavar="DIR", help="the folder of descriptions")
     parser.add_argument("--profile", metavar="NAME", help=_PROFILE)

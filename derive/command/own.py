@@ -119,14 +119,17 @@ def each(
     tried = 0
     for path in files:
         tried += 1
-        stages = Stages(sys.stdout)
-        try:
-            stages.line(str(path))
-            work(path, stages)
-        except Exception as problem:  # one bad file never stops another, whatever is wrong with it
-            is_told = isinstance(problem, DescriptionError | GenerationError | ForeignFolder | OSError)
-            stages.line("  refused")
-            statuses.append(refused(problem if is_told else error(path, problem), with_trace))
+        found: Exception | None = None
+        with Stages(sys.stdout) as stages:
+            try:
+                stages.line(str(path))
+                work(path, stages)
+            except Exception as problem:  # one bad file never stops another, whatever is wrong with it
+                found = problem
+                stages.line("  refused")
+        if found is not None:
+            is_told = isinstance(found, DescriptionError | GenerationError | ForeignFolder | OSError)
+            statuses.append(refused(found if is_told else error(path, found), with_trace))
             if not keep_going:
                 break
     if len(files) > 1:

@@ -38,7 +38,8 @@ def report(options: argparse.Namespace) -> int:
     """
     from derive.emit.page.page import index_of
 
-    entries = chosen(catalogue(options.mechanisms), options.only)
+    with Stages(sys.stdout):
+        entries = chosen(catalogue(options.mechanisms), options.only)
     pages: list[Page] = []
     progress, status = Progress(len(entries), sys.stdout), 0
     for made in _pages(entries, _is_beside_viewer(options.out)):

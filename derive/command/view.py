@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
-import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from derive.command import own
@@ -69,16 +68,16 @@ def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[
         reports={mechanism.name: _report(mechanism)},
         models=models,
     )
-    _write(options.out / f"{package}.html", content)
+    _write(options.out / f"{package}.html", content, stages.line)
 
 
-def _write(path: Path, content: Content) -> None:
+def _write(path: Path, content: Content, say: Callable[[str], None] = print) -> None:
     try:
         text = page(content, PACKAGES)
     except (MissingTool, BrokenPage) as problem:
         raise GenerationError(str(problem)) from None
     write_file(path, text.encode())
-    print(f"{path}: {len(text.encode()) / 1e6:.2f} MB, opens in a browser", file=sys.stdout)
+    say(f"{path}: {len(text.encode()) / 1e6:.2f} MB, opens in a browser")
 
 
 def _keywords(built: Built) -> dict[str, str]:

@@ -7,7 +7,7 @@ layers, each of which may import those before it: first `c`, `javascript`, `plco
 Text that is the same for every mechanism stands in `templates/`, in a folder for each language; `templates/native` has
 the extension module that joins the C of machines with Python.
 
-braces: the layout of languages with braces
+braces: indents, blocks with braces, and long statements broken into lines
 c/: C99
 conditions: the conditions of a refusal, one by one
 every_branch: all branches of the inverse as one straight line, for Python and C

@@ -17,6 +17,9 @@ from derive.geometry.frames import Factor
 from derive.ir.program import Let
 from derive.ir.symbols import COORDINATE_NAMES, real
 
+_LONG = 24
+"""The most letters of the names of joints in the name of a frame."""
+
 
 @dataclass(frozen=True)
 class Side:
@@ -40,10 +43,15 @@ class Side:
 
     @property
     def suffix(self) -> str:
-        """The end of the names of entries: `_from_a12`, `_from_a12_turned`, `_before_flange`."""
+        """The end of the names of entries: `_from_a12`, `_from_a12_turned`, `_before_flange`; of many joints with long
+        names, `_from_base_to_a4_elbow`, `_before_a5_elbow_to_flange`.
+        """
         turned = ("", "_turned", *(f"_turned_{n}" for n in range(2, self.fixed + 1)))
         if self.joints:
-            return f"_{self.word}_{name_of(tuple((real(name), 1) for name in self.joints))}{turned[self.fixed]}"
+            joints = name_of(tuple((real(name), 1) for name in self.joints))
+            if len(joints) > _LONG:
+                joints = f"base_to_{self.joints[-1]}" if self.word == "from" else f"{self.joints[0]}_to_flange"
+            return f"_{self.word}_{joints}{turned[self.fixed]}"
         return f"_{self.word}_{self.end}{turned[self.fixed - 1]}" if self.fixed else ""
 
 

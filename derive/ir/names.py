@@ -9,6 +9,9 @@ import sympy as sp
 from derive.ir.program import Program
 from derive.ir.symbols import called, real
 
+_LONGEST = 80
+"""The most letters of a new name, without its number."""
+
 
 class Names:
     """The names in use. A new name is in use as soon as it has been made."""
@@ -23,9 +26,13 @@ class Names:
         return cls(s.name for s in (*program.inputs, *program.bound()))
 
     def fresh(self, proposal: str, like: sp.Symbol | None = None) -> sp.Symbol:
-        """The proposed name, followed by a number where the proposal is in use. like: a symbol whose type the new name
-        gets; without it the new name is a real number.
+        """The proposed name, shortened if it is too long, and followed by a number if it is in use.
+
+        like: a symbol whose type the new name gets; without it the new name is a real number.
         """
+        if len(proposal) > _LONGEST:  # its begin says what the value is, its end where it belongs
+            begin, end = proposal[: _LONGEST // 2], proposal[-_LONGEST // 2 :]
+            proposal = f"{begin.rpartition('_')[0] or begin}_{end.partition('_')[2] or end}"
         number, name = 1, proposal
         while name.replace("_", "") in self._joined:
             number += 1

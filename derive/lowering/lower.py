@@ -10,6 +10,7 @@ from derive.ir.passes import calling
 from derive.ir.program import Let, Program
 from derive.ir.symbols import Sign
 from derive.lowering.coefficients import collected, distributed
+from derive.lowering.cutting import cut
 from derive.lowering.draft import Draft, Effect, Reader, changed, values_of
 from derive.lowering.factoring import Dividing, Factoring
 from derive.lowering.hoisting import Constant, Gathering, hoisted
@@ -56,7 +57,8 @@ def lowered(
         draft.items[:] = [
             replace(i, statement=calling(i.statement, done)) if isinstance(i, Effect) else i for i in draft.items
         ]
-        done[draft.program.name] = written(draft, names, taken, modulo_turns=modulo_turns)
+        short = cut(draft, graph, names)
+        done[draft.program.name] = written(short, names, taken, modulo_turns=modulo_turns)
     return tuple(done.values()), lets
 
 

@@ -20,6 +20,7 @@ from derive.ir.passes import with_inputs
 from derive.ir.primitives import Atan2, Select
 from derive.ir.program import Let, Output, Program, Solve, Statement, binds, rewritten
 from derive.ir.symbols import count, is_count
+from derive.lowering.cutting import LONGEST, SHORT, letters
 from derive.lowering.draft import Draft, Effect, Item, Named, read_values
 from derive.lowering.wording import said
 
@@ -86,6 +87,21 @@ class _Writer:
         for node in sorted((n for n, times in readers.items() if times > 1), key=lambda n: n.place):
             if node not in self.names and not is_condition(node) and not _is_slight(node, self.names):
                 self.names[node] = self._new_name(node, first[node])
+        self._name_what_is_long(first)
+
+    def _name_what_is_long(self, first: Mapping[Node, Node | None]) -> None:
+        """Name the longest parts of each value that is too long to be written out."""
+        lengths: dict[Node, int] = {}
+        for node in sorted(first, key=lambda n: n.place):
+            parts = {n: letters(n, self.names) or letters(n, self.constants) or lengths[n] for n in node.read}
+            whole = sum(parts[n] for n in node.read)
+            for part in sorted(parts, key=lambda n: (-parts[n], n.place)):
+                if whole <= LONGEST or parts[part] <= SHORT:
+                    break
+                if part in lengths and part not in self.names and not is_condition(part):
+                    self.names[part] = self._new_name(part, first[part])
+                    whole -= node.read.count(part) * (parts[part] - letters(part, self.names))
+            lengths[node] = whole
 
     def _new_name(self, node: Node, reader: Node | None) -> Named:
         """A new name for a value, or for its negative where that has fewer minus signs."""

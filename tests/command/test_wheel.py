@@ -26,7 +26,7 @@ def packages(include: list[str]) -> list[str]:
 
 @pytest.fixture
 def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with what the wheel holds."""
+    """A folder with what the wheels of the compiler and of the catalogue hold."""
     given: dict[str, Any] = {}
     stub = ModuleType("setuptools")
     vars(stub).update(setup=given.update, find_packages=packages)
@@ -44,7 +44,22 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         for path in (*source.glob("*.py"), *(p for p in data if p.is_file())):
             (target / path.relative_to(source)).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, target / path.relative_to(source))
+    catalogue = ROOT / "generated/python"
+    stated = tomllib.loads((catalogue / "pyproject.toml").read_text())["tool"]["setuptools"]
+    for package in stated["packages"]:
+        folder = Path(*package.split("."))
+        (site / folder).mkdir()
+        for pattern in ("*.py", *stated["package-data"].get(package, ())):
+            for path in (catalogue / folder).glob(pattern):
+                shutil.copy(path, site / folder / path.name)
     return site
+
+
+def run(installed: Path, folder: Path, program: str) -> None:
+    """Run a program in a folder, with what is installed in front of all else."""
+    command = [sys.executable, "-c", f"import sys; sys.path[0] = {str(installed)!r}\n{program}"]
+    done = subprocess.run(command, cwd=folder, env={}, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 def test_what_is_installed_derives_a_machine(installed: Path, tmp_path: Path) -> None:
@@ -53,14 +68,7 @@ def test_what_is_installed_derives_a_machine(installed: Path, tmp_path: Path) ->
     copied = {str(p.relative_to(installed / "derive/templates")) for p in (installed / "derive/templates").rglob("*")}
     assert templates <= copied
     (tmp_path / "rail.py").write_text(RAIL)
-    done = subprocess.run(
-        [sys.executable, "-c", f"import sys; sys.path[0] = {str(installed)!r}\n{RUN}"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
+    run(installed, tmp_path, RUN)
     assert (tmp_path / "build/st/own/Rail.st").is_file() and (tmp_path / "build/python/rail/_core.py").is_file()
 
 
@@ -75,6 +83,21 @@ assert foundation(None) and OUTPUT == Path("generated"), OUTPUT
 strange = [m.__file__ for n, m in sys.modules.items() if n.split(".")[0] == "derive" and sys.path[0] not in m.__file__]
 assert not strange, strange
 """
+
+
+NOTEBOOK = """
+import softkin
+from derive import compile_mechanism
+Rail = compile_mechanism("rail.py")
+assert issubclass(Rail, softkin.Mechanism) and softkin.__file__.startswith(sys.path[0]) and softkin.catalogue()
+assert Rail().forward((1.0, 2.0))[0].position == (1.0, 2.0, 0.0)
+"""
+
+
+def test_a_notebook_beside_both_wheels(installed: Path, tmp_path: Path) -> None:
+    """No wheel has the files that only build it; a live class needs the modules of the runtime alone."""
+    (tmp_path / "rail.py").write_text(RAIL)
+    run(installed, tmp_path, NOTEBOOK)
 
 
 def test_the_command_is_that_of_the_module() -> None:

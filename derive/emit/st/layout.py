@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from textwrap import wrap
+
+from derive.emit.braces import broken, indented
 
 WIDTH = 110
 _INDENT = "  "
@@ -19,7 +21,6 @@ _LONG_CONDITION = 45
 _LEAST_COMMENT = 30
 """The fewest columns of a comment beside a declaration."""
 _LONGEST = 255
-_BREAKS = (" + ", " - ", " AND ", " OR ")
 
 
 def quoted(text: str) -> str:
@@ -32,23 +33,9 @@ def harmless(comment: str) -> str:
     return comment.replace("(*", "( *").replace("*)", "* )")
 
 
-def indented(lines: Sequence[str]) -> list[str]:
-    """The lines, each with one more indent."""
-    return [_INDENT + line if line else line for line in lines]
-
-
 def wrapped(statement: str, width: int = WIDTH - INSIDE) -> list[str]:
-    """The lines of a statement, broken before an operator or behind a comma, first outside of all parentheses."""
-    lines: list[str] = []
-    margin = ""
-    while len(margin) + len(statement) > width:
-        place = _place(statement, width - len(margin))
-        if place is None:
-            break
-        lines.append(margin + statement[:place].rstrip())
-        statement = statement[place:].lstrip()
-        margin = 2 * _INDENT
-    return [*lines, margin + statement]
+    """The lines of a statement, broken where it is too wide."""
+    return list(broken(statement, width))
 
 
 def packed(pieces: Sequence[str], width: int = WIDTH - 10) -> list[str]:
@@ -141,28 +128,3 @@ def case(label: int, target: str, text: str) -> list[str]:
     if len(f"{target} := {value}") <= WIDTH - 2 * INSIDE:
         return [head, f"{_INDENT}{target} := {value}"]
     return [head, f"{_INDENT}{target} :=", f"{2 * _INDENT}{value}"]
-
-
-def _place(text: str, width: int) -> int | None:
-    """The best place to break within a width: the least nested one, among equals the last; beyond if none fits."""
-    places = list(_places(text))
-    fitting = [(depth, -at) for at, depth in places if width // 4 < at <= width]
-    if fitting:
-        return -min(fitting)[1]
-    return next((at for at, _ in places if at > width // 4), None)
-
-
-def _places(text: str) -> Iterator[tuple[int, float]]:
-    """The places where a line may end, each with its depth: a product is half a level deeper than a sum."""
-    depth = 0
-    for at, character in enumerate(text):
-        if character in "([":
-            depth += 1
-        elif character in ")]":
-            depth -= 1
-        elif text.startswith(_BREAKS, at):
-            yield at + 1, depth
-        elif character in "*/":
-            yield at, depth + 0.5
-        elif text.startswith(", ", at):
-            yield at + 2, depth

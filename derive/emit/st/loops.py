@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import sympy as sp
 
+from derive.emit.braces import indented
 from derive.emit.st.expression import StructuredText
-from derive.emit.st.layout import conjunction, indented, wrapped
+from derive.emit.st.layout import conjunction, wrapped
 from derive.ir.program import Iterate, Solve, Statement
 
 _MATRIX, _RIGHT, _PASS, _CONVERGED = "coefficients", "unknowns", "iteration", "converged"

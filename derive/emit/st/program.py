@@ -8,9 +8,10 @@ from itertools import groupby
 
 import sympy as sp
 
+from derive.emit.braces import indented
 from derive.emit.conditions import is_size_test
 from derive.emit.st.expression import StructuredText, limits_of
-from derive.emit.st.layout import INSIDE, WIDTH, commented, indented, wrapped
+from derive.emit.st.layout import INSIDE, WIDTH, commented, wrapped
 from derive.emit.st.loops import LOCALS, declarations, kept, loop_lines, solve_lines
 from derive.emit.st.names import respelled, spellings, type_name
 from derive.emit.st.refusal import Refusal

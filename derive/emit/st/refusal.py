@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
+from derive.emit.braces import indented
 from derive.emit.st.contract import Signature
 from derive.emit.st.expression import StructuredText
-from derive.emit.st.layout import INSIDE, WIDTH, conjunction, indented, wrapped
+from derive.emit.st.layout import INSIDE, WIDTH, conjunction, wrapped
 from derive.ir.program import Iterate, Require, Status
 from derive.ir.reason import OtherTurn
 from derive.report.reasons import Check, Reasons

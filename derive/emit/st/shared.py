@@ -11,9 +11,10 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import sympy as sp
 
+from derive.emit.braces import indented
 from derive.emit.st.contract import Contract, Parameter, Signature
 from derive.emit.st.expression import StructuredText
-from derive.emit.st.layout import indented, packed
+from derive.emit.st.layout import packed
 from derive.emit.st.names import capitalized, parameter_name, type_name
 from derive.emit.st.refusal import Refusal
 from derive.ir.program import Call, Program, Status

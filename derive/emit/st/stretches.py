@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
+from derive.emit.braces import indented
 from derive.emit.st.expression import StructuredText
-from derive.emit.st.layout import INSIDE, WIDTH, indented
+from derive.emit.st.layout import INSIDE, WIDTH
 from derive.emit.st.refusal import Refusal
 from derive.ir.program import Program, Require
 from derive.ir.symbols import branch_with
