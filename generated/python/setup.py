@@ -17,7 +17,15 @@ FOLDER = Path(__file__).parent
 OPTIONS = (
     []
     if sys.platform == "win32"
-    else ["-O3", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-fvisibility=hidden"]
+    else [
+        "-O3",
+        "-g0",
+        "-fno-fast-math",
+        "-ffp-contract=off",
+        "-fno-math-errno",
+        "-fno-trapping-math",
+        "-fvisibility=hidden",
+    ]
 )
 
 

@@ -13,8 +13,8 @@
  * is SOFTKIN_OK.
  *
  * Lengths and linear axes are in the user's unit of length (u), rotary axes in degrees, the Jacobian per
- * radian. Do not compile with -ffast-math, which removes tests for NaN. With -ffp-contract=off all processors
- * agree to the last digits.
+ * radian. It does not compile with -ffast-math, /fp:fast or another option that removes tests for NaN. With
+ * -ffp-contract=off all processors agree to the last digits.
  *
  * A call needs little stack (about 5 kB), except for machines whose inverse is a root scan: these need
  * about 36 kB.
@@ -22,6 +22,10 @@
 
 #ifndef SOFTKIN_H
 #define SOFTKIN_H
+
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
+#error "compile without -ffast-math, -Ofast, -ffinite-math-only, /fp:fast: they remove the tests for NaN"
+#endif
 
 #include <math.h>
 #include <stdbool.h>

@@ -45,10 +45,11 @@ A6; without the offset it is always 1.
 
 The wrist byte is the sign of cos A5 for a spherical wrist, and the sign of sin A4 with a lateral offset.
 
-Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 8, each of which the inverse finds, too.
+    The equations were not checked in a finite field: its roots are searched along a joint.
     A root scan is no proof: of 406 solutions, most of them close to poses where branches meet, it missed 0.
 """
 

@@ -29,10 +29,11 @@ counted together):
     inverse: 82 additions, 77 multiplications, 15 divisions, 6 square roots, 3 sines
     inverse, all 8 branches: 229 additions, 207 multiplications, 27 divisions, 9 square roots, 6 sines
 
-Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 8, each of which the inverse finds, too.
+    The equations hold exactly (checked in a finite field at 3 random machines and poses).
 """
 
 from __future__ import annotations

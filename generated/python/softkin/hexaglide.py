@@ -50,10 +50,11 @@ hold the platform.
 The inverse tests the cones of the joints, max_angle_base_joint and max_angle_platform_joint. A cone is about
 the rod at the home pose. It does not test whether rods touch each other: exclude that by the limits.
 
-Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-11,
     solutions found by a search from many starts: 1, each of which the inverse finds, too.
+    The equations of the inverse hold exactly (checked in a finite field at 3 random machines and poses); forward kinematics iterates.
 """
 
 from __future__ import annotations

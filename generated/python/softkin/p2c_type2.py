@@ -25,10 +25,11 @@ counted together):
     inverse: 41 additions, 36 multiplications, 10 divisions, 4 square roots, 2 sines
     inverse, all 4 branches: 91 additions, 75 multiplications, 18 divisions, 6 square roots, 4 sines
 
-Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 3, each of which the inverse finds, too.
+    The equations hold exactly (checked in a finite field at 3 random machines and poses).
 """
 
 from __future__ import annotations

@@ -46,10 +46,11 @@ The frame of the platform is the tool frame: give its joints in it. Motors are g
 Initialize refuses a home pose that the legs do not reach, and one that is singular: there the rods do not
 hold the platform.
 
-Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-11,
     solutions found by a search from many starts: 6, each of which the inverse finds, too.
+    The equations of the inverse hold exactly (checked in a finite field at 3 random machines and poses); forward kinematics iterates.
 """
 
 from __future__ import annotations

@@ -32,10 +32,11 @@ The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
 With a third link, the elbow of the offset interface is that of the line from axis A3 to the point, also where
 the offset is zero.
 
-Verified at 144 poses, before this file was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 2, each of which the inverse finds, too.
+    The equations hold exactly (checked in a finite field at 3 random machines and poses).
 """
 
 from __future__ import annotations

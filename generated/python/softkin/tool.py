@@ -19,7 +19,7 @@ counted together):
 
 A tool that is also turned against the flange is set by SMC_GroupSetTool.
 
-Verified at 6 poses, before this file was written, by a witness that knows the closure equations alone:
+Verified at 6 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12.
 """
 

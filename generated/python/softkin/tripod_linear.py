@@ -26,10 +26,11 @@ counted together):
     inverse: 55 additions, 53 multiplications, 3 divisions, 5 square roots, 2 sines
     inverse, all 8 branches: 232 additions, 186 multiplications, 24 divisions, 22 square roots, 16 sines
 
-Verified at 120 poses, before this file was written, by a witness that knows the closure equations alone:
+Verified at 120 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 8, each of which the inverse finds, too.
+    The equations hold exactly (checked in a finite field at 3 random machines and poses).
 """
 
 from __future__ import annotations

@@ -29,10 +29,11 @@ counted together):
     inverse: 84 additions, 75 multiplications, 18 divisions, 8 square roots, 5 sines
     inverse, all 8 branches: 279 additions, 232 multiplications, 51 divisions, 25 square roots, 22 sines
 
-Verified at 120 poses, before this file was written, by a witness that knows the closure equations alone:
+Verified at 120 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 8, each of which the inverse finds, too.
+    The equations hold exactly (checked in a finite field at 3 random machines and poses).
 """
 
 from __future__ import annotations
