@@ -13,7 +13,8 @@ Names that programs share:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import Enum
 
 from derive.description.mechanism import Branch, Joint, Limited, Mechanism, Parameter
@@ -146,6 +147,8 @@ class Kinematics:
     """The cases of the self-test on the controller; None until they are made."""
     undrawn: str = ""
     """The reason why there is no drawing; empty where there is one."""
+    further: Mapping[str, int] = field(default_factory=dict)
+    """The inputs that got another name inside because the derivation uses theirs: see `with_inner_names`."""
 
     @property
     def shared(self) -> tuple[Program, ...]:

@@ -17,7 +17,7 @@ from derive.ir.constants import LARGEST, SINGULAR
 from derive.ir.interpret import Array
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.parameters import has_length
+from derive.kinematics.parameters import has_length, unlimited_values
 from derive.kinematics.reference_cases import Bytes, Called, Case, Reals, SelfTest
 from derive.kinematics.sampling import sample_axes
 from derive.report.effort import with_operations
@@ -64,8 +64,8 @@ def self_test(kinematics: Kinematics) -> SelfTest:
 
 
 def _nominal(kinematics: Kinematics) -> Machine:
-    """The nominal machine, with an offset on every axis where it may have one."""
-    given = {p.name: p.nominal for p in kinematics.parameters}
+    """The nominal machine without limits, with an offset on every axis where it may have one."""
+    given = unlimited_values(kinematics.mechanism)
     offsets = {j.offset.name: 10.5 * (i + 1) for i, j in enumerate(kinematics.mechanism.joints)}
     shifted = machine_with(kinematics, given | offsets)
     return shifted if shifted.status is Status.OK else machine_with(kinematics, given)
