@@ -55,7 +55,7 @@ class Parameter(Quantity):
     """The interval is ]low .. high] instead of [low .. high]."""
     default: float | None
     nominal: float
-    """A value for drawings and tests."""
+    """The value in the machine that is drawn, shown and tested: the default if the description states one."""
     fixed: sp.Expr | None = None
     """The value of a number that stands in a chain. It has a name, but is no input of the machine."""
     given: str = ""
@@ -77,6 +77,11 @@ def _value_of(name: str) -> sp.Symbol:
     return real(_symbol_name(name))
 
 
+def _shown(nominal: float, default: float | None) -> float:
+    """The value that is shown: a machine for which the description states a default has that value."""
+    return nominal if default is None else default
+
+
 def _symbol_name(name: str) -> str:
     """The name of the symbol: it differs from the coordinates of the pose, even where the parameter's name does not."""
     return f"given {name}" if name in _OF_EQUATIONS else name
@@ -85,7 +90,8 @@ def _symbol_name(name: str) -> str:
 def length(name: str, meaning: str, *, nominal: float, high: float = 1e9, default: float | None = None) -> Parameter:
     """A length greater than zero. It must be given, unless the description is of one machine and states a default."""
     symbol = sp.Symbol(_symbol_name(name), positive=True)
-    return Parameter(symbol, name, Role.LENGTH, meaning, "u", 0.0, high, True, default, nominal)
+    shown = _shown(nominal, default)
+    return Parameter(symbol, name, Role.LENGTH, meaning, "u", 0.0, high, True, default, shown)
 
 
 def optional_length(name: str, meaning: str, *, nominal: float, high: float = 1e9) -> Parameter:
@@ -125,7 +131,8 @@ def angle(
     name: str, meaning: str, *, nominal: float, low: float = -360.0, high: float = 360.0, default: float | None = None
 ) -> Parameter:
     """An angle of the machine, in degrees; `radians(p)` inside expressions."""
-    return Parameter(_value_of(name), name, Role.ANGLE, meaning, "deg", low, high, False, default, nominal)
+    shown = _shown(nominal, default)
+    return Parameter(_value_of(name), name, Role.ANGLE, meaning, "deg", low, high, False, default, shown)
 
 
 def coordinate(name: str, meaning: str, *, nominal: float) -> Parameter:
@@ -133,9 +140,10 @@ def coordinate(name: str, meaning: str, *, nominal: float) -> Parameter:
     return Parameter(_value_of(name), name, Role.DISTANCE, meaning, "u", -1e9, 1e9, False, None, nominal)
 
 
-def distance(name: str, meaning: str, *, nominal: float, low: float = -1e9, default: float = 0.0) -> Parameter:
+def distance(name: str, meaning: str, *, nominal: float, low: float = -1e9, default: float | None = None) -> Parameter:
     """A length with a sign; when not given it is zero, or the default that the description of one machine states."""
-    return Parameter(_value_of(name), name, Role.DISTANCE, meaning, "u", low, 1e9, False, default, nominal)
+    given, shown = default or 0.0, _shown(nominal, default)
+    return Parameter(_value_of(name), name, Role.DISTANCE, meaning, "u", low, 1e9, False, given, shown)
 
 
 def radians(parameter: Parameter) -> sp.Expr:

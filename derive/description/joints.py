@@ -65,6 +65,12 @@ class Joint(Quantity):
         return self.name.lower()
 
     @property
+    def shown(self) -> float:
+        """The axis value at which the machine is shown: the nominal one, or the limit next to it if that is beyond."""
+        lower, upper = self.limits or (self.nominal, self.nominal)
+        return float(min(max(self.nominal, lower), upper))
+
+    @property
     def motor(self) -> sp.Symbol:
         """The motor value: axis value less offset. Without gear coupling it is the joint value."""
         return real(f"motor_{self.key}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,9 +13,10 @@ from derive.drawing.scene import Frame, frame_of
 from derive.ir.interpret import evaluate
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.parameters import shown_values
 from derive.kinematics.reference_cases import Bytes, Reals
 from derive.kinematics.sampling import sample_axes
-from derive.report.reference_calls import FRAME, Machine, forward, machine_with, margins
+from derive.report.reference_calls import FRAME, Machine, are_inside, forward, machine_with, margins
 
 _SAMPLES, _SEED = 3000, 3
 _DECIMALS = 3
@@ -41,8 +43,8 @@ class Pose:
 
 
 def nominal_machine(kinematics: Kinematics, **changed: float) -> Machine:
-    """The machine with nominal dimensions and no offsets."""
-    return machine_with(kinematics, {p.name: p.nominal for p in kinematics.parameters} | changed)
+    """The machine with nominal dimensions, no offsets, and the limits of the description."""
+    return machine_with(kinematics, shown_values(kinematics.mechanism) | changed)
 
 
 def pose_at(machine: Machine, axes: Reals) -> Pose | None:
@@ -52,18 +54,37 @@ def pose_at(machine: Machine, axes: Reals) -> Pose | None:
 
 
 def drawn_pose(machine: Machine) -> Pose:
-    """The pose that is drawn. Raises `DescriptionError` where the nominal joint values of a closed loop fit no pose."""
+    """The pose that is drawn: the first of its candidates inside the limits; if there is none, the first of them.
+
+    Raises `DescriptionError` where the nominal joint values of a closed loop fit no pose.
+    """
+    beyond: list[Pose] = []
+    for found in filter(None, _candidates(machine)):
+        if is_inside(machine, found):
+            return found
+        beyond.append(found)
+    if not beyond:
+        raise DescriptionError("no pose can be drawn: the nominal values of its joints fit no pose of the mechanism")
+    return beyond[0]
+
+
+def is_inside(machine: Machine, pose: Pose) -> bool:
+    """Whether no axis of a pose is beyond the limits of the machine."""
+    axes = zip(machine.kinematics.mechanism.joints, pose.axes, strict=True)
+    return bool(are_inside(machine, {joint.axis.name: np.asarray(value) for joint, value in axes}))
+
+
+def _candidates(machine: Machine) -> Iterator[Pose | None]:
+    """The poses in which the machine may be drawn, the best first; None for axis values at which it has no pose."""
     mechanism = machine.kinematics.mechanism
     if mechanism.home:
-        found = pose_at(machine, machine.home)
-    else:
-        found = pose_at(machine, (0.0,) * len(mechanism.joints))
-        if found is None or (mechanism.chain is None and not _is_usual(machine, found)):
-            found = pose_at(machine, tuple(j.nominal for j in mechanism.joints))
-            found = _most_regular(machine) if found is None else found
-    if found is None:
-        raise DescriptionError("no pose can be drawn: the nominal values of its joints fit no pose of the mechanism")
-    return found
+        yield pose_at(machine, machine.home)
+        return
+    zero = pose_at(machine, (0.0,) * len(mechanism.joints))
+    if zero is not None and (mechanism.chain is not None or _is_usual(machine, zero)):
+        yield zero
+    yield pose_at(machine, tuple(j.shown for j in mechanism.joints))
+    yield _most_regular(machine)
 
 
 def _most_regular(machine: Machine) -> Pose | None:

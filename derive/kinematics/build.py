@@ -71,7 +71,7 @@ def build(mechanism: Mechanism) -> Kinematics:
     told = almost_right_angles(mechanism)
     try:
         noted = replace(mechanism, notes=(*mechanism.notes, f"{told}.")) if told else mechanism
-        return with_free_names(noted, lambda further: _built(prepared(noted, further)))
+        return with_free_names(noted, lambda further: replace(_built(prepared(noted, further)), further=dict(further)))
     except (Unsolved, DescriptionError) as problem:
         if told:
             raise type(problem)(f"{problem}; {told}") from None

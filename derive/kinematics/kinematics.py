@@ -13,7 +13,8 @@ Names that programs share:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import Enum
 
 from derive.description.mechanism import Branch, Joint, Limited, Mechanism, Parameter
@@ -167,6 +168,8 @@ class Kinematics:
     """The cases of the self-test on the controller; None until they are made."""
     undrawn: str = ""
     """The reason why there is no drawing; empty where there is one."""
+    further: Mapping[str, int] = field(default_factory=dict)
+    """The inputs that got another name inside because the derivation uses theirs: see `with_inner_names`."""
 
     @property
     def shared(self) -> tuple[Program, ...]:
@@ -207,6 +210,17 @@ class Kinematics:
     def chooses_twist(self) -> bool:
         """Whether the mechanism follows a turn of the commanded rotation and projects the rest."""
         return self.projection is not None and self.freedom is not Freedom.THREE
+
+    @property
+    def limit_inputs(self) -> frozenset[str]:
+        """The inputs that are limits: of axes, and of quantities with limits of their own."""
+        keys = (*(j.key for j in self.mechanism.joints), *(q.name for q in self.mechanism.limited))
+        return frozenset(f"{end}_{key}" for end in ("lower", "upper") for key in keys)
+
+    @property
+    def unlimited_values(self) -> dict[str, float]:
+        """The inputs of the machine by which formulas are measured: without limits, so that every pose counts."""
+        return {p.name: 0.0 if p.name in self.limit_inputs else p.nominal for p in self.parameters}
 
     @property
     def limited(self) -> tuple[Limited, ...]:

@@ -37,7 +37,8 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
     for joint in mechanism.joints:
         for word, end in zip(("lower", "upper"), joint.limits or (0.0, 0.0), strict=True):
             meaning = f"{word} limit of the axis, both 0: {_without_limits(joint)}"
-            parameters.append(replace(_number(joint, word, meaning, joint.limit_range), default=end))
+            own = _number(joint, word, meaning, joint.limit_range)
+            parameters.append(replace(own, default=end, nominal=end))
     for quantity in mechanism.limited:
         unit = "deg" if quantity.is_angle else "u"
         for word in ("lower", "upper"):
@@ -60,6 +61,16 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
     near = float(SINGULAR)
     warning = Parameter(real(WARNING_DISTANCE), WARNING_DISTANCE, Role.RATIO, meaning, "1", 0.0, 1.0, False, near, near)
     return (*parameters, check, warning)
+
+
+def shown_values(mechanism: Mechanism) -> dict[str, float]:
+    """The inputs of the machine that is drawn and shown: nominal dimensions, and the limits of the description."""
+    return {p.name: p.nominal for p in machine_parameters(mechanism)}
+
+
+def unlimited_values(mechanism: Mechanism) -> dict[str, float]:
+    """The inputs of the machine by which formulas are measured: without limits, so that every pose counts."""
+    return shown_values(mechanism) | {end: 0.0 for window in windows(mechanism) for end in window.given}
 
 
 def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:

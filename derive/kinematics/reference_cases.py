@@ -36,6 +36,8 @@ class Case:
     is_singular: bool = False
     operations: int = 0
     """The largest number of floating operations of the call; a loop counts as often as the reference ran it."""
+    budget: int = 0
+    """The operations that a cycle of a controller may need for the case: more than those of the call."""
 
 
 @dataclass(frozen=True)

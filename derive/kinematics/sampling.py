@@ -8,11 +8,11 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.description.mechanism import Mechanism, Role
+from derive.description.mechanism import Joint, Mechanism, Role
 from derive.ir.interpret import evaluate, run
 from derive.ir.program import Program, Status
 from derive.ir.symbols import SCALE
-from derive.kinematics.parameters import has_length, machine_parameters, machine_scale
+from derive.kinematics.parameters import has_length, machine_parameters, machine_scale, unlimited_values
 
 Samples = dict[str, NDArray[np.float64]]
 ENOUGH = 16
@@ -26,10 +26,10 @@ def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False)
     """Parameters near their nominal values, and the characteristic length, as scalars."""
     generator = np.random.default_rng(seed)
     values: Samples = {}
-    parameters = machine_parameters(mechanism)
-    for parameter in parameters:
-        spread = generator.uniform(0.8, 1.2)
-        value = parameter.nominal if parameter.role in (Role.FLAG, Role.SIGN) else parameter.nominal * spread
+    nominal = unlimited_values(mechanism)
+    for parameter in machine_parameters(mechanism):
+        spread, value = generator.uniform(0.8, 1.2), nominal[parameter.name]
+        value = value if parameter.role in (Role.FLAG, Role.SIGN) else value * spread
         if optional_zero and parameter.role is Role.DISTANCE:
             value = 0.0
         values[parameter.name] = np.asarray(value)
@@ -39,8 +39,8 @@ def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False)
 
 
 def machine_at(mechanism: Mechanism) -> Samples:
-    """The nominal machine: its parameters, and its characteristic length."""
-    values = {p.name: np.asarray(p.nominal) for p in machine_parameters(mechanism)} | fixed_values(mechanism)
+    """The nominal machine without limits: its parameters, and its characteristic length."""
+    values = {name: np.asarray(value) for name, value in unlimited_values(mechanism).items()} | fixed_values(mechanism)
     if mechanism.is_platform:  # its length follows from its home pose, and is not needed here
         return {**values, SCALE.name: np.asarray(_coordinates(mechanism, values))}
     return {**values, SCALE.name: np.asarray(evaluate(machine_scale(mechanism), values), dtype=float)}
@@ -77,7 +77,8 @@ def _first(values: NDArray[np.float64]) -> float:
 def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, share: float = 1.0) -> Samples:
     """Axis values over the whole ranges of the joints, as arrays; the references are equal to the axes.
 
-    share: of the ranges, around the nominal values of the joints.
+    Those of a machine with the limits of its description are inside them. share: of the ranges, around the nominal
+    values of the joints.
     """
     generator = np.random.default_rng(seed)
     values: Samples = {}
@@ -86,9 +87,23 @@ def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, s
         turns = abs(float(evaluate(joint.ratio, machine))) if joint.is_geared else 1.0
         reach = 1.0 / turns if joint.is_angle else size_of(mechanism, machine)
         high = min(high, 1e3 if joint.is_angle else 2.0)
+        low, high = _inside_limits(joint, machine, low, high, reach)
         drawn = joint.nominal + share * (generator.uniform(low, high, count) * reach - joint.nominal)
         values[joint.axis.name] = values[joint.reference.name] = drawn + float(machine[joint.offset.name])
     return values
+
+
+def _inside_limits(joint: Joint, machine: Samples, low: float, high: float, unit: float) -> tuple[float, float]:
+    """The part of a range, in some unit, that the limits of a joint allow: they, if they allow nothing of it.
+
+    A machine that is measured has other limits than its description, or none: then it is the whole range.
+    """
+    lower, upper = (_first(machine[f"{word}_{joint.key}"]) for word in ("lower", "upper"))
+    if joint.limits != (lower, upper):
+        return low, high
+    first, last = ((end - _first(machine[joint.offset.name])) / unit for end in (lower, upper))
+    inside = max(low, first), min(high, last)
+    return inside if inside[0] < inside[1] else (first, last)
 
 
 def possible_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, program: Program) -> Samples:

@@ -50,7 +50,7 @@ def _assembly(kinematics: Kinematics) -> Iterator[str]:
 
 def _positions(kinematics: Kinematics, parameter: str) -> str:
     """Both positions of the nominal machine at the same axes; empty where no such axes were found."""
-    nominal = {p.name: p.nominal for p in kinematics.parameters}
+    nominal = kinematics.unlimited_values
     machines = [machine_with(kinematics, nominal | {parameter: second}) for second in (0.0, 1.0)]
     for axes in _candidates(machines[0]):
         found = [forward(machine, axes) for machine in machines]
@@ -88,7 +88,7 @@ def pair_at_one_frame(kinematics: Kinematics, index: int) -> tuple[Reals, Reals]
 
     None where no such pair was found.
     """
-    machine = machine_with(kinematics, {p.name: p.nominal for p in kinematics.parameters})
+    machine = machine_with(kinematics, kinematics.unlimited_values)
     count = len(kinematics.branches)
     for axes in _candidates(machine):
         status, frame, configuration = forward(machine, axes)

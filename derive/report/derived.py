@@ -93,9 +93,12 @@ class Derived:
     """The parameter at whose zero no root scan is needed."""
 
 
-def derived_of(mechanism: Mechanism) -> Derived:
-    """The derivation of a mechanism that the build derives. Raises what the build raises."""
-    mechanism = with_derived_assembly(with_search(prepared(mechanism)))
+def derived_of(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> Derived:
+    """The derivation of a mechanism that the build derives. Raises what the build raises.
+
+    further: the inputs that the build gives another name inside, `Kinematics.further`.
+    """
+    mechanism = with_derived_assembly(with_search(prepared(mechanism, further)))
     if mechanism.search is not None:
         return _searched(mechanism)
     inverse, closed = solve_pose(mechanism), assembled(mechanism, pose_at_axes(mechanism))

@@ -65,7 +65,7 @@ class Machine:
         told = {b.name: self.given.get(b.home_flag, 0.0) for b in mechanism.branches}
         chosen = tuple(1 + int(told[b.name]) for b in mechanism.branches)
         configuration = (*chosen, *(0,) * len(mechanism.period_joints))
-        return inverse(self, frame, configuration, (0.0,) * len(mechanism.joints))[1]
+        return branches(self, frame, configuration, (0.0,) * len(mechanism.joints))[1][0]
 
 
 def machine_with(kinematics: Kinematics, given: Mapping[str, float]) -> Machine:
@@ -160,6 +160,12 @@ def branches(
         for k in range(len(slots))
     ]
     return slots, solved, list(status)
+
+
+def are_inside(machine: Machine, axes: Mapping[str, Array]) -> NDArray[np.bool_]:
+    """Whether axis values, by the names that programs have for them, are inside the limits of the machine."""
+    status = _run(machine.kinematics.limits, machine, axes)[1]
+    return np.asarray(status == Status.OK, dtype=bool)
 
 
 def margins(machine: Machine, poses: Sequence[Reals]) -> Array:

@@ -64,8 +64,8 @@ def self_test(kinematics: Kinematics) -> SelfTest:
 
 
 def _nominal(kinematics: Kinematics) -> Machine:
-    """The nominal machine, with an offset on every axis where it may have one."""
-    given = {p.name: p.nominal for p in kinematics.parameters}
+    """The nominal machine without limits, with an offset on every axis where it may have one."""
+    given = kinematics.unlimited_values
     offsets = {j.offset.name: 10.5 * (i + 1) for i, j in enumerate(kinematics.mechanism.joints)}
     shifted = machine_with(kinematics, given | offsets)
     return shifted if shifted.status is Status.OK else machine_with(kinematics, given)

@@ -3,7 +3,8 @@
 A margin is a function of the axis values. For a loop that turns its platform it is a function of the pose instead, and
 the inverse gives the axis values, because the iteration of forward kinematics fails where the margin vanishes. A step
 goes along the gradient, to where the margin would be zero if it were linear; it is halved until the machine reaches
-that pose and the margin there is smaller. So the search also ends on the boundary of what a loop can reach, where the
+that pose, inside its limits, and the margin there is smaller. So the search also ends on the boundary of what a loop
+can reach, where the
 margin falls as a root. Where every such path ends at the boundary of another leg, a cloud of random poses is used.
 """
 
@@ -28,7 +29,7 @@ from derive.plate.legs import angles, by_angles
 from derive.plate.passive import commanded, spelled
 from derive.plate.plate import platform_checks
 from derive.report.derived import Derived
-from derive.report.reference_calls import FRAME, Machine
+from derive.report.reference_calls import FRAME, Machine, are_inside
 
 SINGULAR = 1e-6
 """A margin of at most this size cannot be distinguished from zero in a picture."""
@@ -129,7 +130,7 @@ def _measured(machine: Machine, rows: Array) -> Array:
     axes = {j.axis.name: rows[:, k] for k, j in enumerate(kinematics.mechanism.joints)}
     found, status = run(kinematics.singularity, {**machine.values, **axes})
     told = [np.broadcast_to(found[m.factor], (len(rows),)) / (size if m.length else 1.0) for m in kinematics.margins]
-    good = np.asarray(np.broadcast_to(status == Status.OK, (len(rows),)), dtype=bool)
+    good = np.asarray(np.broadcast_to(status == Status.OK, (len(rows),)), dtype=bool) & are_inside(machine, axes)
     return np.where(good, np.abs(np.stack(told)), np.nan)
 
 
@@ -205,6 +206,7 @@ def _of_platform(machine: Machine, derived: Derived, name: str) -> SingularPose 
         found, status = run(program, values)
         every = {n: np.broadcast_to(v, (len(rows),)) for n, v in found.items()}
         good = np.asarray(np.broadcast_to(status == Status.OK, (len(rows),)), dtype=bool)
+        good = good & are_inside(machine, {j.axis.name: every[j.axis.name] for j in mechanism.joints})
         return np.where(good, np.abs(np.stack([every[one] for one in kept])), np.nan), every
 
     def measure(rows: Array) -> Array:

@@ -15,7 +15,7 @@ from derive.ir.program import Status
 from derive.ir.symbols import branch_sign
 from derive.kinematics.reference_cases import Reals
 from derive.kinematics.sampling import sample_axes, size_of
-from derive.report.reference_calls import FRAME, Machine
+from derive.report.reference_calls import FRAME, Machine, are_inside
 
 _POINTS, _MANY_SLOTS, _SEARCHED = 96, 36, 20
 """The points along a side: for few solutions, for more than `_FEW` branches, for a machine with a root scan."""
@@ -115,7 +115,7 @@ def _middles(ends: tuple[float, float], count: int) -> Array:
 
 def _solved(
     machine: Machine, values: dict[str, Array], axes: Reals, signs: tuple[float, ...]
-) -> tuple[Array, Array, Array]:
+) -> tuple[Array, NDArray[np.bool_], Array]:
     """For one branch: the axis values by rows, whether it has a solution inside the limits, and its smallest margin."""
     kinematics = machine.kinematics
     joints, count = kinematics.mechanism.joints, values["x"].size
@@ -128,8 +128,7 @@ def _solved(
     solution = np.stack([np.broadcast_to(found[j.axis.name], (count,)) for j in joints])
     good = np.asarray(np.broadcast_to(status == Status.OK, (count,)), dtype=bool)
     named = {**machine.values, **{j.axis.name: row for j, row in zip(joints, solution, strict=True)}}
-    inside = run(kinematics.limits, named)[1]
-    good = good & np.asarray(np.broadcast_to(inside == Status.OK, (count,)), dtype=bool)
+    good = good & are_inside(machine, {j.axis.name: row for j, row in zip(joints, solution, strict=True)})
     told = [m.name for m in kinematics.margins if m.length is None]
     if not told:
         return solution, good, np.where(good, 1.0, np.nan)
@@ -139,7 +138,7 @@ def _solved(
     return solution, good, np.where(has_margin, least, np.nan)
 
 
-def _different(solutions: list[Array], good: list[Array]) -> Array:
+def _different(solutions: list[Array], good: list[NDArray[np.bool_]]) -> Array:
     """The number of different solutions at each point."""
     total = np.zeros(good[0].size)
     for k, (own, is_good) in enumerate(zip(solutions, good, strict=True)):

@@ -189,18 +189,20 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
     cones = [c for rod in kin.mechanism.rods for c in (rod.base_cone, rod.plate_cone) if c is not None]
     names -= {s.name for cone in cones for s in cone.free_symbols}  # they refuse poses, and change no answer
     values = {}
+    nominal = kin.unlimited_values
     largest = min(_SHIFT, float(_reach(kin.mechanism, _nominal(kin))[0]))
     for parameter in kin.parameters:
-        drawn = _draw(parameter, count, rng, largest) if parameter.name in names else np.full(count, parameter.nominal)
-        drawn[0] = parameter.nominal
+        own = nominal[parameter.name]
+        drawn = _draw(parameter, count, rng, largest) if parameter.name in names else np.full(count, own)
+        drawn[0] = own
         values[parameter.name] = drawn
     if MIN_TYPE2_MARGIN in values:  # every regular solution counts
         values[MIN_TYPE2_MARGIN] = np.full(count, LEAST_MARGIN)
     values.setdefault("", np.zeros(count))  # a machine without parameters still has rows
     constants, status = run(kin.setup, values)
     if status[0] != Status.OK:
-        nominal = {name: column[:1] for name, column in values.items()}
-        raise Disagreement(f"Initialize refuses the nominal parameters{_refused(kin.setup, nominal)}")
+        first = {name: column[:1] for name, column in values.items()}
+        raise Disagreement(f"Initialize refuses the nominal parameters{_refused(kin.setup, first)}")
     accepted = np.flatnonzero(status == Status.OK)[:MACHINES]
     return {name: column[accepted] for name, column in (values | constants).items()}
 
@@ -216,8 +218,9 @@ def _refused(setup: Program, values: dict[str, Array]) -> str:
 
 
 def _nominal(kin: Kinematics) -> dict[str, Array]:
-    """The values of the nominal machine."""
-    given = {p.name: np.full(1, p.nominal) for p in (*kin.mechanism.parameters, *kin.parameters)}
+    """The values of the nominal machine without limits."""
+    numbers = {p.name: p.nominal for p in kin.mechanism.parameters}
+    given = {name: np.full(1, value) for name, value in (numbers | kin.unlimited_values).items()}
     constants, _ = run(kin.setup, given)
     return given | {name: np.broadcast_to(value, (1,)) for name, value in constants.items()}
 

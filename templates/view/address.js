@@ -17,11 +17,16 @@ export function fragmentOf(model, view = null) {
   return parts.join("&");
 }
 
-/** What a fragment says; null where it names no machine that is known. Anything else that is wrong in it is left out. */
-export function readFragment(fragment, names) {
+/**
+ * What a fragment says: the name of a machine, that of its mechanism or of its block, and what is given of it. Anything
+ * else that is wrong in it is left out. null where it names none; `unknown` is a name that no machine has.
+ */
+export function readFragment(fragment, model) {
   const parts = new Map(fragment.replace(/^#/, "").split("&").map((part) => part.split(/=(.*)/s)));
-  const name = decoded(parts.get("machine") ?? "");
-  if (!names.includes(name)) return null;
+  if (!parts.has("machine")) return null;
+  const unknown = decoded(parts.get("machine"));
+  const name = [unknown, ...model.names.filter((one) => model.describe(one).block === unknown)].find((one) => model.names.includes(one));
+  if (name === undefined) return { unknown };
   const given = { axes: numbersIn(parts.get("axes")) ?? undefined };
   const target = numbersIn(parts.get("target"));
   if (target?.length === 6) given.target = frameOf(target);

@@ -21,7 +21,7 @@ export function pythonOf(model, names) {
     .filter(({ name, default: usual }) => !ends.has(name) && (usual === null || Number(usual) !== Number(parameters[name])))
     .map(({ name, kind }) => `${keywords[name] ?? name}=${kind === "flag" ? (parameters[name] ? "True" : "False") : exact(parameters[name])}`);
   const limits = limitsOf(description, parameters)
-    .map(([name, pair]) => `${JSON.stringify(name)}: ${tuple(pair.map((end) => (end === null ? "None" : exact(end))))}`);
+    .map(([name, pair]) => `${JSON.stringify(name)}: ${pair ? tuple(pair.map((end) => (end === null ? "None" : exact(end)))) : "None"}`);
   if (limits.length) given.push(`limits={${limits.join(", ")}}`);
   const [x, y, z, a, b, c] = numbersOf(pose.frame).map(exact);
   return [

@@ -16,21 +16,22 @@ export function created(module, parameters) {
 
 /** The parameters for limits that are given by names: [lower, upper], null for an end or for both without a limit. */
 export function endsOf(description, limits) {
-  const found = {};
-  for (const { name, lower, upper } of description.limits) {
+  const given = description.limits.filter(({ name }) => limits[name] !== undefined);
+  return Object.assign({}, ...given.map(({ name, lower, upper }) => {
     const [low, high] = limits[name] ?? [null, null];
-    if (low === null && high === null) continue;
-    found[lower] = low ?? -Infinity;
-    found[upper] = high ?? Infinity;
-  }
-  return found;
+    const isFree = low === null && high === null;
+    return { [lower]: isFree ? 0 : low ?? -Infinity, [upper]: isFree ? 0 : high ?? Infinity };
+  }));
 }
 
-/** The limits that parameters give, by names, as `endsOf` takes them. */
+/** The limits that parameters give other than the machine has by itself, by names, as `endsOf` takes them. */
 export function limitsOf(description, parameters) {
-  const ends = description.limits.map(({ name, lower, upper }) => [name, [parameters[lower], parameters[upper]]]);
-  const given = ends.filter(([, pair]) => pair.some((end) => end !== 0));
-  return given.map(([name, pair]) => [name, pair.map((end) => (Number.isFinite(end) ? end : null))]);
+  const own = Object.fromEntries(description.parameters.map(({ name, default: usual }) => [name, usual]));
+  const changed = description.limits.filter((limit) => [limit.lower, limit.upper].some((end) => parameters[end] !== own[end]));
+  return changed.map((limit) => {
+    const ends = [limit.lower, limit.upper].map((end) => (Number.isFinite(parameters[end]) ? parameters[end] : null));
+    return [limit.name, isFree(limit, parameters) ? null : ends];
+  });
 }
 
 /** The limits of which a parameter is an end; undefined for any other parameter. */

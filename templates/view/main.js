@@ -41,17 +41,20 @@ class Page {
     this.model.onChange((what) => this.#show(what));
     const token = tokenOf(location.hash);
     this.isLive = token !== null; // the address stays that of the run
-    this.#restore() || this.model.open(this.model.names[0]);
+    this.#restore();
+    if (!this.model.name) this.model.open(this.model.names[0]);
     if (this.isLive) this.follow(token);
   }
 
   /** Follow a controller; the state of the connection stands in the head of the page. */
   follow(token, Socket) {
     this.isLive = true;
-    this.live = new Live(this.model, token, (words, isGood) => {
-      this.parts.live.textContent = words;
-      this.parts.live.className = isGood ? "good" : "bad";
-    }, this.data.keywords, Socket);
+    this.live = new Live(this.model, token, (words, isGood) => this.#say(words, isGood), this.data.keywords, Socket);
+  }
+
+  #say(words, isGood) {
+    this.parts.live.textContent = words;
+    this.parts.live.className = isGood ? "good" : "bad";
   }
 
   #panel() {
@@ -87,7 +90,10 @@ class Page {
   #listen() {
     const { parts, model } = this;
     for (const name of model.names) parts.machine.append(element("option", { value: name }, name));
-    parts.machine.addEventListener("change", () => model.open(parts.machine.value));
+    parts.machine.addEventListener("change", () => {
+      if (!this.isLive) this.#say("", true);
+      model.open(parts.machine.value);
+    });
     addEventListener("hashchange", () => location.hash.slice(1) !== this.written && this.#restore());
     const actions = {
       move: () => this.#handle("translate"), turn: () => this.#handle("rotate"),
@@ -126,10 +132,12 @@ class Page {
   }
 
   #restore() {
-    const found = readFragment(location.hash, this.model.names);
-    if (found) this.model.open(found.name, found.given);
-    if (found?.given.view) this.stage.view = found.given.view;
-    return found !== null;
+    const found = readFragment(location.hash, this.model);
+    if (!found) return;
+    this.#say(found.name ? "" : `unknown machine: ${found.unknown}`, Boolean(found.name));
+    if (!found.name) return;
+    this.model.open(found.name, found.given);
+    if (found.given.view) this.stage.view = found.given.view;
   }
 
   #show(what) {

@@ -1,5 +1,6 @@
 /** A slice of the workspace, row by row, in a worker: the same program as the page, started without a page. */
 
+import { created } from "./limits.js";
 import { catalogue } from "./machines/index.js";
 
 const ROWS_A_MESSAGE = 4;
@@ -7,7 +8,7 @@ const ROWS_A_MESSAGE = 4;
 /** Answer the message of `SlicePanel`: for every cell a number, -1 where nothing reaches it. */
 export function serve() {
   self.onmessage = ({ data }) => {
-    const { machine } = catalogue[data.name].create(data.parameters);
+    const { machine } = created(catalogue[data.name], data.parameters);
     let rows = [];
     for (let row = 0; row < data.cells; row += 1) {
       rows.push(Float32Array.from({ length: data.cells }, (_, column) => valueAt(machine, data, row, column)));

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from derive.description.mechanism import Role
-from derive.emit.st.names import input_name
+from derive.emit.softmotion.inputs import wanted_name
 from tests.codesys.guide import PROGRAMS, closed, renamed
 from tests.codesys.parts import FILES
 from tests.harness.library import compile_st
@@ -55,7 +55,7 @@ def test_g_code_on_a_block_that_stands_alone(unit: str) -> None:
     (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Cnc"))
     name = unit.split("/")[1]
     (mechanism,) = (m for _, m in catalogue() if m.block_name == name)
-    lengths = ", ".join(f"{input_name(p)} := {p.nominal:.6f}" for p in mechanism.parameters if p.role is not Role.FLAG)
+    lengths = ", ".join(f"{wanted_name(p)} := {p.nominal:.6f}" for p in mechanism.parameters if p.role is not Role.FLAG)
     for old, new in (
         ("arms : Softkin_Scara2_Z", f"arms : {name}"),
         ("dArmLength1 := 300.0, dArmLength2 := 250.0", lengths),

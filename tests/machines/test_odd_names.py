@@ -16,7 +16,7 @@ from derive.description.inner_names import with_symbols
 from derive.description.mechanism import Mechanism
 from derive.description.validate import validate
 from derive.emit.python.entries import OF_CLASS
-from derive.emit.st.names import input_name
+from derive.emit.softmotion.inputs import wanted_name
 from derive.kinematics.build import build
 from derive.kinematics.parameters import machine_parameters
 from derive.pipeline import derive_one, files_of, languages
@@ -47,7 +47,7 @@ class Named(Controller):
     def set_inputs(self, given: Mapping[str, float]) -> None:
         for k, p in enumerate(machine_parameters(self.mechanism)):
             is_own = k < len(self.mechanism.parameters)
-            called = self._inputs.get(p.name, input_name(p)) if is_own else input_name(p)
+            called = self._inputs.get(p.name, wanted_name(p)) if is_own else wanted_name(p)
             setattr(self.block, called, input_value(p, given.get(key(p.name, is_own), p.default or 0.0)))
 
 

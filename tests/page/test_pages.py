@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from derive.emit.page.names import has_block
 from derive.ir.interpret import run as interpreted
-from derive.ir.program import Call, FindRoot, Iterate, Program, Require, Solve, Status, shared
+from derive.ir.program import Call, FindRoot, Iterate, Program, Require, Solve, Status
 from derive.kinematics.branches.assembly import with_derived_assembly
 from derive.kinematics.build import prepared
 from derive.kinematics.inverse import solve_pose
@@ -21,9 +19,8 @@ from derive.report.used import equations_of
 from derive.solver.solve import Step
 from tests.mechanisms import kinematics_of, named
 from tests.page.made import NAMES, page, samples, spelled, spelling, tree
-from tests.page.reading import every, has_class, maths, names_of, parsed, residuals, run, section, value_of
+from tests.page.reading import every, has_class, maths, parsed, residuals, run, section, value_of
 
-ROOT = Path(__file__).resolve().parents[2]
 _CLOSE = 1e-9
 SEARCHED = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
 EACH = pytest.mark.parametrize("name", NAMES)
@@ -209,50 +206,6 @@ def _compare_jacobian(name: str, kinematics: Kinematics, known: dict[str, np.nda
         scale = np.max(np.abs(expected[output.name]), initial=1.0)
         value = value_of([cell], found)
         np.testing.assert_allclose(value, expected[output.name], rtol=0, atol=1e-9 * scale, err_msg=output.name)
-
-
-@EACH
-def test_names_are_those_of_the_block(name: str) -> None:
-    """Every name that a program of the page binds stands in the generated Structured Text."""
-    kinematics = kinematics_of(named(name))
-    if not has_block(kinematics):
-        return
-    block = kinematics.mechanism.block_name
-    text = (ROOT / "generated/st" / kinematics.mechanism.family / f"{block}.st").read_text(encoding="utf-8")
-    words = set(re.findall(r"\w+", text))
-    places = dict(spelling(name).places)
-    stored = {spelling(name)(o.name) for o in kinematics.setup.outputs} | {
-        spelling(name)(n) for n in _of_loops(kinematics)
-    }
-    checked = 0
-    shared_by_methods = [f"shared-{p.name}" for p in kinematics.shared if _is_written(p)]
-    for anchor in ("inverse-program", "forward-program", "singularities", "jacobian", *shared_by_methods):
-        own = names_of(_program(name, anchor))
-        outputs = (*kinematics.forward.outputs, *kinematics.singularity.outputs)
-        # A value that is a result itself has the name of the result in the block: `v.dZ := a.a2 - axes[2].offset`.
-        results = {spelling(name)(n) for o in outputs for n in (o.name, str(o.value)) if n.isidentifier()}
-        for one in own:
-            if re.fullmatch(r"J\d+", one) or one in results or one in stored:
-                continue
-            assert one in words or one in places, f"{name}: {one}"
-            checked += 1
-    assert checked or not kinematics.margins
-
-
-def _is_written(program: Program) -> bool:
-    """Whether the block has a method with its statements: a search for roots is written in the block by itself."""
-    return not any(isinstance(s, FindRoot) for s in program.body)
-
-
-def _of_loops(kinematics: Kinematics) -> list[str]:
-    """The unknowns of linear equations: the block keeps them in an array."""
-    return [
-        n.name
-        for p in (*kinematics.programs, *shared(kinematics.programs))
-        for s in p.body
-        if isinstance(s, Solve)
-        for n in s.names
-    ]
 
 
 def test_a_wrong_sign_is_seen() -> None:

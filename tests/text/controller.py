@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 from derive.description.mechanism import Mechanism, Parameter, Role
-from derive.emit.st.names import input_name
+from derive.emit.softmotion.inputs import wanted_name
 from derive.kinematics.parameters import machine_parameters
 from tests.harness.library import Library
 from tests.text import values
@@ -29,9 +30,11 @@ class Controller:
     """A block, called as a controller calls it.
 
     A variable that a method writes holds an arbitrary value before the call, and must hold the same after a refusal.
+    names: of inputs that are not called as wanted, by parameters.
     """
 
-    def __init__(self, library: Library, mechanism: Mechanism) -> None:
+    def __init__(self, library: Library, mechanism: Mechanism, names: Mapping[str, str] = MappingProxyType({})) -> None:
+        self.names = names
         self.library = library
         self.mechanism = mechanism
         self.block = library.new(mechanism.block_name)
@@ -50,7 +53,8 @@ class Controller:
     @cached_property
     def _inputs(self) -> tuple[tuple[Parameter, str], ...]:
         """The parameters of the machine, each with the name of its input."""
-        return tuple((parameter, input_name(parameter)) for parameter in machine_parameters(self.mechanism))
+        parameters = machine_parameters(self.mechanism)
+        return tuple((parameter, self.names.get(parameter.name, wanted_name(parameter))) for parameter in parameters)
 
     def initialise(self, given: Mapping[str, float]) -> str:
         """Set inputs, and call Initialize."""

@@ -6,26 +6,33 @@ import re
 from collections.abc import Mapping
 from dataclasses import astuple
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
 import sympy as sp
 
 from derive.description.mechanism import Mechanism
+from derive.emit.python.entries import module_name
 from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select
 from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Solve, Status
 from derive.ir.symbols import SCALE, real
 from derive.kinematics.parameters import machine_parameters
+from derive.kinematics.reference_cases import Called
 from derive.kinematics.sampling import sample_axes
 from derive.plate.plate import home_position
-from derive.report.cost import Cost, cost_of, expression_cost, solve_cost
-from tests.mechanisms import catalogue
+from derive.report.cost import Cost, cost_of, costs_of, expression_cost, solve_cost
+from derive.report.effort import open_slots, worst_inverse
+from derive.report.self_test import self_test
+from tests.mechanisms import catalogue, kinematics_of, named
 from tests.text.controller import OK, Controller
 from tests.text.counting import counted, counting_units
 from tests.text.samples import NO_TURN
 from tests.text.units import text_of
 from tests.text.values import Numbers
 
+ROOT = Path(__file__).resolve().parents[2]
+PYTHON = ROOT / "generated" / "python" / "softkin"
 X, Y, Z = map(real, "xyz")
 CELLS = tuple(product(range(6), range(6)))
 ALL = tuple(m for _, m in catalogue() if m.joints)
@@ -91,6 +98,63 @@ def test_a_singular_pose_costs_no_more_than_its_row_adds(mechanism: Mechanism) -
     assert is_within(most(inverse), one + repair + corners)
     assert is_within(most(automatic), every + repair + corners * 2 ** len(mechanism.branches))
     assert not is_within(most(inverse), one + repair)
+
+
+@pytest.mark.parametrize("mechanism", ALL, ids=lambda m: m.name)
+def test_no_kind_of_count_is_larger_than_one_that_includes_it(mechanism: Mechanism) -> None:
+    """One branch in all, the check of a frame in its repair, calls of the self-test in any call; Python agrees."""
+    header = stated(mechanism)
+    one, repair, corners = header[1], more(mechanism, REPAIR), more(mechanism, CORNERS)
+    assert is_within(one, header[-1]) and is_within(more(mechanism, EXACT), repair)
+    worst = {"AxesToCartesian": header[0], "CartesianToAxes": one + repair + corners}
+    for method, with_one, without, most_of_all in _looped(mechanism):
+        assert max(with_one, without) <= most_of_all == sum(astuple(worst[method]))
+    module = (PYTHON / f"{module_name(mechanism.name)}.py").read_text(encoding="utf-8")
+    told = re.findall(r"^ +(?:forward|inverse)(?:, all \d+ branches)?: ([^:]*?sines)", module, re.MULTILINE)
+    assert [Cost(*map(int, re.findall(r"\d+", row))) for row in told] == header
+
+
+_LOOPED = re.compile(
+    r"(\w+)(?: with every branch named)?, all operations together: of the calls of the self-test "
+    r"(?:at most )?([\w ]+?) with a solution, (?:at most )?([\w ]+?) without one; of any call at most (\d+)"
+)
+
+
+def _looped(mechanism: Mechanism) -> list[tuple[str, int, int, int]]:
+    """What the header says of methods with loops: calls with a solution, without one, any call."""
+    found = _LOOPED.findall(" ".join(text_of(mechanism).split()))
+    numbers = ([int(n) if n.isdigit() else 0 for n in rest] for _, *rest in found)
+    return [(method, one, other, most) for (method, *_), (one, other, most) in zip(found, numbers, strict=True)]
+
+
+def test_methods_with_loops_are_told_of() -> None:
+    """Platforms iterate, and one arm is searched: else nothing is compared above."""
+    assert {m.name for m in ALL if _looped(m)} == {m.name for m in ALL if m.is_platform or m.search is not None}
+
+
+@pytest.mark.parametrize("name", ("Softkin_Planar_3RRR", "Kin_Scara4_ZCcoupled_Type1"))
+def test_a_budget_is_no_count(name: str) -> None:
+    """The self-test allows for more than a call was counted to need, but never for more than any call may need."""
+    kinematics = kinematics_of(named(name))
+    costs, repaired = costs_of(kinematics), worst_inverse(kinematics)
+    for case in self_test(kinematics).cases:
+        assert 0 < case.operations < case.budget
+        if case.called is Called.FORWARD:
+            assert case.operations <= sum(costs.forward.counts) and case.budget <= sum(costs.forward.counts) + 120
+        elif case.called is Called.INVERSE and open_slots(case, kinematics) == 1:
+            assert case.operations <= sum(repaired.counts) and case.budget <= sum(repaired.counts) + 120
+
+
+def test_what_the_readme_measured_is_within_the_headers() -> None:
+    """A call includes its algebra, and costs no more than its header states for a frame that is a rotation."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| [\w, -]+`(\w+)` \| (\d+) \| \d+ \| (\d+) \| (\d+) \|", text, re.MULTILINE)
+    assert len(rows) == 4
+    for block, *numbers in rows:
+        mechanism = next(m for m in ALL if m.block_name == block)
+        one, exact = stated(mechanism)[1], more(mechanism, EXACT)
+        call, algebra, _ = map(int, numbers)
+        assert algebra <= call <= sum(astuple(one + exact)[:4])
 
 
 def _machine(mechanism: Mechanism) -> tuple[Controller, Mapping[str, float]]:

@@ -324,7 +324,14 @@ async function own() {
   seen.own.pose = await state(page);
   await page.getByRole("button", { name: "Python", exact: true }).evaluate((button) => button.click());
   seen.own.copied = await page.locator("#panel textarea").inputValue();
+  await page.locator("#axis-0").fill("149.9");
+  seen.own.inside = await state(page);
+  await page.locator("#axis-0").fill("200");
+  seen.own.beyond = await state(page);
   await page.context().close();
+  const other = await opened("#machine=nonsense", { file: ownPage });
+  seen.own.unknown = await other.locator("#live").textContent();
+  await other.context().close();
 }
 
 /** A controller, played by a socket that the page is given: its machine, axes that move it, axes that must not. */

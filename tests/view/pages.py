@@ -47,12 +47,13 @@ def machine_page(folder: Path, name: str) -> Path:
 def own_page(folder: Path) -> Path:
     """The page of a machine of a user, as the command line makes it, and beside it, in `python`, its package.
 
-    A2 is a mesh in metres; the second link is called as no keyword of Python can be.
+    A1 has limits; A2 is a mesh in metres; the second link is called as no keyword of Python can be.
     """
     (folder / "own.glb").write_bytes(triangle())
     _run(folder, "new", "my_machine.py")
     path = folder / "my_machine.py"
-    path.write_text(path.read_text(encoding="utf-8").replace('"link_length_2"', '"lambda"'), encoding="utf-8")
+    text = path.read_text(encoding="utf-8").replace('"link_length_2"', '"lambda"')
+    path.write_text(text.replace('"Arm 1 about Z")', '"Arm 1 about Z", limits=(-150, 150))'), encoding="utf-8")
     _run(folder, "derive", "my_machine.py", "--out", "pages", "--language", "python")
     _run(folder, "view", "my_machine.py", "--out", "pages", "--model", "A2=own.glb*1000")
     return folder / "pages" / "my_machine.html"

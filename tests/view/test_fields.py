@@ -51,6 +51,14 @@ def test_limits_and_keys(seen: Seen) -> None:
     assert order.index("canvas") < order.index("axis-0") < order.index("tool-X") < order.index("CSV")
 
 
+def test_limits_of_a_description(seen: Seen) -> None:
+    """Nobody gives them: the page has them from the description, and an axis beyond one is no regular pose."""
+    inside, beyond = seen["own"]["inside"], seen["own"]["beyond"]
+    assert inside["refusal"] is None and inside["state"] != "refused"
+    assert (beyond["state"], beyond["refusal"]) == ("refused", "A1: above its upper limit, missing 50.0 deg")
+    assert beyond["isMarked"] and beyond["parameters"]["upper_a1"] == 150
+
+
 def test_an_end_of_a_limit_is_open(seen: Seen) -> None:
     """Two ends are taken together that are refused one by one; an empty field is no limit, also copied and restored."""
     assert len(seen["lowerAlone"]) == 1 and "lower_a1 below upper_a1" in seen["lowerAlone"][0]

@@ -23,6 +23,11 @@ def test_an_address_is_restored(seen: Seen) -> None:
     assert seen["refusedRestored"]["refusal"] == seen["refused"]["refusal"] is not None
 
 
+def test_an_unknown_machine_is_told(seen: Seen) -> None:
+    """The page shows a machine that it has, and says that it does not have the one of the address."""
+    assert seen["own"]["unknown"] == "unknown machine: nonsense"
+
+
 def test_where_one_looks_from_is_in_the_address(seen: Seen) -> None:
     """A picture that was turned opens as it is seen, to the digits of the address; the whole machine needs none."""
     camera = seen["camera"]

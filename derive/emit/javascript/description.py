@@ -42,6 +42,7 @@ def description(kin: Kinematics, module: str) -> dict[str, Any]:
     held = {joint.name for joint in mechanism.held_joints}
     return {
         "name": mechanism.name,
+        "block": mechanism.block_name,
         "module": module,
         "summary": mechanism.summary,
         "source": mechanism.source,
@@ -81,7 +82,7 @@ def _axis(joint: Joint, is_held: bool) -> dict[str, Any]:
         "multiTurn": joint.multi_turn,
         "period": _TURN if is_periodic else None,
         "isHeld": is_held,
-        "nominal": float(joint.nominal),
+        "nominal": joint.shown,
     }
 
 

@@ -6,11 +6,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
+from derive.emit.python import entries as python
+from derive.emit.softmotion import inputs as block
 from derive.emit.softmotion.block import block_of
 from derive.emit.softmotion.library import most_axes
 from derive.emit.softmotion.methods import spelled_inputs
 from derive.emit.st.contract import load
-from derive.emit.st.names import input_name, parameter_name, spellings
+from derive.emit.st.names import parameter_name, spellings
 from derive.ir.program import Program, binds
 from derive.ir.tree import bound_in
 from derive.kinematics.kinematics import Kinematics
@@ -45,14 +47,20 @@ def _most_axes() -> int:
     return most_axes(None)
 
 
+def inputs_of(kinematics: Kinematics) -> Mapping[str, str]:
+    """The parameters by their neutral names, as inputs of the block, if there is one, else of the class in Python."""
+    found = block.inputs(kinematics) if has_block(kinematics) else python.inputs(kinematics)
+    return found.names
+
+
 def spelling_of(kinematics: Kinematics) -> Spelling:
     """The spelling of every name in the programs of a machine."""
     programs = (kinematics.setup, *kinematics.programs)
-    taken = [input_name(p) for p in kinematics.parameters]
+    taken = list(inputs_of(kinematics).values())
     given: dict[str, str] = {}
     if has_block(kinematics):
         taken += [i.name for i in block_of(kinematics, load(None)).inputs]
-        given = spelled_inputs(kinematics) | {c: f"f.vT.d{c.upper()}" for c in "xyz"}
+        given = spelled_inputs(kinematics) | {c: f"v.d{c.upper()}" for c in "xyz"}
     plain = {name: text for name, text in given.items() if text.isidentifier()}
     own = [name for name in _names(kinematics, programs) if name not in plain]
     known = plain | spellings(own, (*taken, *plain.values()))

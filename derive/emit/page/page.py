@@ -9,15 +9,14 @@ from functools import cache
 import sympy as sp
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from derive.description.mechanism import Mechanism, Parameter
+from derive.description.mechanism import Mechanism
 from derive.emit.language import TEMPLATES
 from derive.emit.page import tables
 from derive.emit.page.jacobian import factored, jacobian_of, matrices_of
 from derive.emit.page.lines import Line, Lines, steps_by_name
-from derive.emit.page.names import Spelling, has_block, spelling_of
+from derive.emit.page.names import Spelling, has_block, inputs_of, spelling_of
 from derive.emit.page.pictures import maps, pictured, singularities
 from derive.emit.page.steps import Stated, product_of, route_of, tree_of
-from derive.emit.st.names import input_name
 from derive.emit.st.shared import method_name
 from derive.ir.passes import needed_for
 from derive.ir.program import Let, Program
@@ -62,9 +61,9 @@ def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = T
     has_pictures: with the drawing, the machine in its singular poses, and maps; without, the formulas alone.
     viewer: the file that shows the machine in the browser, from where this page stands; empty where there is none.
     """
-    derived, spelling = derived_of(mechanism), spelling_of(kinematics)
+    derived, spelling = derived_of(mechanism, kinematics.further), spelling_of(kinematics)
     lines, plain = Lines(spelling, _numbered(derived)), Lines(spelling)
-    names = {p.name: _called(p, kinematics) for p in kinematics.mechanism.parameters}
+    names = {p.name: f"{p.nominal:g}" for p in kinematics.mechanism.parameters} | dict(inputs_of(kinematics))
     found = pictured(kinematics, names) if has_pictures else None
     body, entries = jacobian_of(kinematics, lines)
     factors = {f.name: f for f in derived.factors}
@@ -78,6 +77,7 @@ def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = T
             mechanism=kinematics.mechanism,
             derived=derived,
             viewer=viewer,
+            names=names,
             has_block=has_block(kinematics),
             found=found,
             axes=list(tables.axes(kinematics)),
@@ -138,12 +138,6 @@ def _templates() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-
-
-def _called(parameter: Parameter, kinematics: Kinematics) -> str:
-    if parameter.fixed is not None:
-        return f"{parameter.nominal:g}"
-    return input_name(parameter) if has_block(kinematics) else parameter.name
 
 
 def _numbered(derived: Derived) -> Mapping[str, int]:

@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from derive.description.mechanism import DescriptionError
 from derive.drawing.drawing import Drawing, drawing_of, scene_at
-from derive.drawing.pose import Pose, drawn_pose, nominal_machine, pose_at
+from derive.drawing.pose import Pose, drawn_pose, is_inside, nominal_machine, pose_at
 from derive.drawing.scene import Scene
 from derive.emit.page.svg import drawn, mapped
 from derive.emit.picture.canvas import WIDTH
@@ -69,7 +69,7 @@ class Singularity:
 def singularities(found: Pictured, derived: Derived, names: Mapping[str, str]) -> Iterator[tuple[str, Singularity]]:
     """The margins by name, each with its pose."""
     kinematics = found.machine.kinematics
-    start = found.pose.axes if found.pose is not None else tuple(j.nominal for j in kinematics.mechanism.joints)
+    start = found.pose.axes if found.pose is not None else tuple(j.shown for j in kinematics.mechanism.joints)
     for margin in kinematics.margins:
         at = singular_pose(found.machine, derived, margin.name, start)
         picture = Markup("") if at is None or found.drawing is None else _singular(found, at, names)
@@ -135,9 +135,13 @@ def maps(found: Pictured) -> Iterator[Map]:
 
 
 def _regular(machine: Machine, pose: Pose) -> Pose:
-    """The pose, or one that is turned where that is singular."""
+    """The pose, or if it is singular one that is turned, inside the limits."""
     if not machine.kinematics.margins or float(np.abs(margins(machine, [pose.axes])).min()) > _SINGULAR:
         return pose
     joints = machine.kinematics.mechanism.joints
     shifts = [_TURNED[k % len(_TURNED)] if j.is_angle else 0.0 for k, j in enumerate(joints)]
-    return pose_at(machine, tuple(a + s for a, s in zip(pose.axes, shifts, strict=True))) or pose
+    for part in (1.0, -1.0, 0.5, -0.5):
+        turned = pose_at(machine, tuple(a + part * s for a, s in zip(pose.axes, shifts, strict=True)))
+        if turned is not None and is_inside(machine, turned):
+            return turned
+    return pose

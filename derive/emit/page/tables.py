@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import astuple
 
 from derive.description.mechanism import Kind, Parameter
-from derive.emit.page.names import Spelling, has_block
-from derive.emit.st.names import input_name
+from derive.emit.page.names import Spelling, has_block, inputs_of
+from derive.emit.python import entries as python
 from derive.kinematics.kinematics import Kinematics
 from derive.report.cost import Cost, costs_of
 
@@ -31,11 +31,11 @@ def axes(kinematics: Kinematics) -> Iterator[Cells]:
 
 def parameters(kinematics: Kinematics, spelling: Spelling) -> Iterator[Cells]:
     """Name in equations, meaning, role, range, nominal value, unit, name in Python and as input of the block."""
-    block = has_block(kinematics)
+    keywords, inputs = python.inputs(kinematics).names, inputs_of(kinematics)
     for given in kinematics.parameters:
         nominal = f"{given.nominal:g}"
         own = (spelling(given.name), given.meaning, given.role.value, _range(given), nominal, given.unit or "–")
-        yield (*own, given.name, input_name(given) if block else "–")
+        yield (*own, keywords[given.name], inputs[given.name] if has_block(kinematics) else "–")
 
 
 def _range(given: Parameter) -> str:

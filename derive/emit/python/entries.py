@@ -163,7 +163,7 @@ def example(kin: Kinematics) -> list[str]:
     names = inputs(kin).names
     given = [(names.get(p.name, p.name), int(p.nominal) if p.role in _WHOLE else p.nominal) for p in needed]
     values = (f"{name}={literal(value)}" for name, value in given)
-    axes = literal(tuple(j.nominal for j in mechanism.joints))
+    axes = literal(tuple(j.shown for j in mechanism.joints))
     return [
         f"robot = PACKAGE.{class_name(mechanism.name, mechanism.class_name)}({', '.join(values)})",
         f"frame, configuration = robot.forward({axes})",

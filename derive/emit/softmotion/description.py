@@ -19,6 +19,7 @@ from derive.ir.program import Status, shared
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.reference_cases import Called
 from derive.report.cost import Bound, Cost, Costs, costs_of
+from derive.report.effort import open_slots, worst_inverse
 from derive.report.reasons import workspace
 from derive.report.zero_directions import directions_at_zero
 
@@ -106,7 +107,8 @@ def _axes(kinematics: Kinematics) -> Iterator[Sequence[str]]:
 def _refused(kinematics: Kinematics) -> str:
     """The sentence that names the lengths that may not be 0, which is the value of an input that is not set."""
     names = inputs(kinematics).names
-    lengths = [names[p.name] for p in kinematics.parameters if p.role in (Role.LENGTH, Role.SIGNED_LENGTH)]
+    given = (p for p in kinematics.parameters if p.default is None)
+    lengths = [names[p.name] for p in given if p.role in (Role.LENGTH, Role.SIGNED_LENGTH)]
     return f"A length has no default: Initialize refuses 0 for {', '.join(lengths)}. " if lengths else ""
 
 
@@ -182,21 +184,24 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
 
 
 def _looped(kinematics: Kinematics, costs: Costs) -> Iterator[str]:
-    """The cost of a method with a loop: of a typical call, of a call without a solution, and in the worst case."""
+    """The cost of a method with a loop: of calls with a solution, of calls without one, and in the worst case."""
     cases = () if kinematics.self_test is None else kinematics.self_test.cases
+    ran = [c for c in cases if c.status is not Status.NOT_INITIALIZED]  # the block computes nothing for the others
+    named = [c for c in ran if c.called is not Called.INVERSE or open_slots(c, kinematics) == 1]
+    one_branch = "CartesianToAxes with every branch named" if kinematics.branches else "CartesianToAxes"
     programs = (
         ("AxesToCartesian", Called.FORWARD, kinematics.forward, costs.forward),
-        ("CartesianToAxes", Called.INVERSE, kinematics.branch, costs.inverse + costs.repair),
+        (one_branch, Called.INVERSE, kinematics.branch, worst_inverse(kinematics)),
     )
     for method, called, program, worst in programs:
         if not any(bound.program == p.name for bound in costs.bounds for p in (program, *shared([program]))):
             continue
-        calls = [c for c in cases if c.called is called]
+        calls = [c for c in named if c.called is called]
         found = ([c.operations for c in calls if (c.status is Status.OK) == ok] for ok in (True, False))
-        near, vain = (str(max(numbers)) if numbers else "not measured" for numbers in found)
+        solved, vain = (f"at most {max(numbers)}" if numbers else "not measured" for numbers in found)
         yield from _item(
-            f"{method}, all operations: with the reference near {near}, without a solution {vain} (the most of the "
-            f"self-test), in the worst case {sum(worst.counts)}."
+            f"{method}, all operations together: of the calls of the self-test {solved} with a solution, {vain} "
+            f"without one; of any call at most {sum(worst.counts)}."
         )
 
 

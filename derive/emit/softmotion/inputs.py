@@ -10,13 +10,14 @@ from derive.description.mechanism import Parameter, Role
 from derive.emit.inputs import Inputs, Spelling, inputs_of, word_of
 from derive.emit.st.expression import literal
 from derive.emit.st.layout import sentence
-from derive.emit.st.names import capitalized, input_name, of_methods, stored_name
+from derive.emit.st.names import capitalized, of_methods, stored_name
 from derive.emit.st.reserved import clash
 from derive.ir.constants import LARGEST
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 
 _DIMENSIONLESS = ("", "1")
+_PREFIX = {Role.FLAG: "x", Role.SIGN: "i"}
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,12 @@ def _others(parameter: Parameter, wish: str) -> Iterator[str]:
     yield from (f"{longer}{number}" for number in count(2))
 
 
-_TEXT = Spelling(input_name, _others, clash, str.lower)
+def wanted_name(parameter: Parameter) -> str:
+    """The wanted name of an input: `dLinkLength1`, `xFlangeDown`, `iDirectionR`. `inputs` says which name it has."""
+    return _PREFIX.get(parameter.role, "d") + capitalized(parameter.given_name)
+
+
+_TEXT = Spelling(wanted_name, _others, clash, str.lower)
 
 
 def parameter_input(parameter: Parameter, name: str) -> Input:

@@ -108,7 +108,7 @@ def _tables(cases: Sequence[Case], axes: int, size: int) -> Iterator[Table]:
         answer = int(case.is_singular) if case.called is Called.SINGULARITY else _NUMBERS[case.status]
         places = poses.index(case.axes or nothing), poses.index(case.reference or nothing)
         frame, data = frames.index(case.frame or _NO_FRAME), case.configuration or (0,) * size
-        numbers = case.called.value, case.machine, answer, *places, frame, case.operations
+        numbers = case.called.value, case.machine, answer, *places, frame, case.budget
         rows.append([str(number) for number in (*numbers, *(byte % 256 for byte in data))])
     yield _table("CASES", "UDINT", rows)
     if axes:

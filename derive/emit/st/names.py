@@ -6,7 +6,6 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 
-from derive.description.mechanism import Parameter, Role
 from derive.emit.language import TEMPLATES
 from derive.emit.st.contract import load
 from derive.emit.st.reserved import reserved
@@ -20,7 +19,6 @@ _DECLARED = re.compile(r"^ +([A-Za-z]\w*) : ", re.MULTILINE)
 _OF_PLATFORMS = frozenset({"within"})
 """Constants of platforms, whose blocks have no search: its method has a variable of the same name."""
 _OF_THE_BLOCK = ("initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes")
-_PREFIX = {Role.FLAG: "x", Role.SIGN: "i"}
 
 TEMPLATE_LOCALS = frozenset(
     """
@@ -52,11 +50,6 @@ def _free(spelled: str, used: Collection[str]) -> str:
 def capitalized(name: str) -> str:
     """`link_length_1` → `LinkLength1`."""
     return "".join(_LETTERS.get(word, word[:1].upper() + word[1:]) for word in name.split("_"))
-
-
-def input_name(parameter: Parameter) -> str:
-    """The input of the function block: `dLinkLength1`, `xFlangeDown`, `iDirectionR`."""
-    return _PREFIX.get(parameter.role, "d") + capitalized(parameter.given_name)
 
 
 def free(name: str, used: set[str]) -> str:

@@ -155,7 +155,7 @@ def drawn(kin: Kinematics, described: Mechanism, rng: Random, multiple: int) -> 
         angles.know(whole)
         return whole * degree.inverted()
 
-    inputs: Known = {p.name: _parameter(p, rng, angle) for p in kin.parameters}
+    inputs: Known = {p.name: ZERO if p.name in kin.limit_inputs else _parameter(p, rng, angle) for p in kin.parameters}
     named = {p.given_name: p.name for p in kin.mechanism.parameters}
     own = {p.symbol.name: _as_number(inputs[named[p.given_name]]) for p in described.parameters}
     axes = {j.axis.name: angle(j.axis.name) if j.in_degrees else Value(_any(rng)) for j in described.joints}
@@ -192,14 +192,14 @@ def _any(rng: Random) -> int:
 
 
 def _parameter(parameter: Parameter, rng: Random, angle: Callable[[str], Value]) -> Value | bool:
-    """A random value of an input; limits and settings as they are by default."""
+    """A random value of an input; settings as they are by default."""
     if parameter.role is Role.FLAG:
         return bool(rng.getrandbits(1)) if parameter.default is None else bool(parameter.default)
     if parameter.role is Role.SIGN:
         return fraction(Fraction(rng.choice((-1, 1))))
     if parameter.role in _RATIOS and parameter.name not in _SETTINGS:
         return fraction(Fraction(rng.choice((-3, -2, -1, 1, 2, 3)), rng.choice((1, 2))))
-    if parameter.name.startswith(("lower_", "upper_")) or parameter.name in _SETTINGS:
+    if parameter.name in _SETTINGS:
         return fraction(Fraction(repr(float(parameter.nominal))))
     return angle(parameter.name) if parameter.unit == "deg" else Value(_any(rng))
 

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from derive.description.mechanism import Mechanism, Role
-from derive.emit.st.names import input_name
+from derive.emit.softmotion.inputs import wanted_name
 from derive.kinematics.parameters import machine_parameters
 from tests.catalogue.turns.axes import robot_of
 from tests.mechanisms import catalogue
@@ -36,9 +36,9 @@ def test_the_lengths_that_are_named_are_refused_at_0(mechanism: Mechanism) -> No
     assert controller(mechanism)[1] == OK
     for parameter in (p for p in mechanism.parameters if p.role in LENGTHS):
         status = controller(mechanism, **{parameter.name: 0.0})[1]
-        if input_name(parameter) in named:
+        if wanted_name(parameter) in named:
             assert status == NOT_INITIALIZED
-            named.remove(input_name(parameter))
+            named.remove(wanted_name(parameter))
         else:
             assert status == OK or mechanism.constraints or mechanism.is_platform
     assert named == []
