@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from derive.description.mechanism import Mechanism, Parameter, Turning
 from derive.equations.choices import with_choices
 from derive.equations.windows import windows
 from derive.ir.passes import hoist
-from derive.ir.program import Program, Statement, shared
-from derive.ir.symbols import BASE_AXIS, FLANGE_AXIS, ROTATION_ENTRIES, START_POSITION, START_ROTATION, branch_sign
+from derive.ir.program import Let, Program, Statement, shared
+from derive.ir.symbols import (
+    BASE_AXIS,
+    FLANGE_AXIS,
+    ROTATION_ENTRIES,
+    START_POSITION,
+    START_ROTATION,
+    branch_sign,
+    symbols_of,
+)
 from derive.ir.types import Type, output_types
 from derive.ir.verify import BrokenProgram
 from derive.kinematics.differential import jacobian_rows
@@ -40,7 +48,8 @@ def _hoisted(
     unsettled = {o.name for window in windows(mechanism) for o in window.outputs}  # drives may change these later
     settled = [name for name in constants if name not in unsettled]
     whole, first = hoist([with_choices(p, parameters) for p in (*shared(programs), *programs)], settled)
-    shorter, second = lowered(whole, [*settled, *(let.name.name for let in first)])
+    known = (*_given(setup_program(mechanism, parameters, at_home=at_home), settled), *first)
+    shorter, second = lowered(whole, [*settled, *(let.name.name for let in first)], known=known)
     hoisted = (*first, *second)
     derived = next(program for program in whole if program.name == "branch")
     read = frozenset(s for program in (*shorter, derived) for s in program.inputs)
@@ -51,6 +60,14 @@ def _hoisted(
         _check_inputs(mechanism, program, {o.name for o in setup.outputs})
         _check_outputs(program)
     return _Hoisted(setup, settable, derived, tuple(shorter))
+
+
+def _given(setup: Program, settled: Sequence[str]) -> Iterator[Let]:
+    """What the setup computes of constants alone before anything is moved into it: it is not computed again."""
+    names = frozenset(settled)
+    for let in setup.lets():
+        if {let.name.name, *(s.name for s in symbols_of(let.value))} <= names:
+            yield let
 
 
 def bundle_of(

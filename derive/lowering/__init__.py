@@ -5,12 +5,11 @@ It may import the folders from `ir` to `solver`.
 coefficients: the coefficients of one value are added, and constants are multiplied into sums
 cutting: a sum that takes many lines to write is a sum of shorter ones
 decided: a condition that a refusal has decided is not tested again
-draft: a program as values in the graph of `ir`, with their names and places
+draft: a program as values in the graph of `ir`, with their names and places; the readers of each value
 factoring: a common factor or divisor of a sum is applied once
 hoisting: values that depend on parameters alone are computed once, by the setup
 lower: all changes to the programs of a mechanism, in their order
 opening: a sum that only one other sum reads is merged into it where terms of both make a known pair
-readers: the readers of every value in a draft
 scheduling: a value that only one side of a choice needs is computed on that side
 sharing: a pair of terms or factors that several values have in common is computed once
 stretches: choices with the same condition are gathered, between two refusals

@@ -18,9 +18,8 @@ import sympy as sp
 from derive.ir.graph import PRODUCT, SUM, Graph, Node, Value
 from derive.ir.primitives import Select
 from derive.ir.symbols import called
-from derive.lowering.draft import Draft, Named, Rewriting, changed
+from derive.lowering.draft import Draft, Named, Readers, Rewriting, changed, readers_of
 from derive.lowering.hoisting import Constant
-from derive.lowering.readers import Readers, readers_of
 
 _ONE = sp.Integer(1)
 

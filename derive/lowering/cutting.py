@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from derive.ir.graph import SUM, Graph, Node, Value
-from derive.lowering.draft import Draft, Named, Rewriting, changed
-from derive.lowering.readers import Readers, readers_of
+from derive.lowering.draft import Draft, Named, Readers, Rewriting, changed, readers_of
 
 LONGEST = 300
 """The most letters that a statement writes out, more or less: languages spell names differently."""

@@ -13,9 +13,8 @@ from itertools import combinations
 from typing import TypeAlias
 
 from derive.ir.graph import SUM, Graph, Node, Value
-from derive.lowering.draft import Draft, Rewriting, changed
+from derive.lowering.draft import Draft, Readers, Rewriting, changed, readers_of
 from derive.lowering.hoisting import Constant
-from derive.lowering.readers import Readers, readers_of
 
 _Pair: TypeAlias = frozenset[Value]
 """Two terms, the first node with a plus."""
