@@ -31,7 +31,7 @@ WRONG: dict[str, str] = {
     "SyntaxError: …": changed(ARM, ("MECHANISM = Mechanism(", "MECHANISM = Mechanism((")),
     "NameError: name '…' is not defined; define it above this line": changed(ARM, ("Rz(A2)", "Rz(A3)")),
     "ImportError: cannot import name …; joints and lengths are in derive.mechanism": changed(
-        ARM, ("rotary\n", "turn\n")
+        ARM, ("rotary\n", "knee\n")
     ),
     "TypeError: … got an unexpected keyword argument '…'; did you mean '…'?": changed(ARM, ("chain=", "chian=")),
     "TypeError: … missing 1 required positional argument: '…'; state what is missing": changed(

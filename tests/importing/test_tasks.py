@@ -36,6 +36,13 @@ CASES = {
         (0.0, -9.0, 0.0),
     ),
     "a tip that a tool inclines": ([HEADING, *PITCHES, ROLL], ("0.1 0 0", "0 0.8 0"), "DIRECTION", 2, None),
+    "a roll that is not square to the pitches": (
+        [HEADING, *PITCHES, joint("roll", "revolute", "0.05 0 0", axis="0.8 0.6 0")],
+        ("0.1 0 0.02", "0 0 0"),
+        "DIRECTION",
+        2,
+        None,
+    ),
     "a wrist that pitches last": (SPREAD, ("0 0 0", "0 0 0"), "DIRECTION", 2, None),
     "a wrist that pitches last, with a tool": (SPREAD, ("0.02 0 0.1", "0 0 0"), "DIRECTION", 2, None),
     "a wrist that pitches last, its tool along x": (SPREAD, ("0.05 0 0", f"0 0 {HALF}"), "DIRECTION", 2, None),

@@ -98,11 +98,12 @@ def _pitches(arm: Arm) -> list[tuple[str, int]]:
 def _directions(arm: Arm) -> list[tuple[str, int]]:
     """The tasks of five axes, those first that a user wants.
 
-    Pitch and roll need a plane that all solutions share: a heading, turns that are parallel, and the roll. There a tip
-    that turns about the last axis points along it; elsewhere its z axis is the tool's, if it can be.
+    Pitch and roll need a plane that all solutions share: a heading, parallel turns square to it, and the roll square to
+    them. There a tip that turns about the last axis points along it; elsewhere its z axis is the tool's, if it can be.
     """
     last, turns = _seen_from_tip(arm), _turns(arm)
-    rolls = [("PITCH_ROLL", k) for k in range(3) if last[k] > 1.0 - _NEARLY and len(turns) <= 3]
+    is_square = all(abs(relation(a, b).angle - np.pi / 2) < _NEARLY for a, b in pairwise(turns))
+    rolls = [("PITCH_ROLL", k) for k in range(3) if last[k] > 1.0 - _NEARLY and len(turns) <= 3 and is_square]
     is_arm = len(turns) == 3 and all(line.kind is Kind.ROTARY for line in arm.lines)
     first = [("DIRECTION", k) for _, k in rolls] + rolls if is_arm else []
     return [*first, ("DIRECTION", 2), *rolls, ("DIRECTION", 0), ("DIRECTION", 1)]
