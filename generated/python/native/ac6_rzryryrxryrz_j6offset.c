@@ -634,8 +634,7 @@ static softkin_status find_finish_root(const void *machine, const double *given,
       {0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5},
       {1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5}};
   const double determinant = softkin_solve(&system_of_2[0][0], 6, 0);
-  const bool fits = (error <= 1e-10)
-      && ((k->size_of_j6_offset_x > 0.0 ? sin_q4 : cos_q5)*wanted_wrist >= -1e-6)
+  const bool fits = (error <= 1e-10) && ((k->searched ? sin_q4 : cos_q5)*wanted_wrist >= -1e-6)
       && (-(wanted_crossing*wanted_elbow*wanted_shoulder)*determinant*k->quotient_in_fits >= -1e-6)
       && (wanted_elbow*(k->a3*sin(q3) + cos(q3)*k->d4)*k->one_by_machine_scale >= -1e-6)
       && ((k->a1 + k->a2*sin_q2 + k->a3*sin_q23 + k->d4*cos_q23)*k->one_by_machine_scale
@@ -811,7 +810,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
     const double wrist_x_tried = wrist_x_closed + (r12_at_q6*sin_q6 - r11_at_q6*cos_q6)*k->j6_offset_x;
     const double wrist_y_tried = wrist_y_closed + (r22_at_q6*sin_q6 - r21_at_q6*cos_q6)*k->j6_offset_x;
     branch_shoulder = k->one_by_machine_scale*(wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1);
-    branch_wrist = (k->size_of_j6_offset_x > 0.0 ? sin_q4 : cos_q5)*k->one_by_machine_scale;
+    branch_wrist = k->one_by_machine_scale*sin_q4;
     branch_crossing = -(branch_shoulder >= 0.0 ? 1.0 : -1.0)*(margin_elbow_closed >= 0.0 ? 1.0 : -1.0)
         *determinant*k->quotient_in_fits;
   } else {
@@ -1532,13 +1531,12 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double effective_q3_tried = sqrt(p->a3*p->a3 + p->d4*p->d4);
   const bool searched = fabs(p->j6_offset_x) > 0.0; /* whether to scan A6 for a root */
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
-  const double size_of_j6_offset_x = fabs(p->j6_offset_x);
   const double a2_minus_effective_q3_tried = p->a2 - effective_q3_tried;
   const double a2_plus_effective_q3_tried = p->a2 + effective_q3_tried;
   const double d4_by_effective_q3_tried = p->d4/effective_q3_tried;
   const double a3_by_effective_q3_tried = p->a3/effective_q3_tried;
   const double one_by_machine_scale = 1.0/machine_scale;
-  const double quotient_in_fits = 0.5*machine_scale*machine_scale/(sqrt(p->a3*p->a3 + p->d4*p->d4)*p->a2);
+  const double quotient_in_fits = 0.5*machine_scale*machine_scale/(p->a2*effective_q3_tried);
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1579,7 +1577,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.effective_q3_tried = effective_q3_tried;
   made.searched = searched;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
-  made.size_of_j6_offset_x = size_of_j6_offset_x;
   made.a2_minus_effective_q3_tried = a2_minus_effective_q3_tried;
   made.a2_plus_effective_q3_tried = a2_plus_effective_q3_tried;
   made.d4_by_effective_q3_tried = d4_by_effective_q3_tried;

@@ -602,8 +602,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* q3: out of reach */
   if (!(fabs(cos_q3) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        (reach - fabs(k->a2) - fabs(k->a3) > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - fabs(k->a2)
-        - fabs(k->a3) : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
+        (reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
+        : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
   }
   /* A1: without a commanded turn, the value nearest to this */
   const double open_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
@@ -1870,6 +1870,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a4 = p->offset_a4;
   made.offset_a5 = p->offset_a5;
   made.offset_a6 = p->offset_a6;
+  made.machine_scale = machine_scale;
   made.rounding_q1 = rounding_q1;
   made.size_q1_for_q3 = size_q1_for_q3;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;

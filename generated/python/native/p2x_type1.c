@@ -109,10 +109,9 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double between_centres = softkin_root(normal_square); /* distance between the centres */
   const double one_by_normal_square = 1.0/normal_square;
   /* square of the height over the line of the centres */
-  const double height_square = 0.25*(between_centres - k->arm_length_1_plus_arm_length_2)
-      *(k->arm_length_1_minus_arm_length_2 + between_centres)
-      *(k->arm_length_1_minus_arm_length_2 - between_centres)
-      *(k->arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square;
+  const double height_square = 0.25*(k->arm_length_1_minus_arm_length_2 + between_centres)
+      *(k->arm_length_1_minus_arm_length_2 - between_centres)*(between_centres + k->machine_scale)
+      *(between_centres - k->machine_scale)*one_by_normal_square;
   /* the rods do not meet */
   if (!(height_square >= -k->arm_length_1_squared_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the rods do not meet", "", 0.0, 0);
@@ -247,10 +246,9 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double between_centres = softkin_root(normal_square); /* distance between the centres */
   const double one_by_normal_square = 1.0/normal_square;
   /* square of the height over the line of the centres */
-  const double height_square = 0.25*(between_centres - k->arm_length_1_plus_arm_length_2)
-      *(k->arm_length_1_minus_arm_length_2 + between_centres)
-      *(k->arm_length_1_minus_arm_length_2 - between_centres)
-      *(k->arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square;
+  const double height_square = 0.25*(k->arm_length_1_minus_arm_length_2 + between_centres)
+      *(k->arm_length_1_minus_arm_length_2 - between_centres)*(between_centres + k->machine_scale)
+      *(between_centres - k->machine_scale)*one_by_normal_square;
   /* the rods do not meet */
   if (!(height_square >= -k->arm_length_1_squared_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the rods do not meet", "", 0.0, 0);
@@ -300,10 +298,9 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double between_centres = softkin_root(normal_square); /* distance between the centres */
   const double one_by_normal_square = 1.0/normal_square;
   /* square of the height over the line of the centres */
-  const double height_square = 0.25*(between_centres - k->arm_length_1_plus_arm_length_2)
-      *(k->arm_length_1_minus_arm_length_2 + between_centres)
-      *(k->arm_length_1_minus_arm_length_2 - between_centres)
-      *(k->arm_length_1_plus_arm_length_2 + between_centres)*one_by_normal_square;
+  const double height_square = 0.25*(k->arm_length_1_minus_arm_length_2 + between_centres)
+      *(k->arm_length_1_minus_arm_length_2 - between_centres)*(between_centres + k->machine_scale)
+      *(between_centres - k->machine_scale)*one_by_normal_square;
   /* the rods do not meet */
   if (!(height_square >= -k->arm_length_1_squared_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the rods do not meet", "", 0.0, 0);
@@ -439,9 +436,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double centre_1_to_2_y_squared = centre_1_to_2_y*centre_1_to_2_y;
   const double product_in_normal_divisor = 1e-22*p->arm_length_1*p->arm_length_1;
   const double arm_length_1_squared_times_rounding = 1e-12*p->arm_length_1*p->arm_length_1;
-  const double arm_length_1_plus_arm_length_2 = p->arm_length_1 + p->arm_length_2;
   const double arm_length_1_minus_arm_length_2 = p->arm_length_1 - p->arm_length_2;
-  const double product_in_foot_fraction = arm_length_1_minus_arm_length_2*arm_length_1_plus_arm_length_2;
+  const double product_in_foot_fraction = arm_length_1_minus_arm_length_2*machine_scale;
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double arm_length_2_squared_times_rounding = 1e-12*p->arm_length_2*p->arm_length_2;
   const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
@@ -462,13 +458,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a1 = p->offset_a1;
   made.offset_a2 = p->offset_a2;
   made.min_type2_margin = p->min_type2_margin;
+  made.machine_scale = machine_scale;
   made.tie = tie;
   made.centre_1_to_2_y = centre_1_to_2_y;
   made.assembly_sign = assembly_sign;
   made.centre_1_to_2_y_squared = centre_1_to_2_y_squared;
   made.product_in_normal_divisor = product_in_normal_divisor;
   made.arm_length_1_squared_times_rounding = arm_length_1_squared_times_rounding;
-  made.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2;
   made.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2;
   made.product_in_foot_fraction = product_in_foot_fraction;
   made.machine_scale_times_plane = machine_scale_times_plane;

@@ -76,9 +76,9 @@ typedef struct {
   /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[P2X_TYPE1_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, arm_length_1, arm_length_2, rail_y_1, rail_y_2,
-      tcp_offset_1, tcp_offset_2, offset_a1, offset_a2, min_type2_margin, tie, centre_1_to_2_y,
-      assembly_sign, centre_1_to_2_y_squared, product_in_normal_divisor, arm_length_1_squared_times_rounding,
-      arm_length_1_plus_arm_length_2, arm_length_1_minus_arm_length_2, product_in_foot_fraction,
+      tcp_offset_1, tcp_offset_2, offset_a1, offset_a2, min_type2_margin, machine_scale, tie,
+      centre_1_to_2_y, assembly_sign, centre_1_to_2_y_squared, product_in_normal_divisor,
+      arm_length_1_squared_times_rounding, arm_length_1_minus_arm_length_2, product_in_foot_fraction,
       machine_scale_times_plane, arm_length_2_squared_times_rounding, machine_scale_squared_times_free_angle,
       one_by_arm_length_1, one_by_arm_length_2, quotient_in_type2_arms_aligned,
       quotient_in_margin_arms_aligned;

@@ -12,8 +12,8 @@ void pcc_regular(const void *machine, const softkin_lanes *given,
   const double half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
-      link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
-      link_length_2 = k->link_length_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      link_length_2 = k->link_length_2, machine_scale = k->machine_scale,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle,
       machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
       quotient_in_cos_a2_from_a1 = k->quotient_in_cos_a2_from_a1, single_a1 = k->single_a1 ? 1.0 : 0.0,
@@ -27,8 +27,7 @@ void pcc_regular(const void *machine, const softkin_lanes *given,
     missed += fabs(z) <= machine_scale_times_plane ? 0.0 : 1.0;
     const double reach = softkin_lane_root(x*x + y*y); /* distance that the remaining links must span */
     /* law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale */
-    const double one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach)
-        *(link_length_1_plus_link_length_2 - reach);
+    const double one_less_cos_a2_from_a1 = (machine_scale + reach)*(machine_scale - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2)
         *(link_length_1_minus_link_length_2 + reach);
@@ -68,8 +67,8 @@ void pcc_regular_all(const void *machine, const softkin_lanes *given,
   const double half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
-      link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
-      link_length_2 = k->link_length_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      link_length_2 = k->link_length_2, machine_scale = k->machine_scale,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle,
       machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
       quotient_in_cos_a2_from_a1 = k->quotient_in_cos_a2_from_a1, single_a1 = k->single_a1 ? 1.0 : 0.0,
@@ -82,8 +81,7 @@ void pcc_regular_all(const void *machine, const softkin_lanes *given,
     missed += fabs(z) <= machine_scale_times_plane ? 0.0 : 1.0;
     const double reach = softkin_lane_root(x*x + y*y); /* distance that the remaining links must span */
     /* law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale */
-    const double one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach)
-        *(link_length_1_plus_link_length_2 - reach);
+    const double one_less_cos_a2_from_a1 = (machine_scale + reach)*(machine_scale - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2)
         *(link_length_1_minus_link_length_2 + reach);

@@ -10,13 +10,12 @@ void scara2_z_regular(const void *machine, const softkin_lanes *given,
     double *SOFTKIN_RESTRICT misses) {
   const scara2_z_machine *k = machine;
   const double arm_length_1 = k->arm_length_1,
-      arm_length_1_minus_arm_length_2 = k->arm_length_1_minus_arm_length_2,
-      arm_length_1_plus_arm_length_2 = k->arm_length_1_plus_arm_length_2, arm_length_2 = k->arm_length_2,
+      arm_length_1_minus_arm_length_2 = k->arm_length_1_minus_arm_length_2, arm_length_2 = k->arm_length_2,
       half_by_arm_length_1_by_arm_length_2 = k->half_by_arm_length_1_by_arm_length_2,
-      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
-      mid_a2 = k->mid_a2, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_z = k->offset_z,
-      quotient_in_cos_a2 = k->quotient_in_cos_a2, single_a1 = k->single_a1 ? 1.0 : 0.0,
-      single_a2 = k->single_a2 ? 1.0 : 0.0;
+      machine_scale = k->machine_scale, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_z = k->offset_z, quotient_in_cos_a2 = k->quotient_in_cos_a2,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         sigma_elbow = given->signs[0][lane], ref_a1 = given->reference[0][lane],
@@ -24,8 +23,7 @@ void scara2_z_regular(const void *machine, const softkin_lanes *given,
     double missed = misses[lane];
     const double reach = softkin_lane_root(x*x + y*y); /* distance that the remaining links must span */
     /* law of cosines for a2 (x² + y²): 1 - cosine, times a scale */
-    const double one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach)
-        *(arm_length_1_plus_arm_length_2 - reach);
+    const double one_less_cos_a2 = (machine_scale + reach)*(machine_scale - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2)
         *(arm_length_1_minus_arm_length_2 + reach);
@@ -60,21 +58,19 @@ void scara2_z_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const scara2_z_machine *k = machine;
   const double arm_length_1 = k->arm_length_1,
-      arm_length_1_minus_arm_length_2 = k->arm_length_1_minus_arm_length_2,
-      arm_length_1_plus_arm_length_2 = k->arm_length_1_plus_arm_length_2, arm_length_2 = k->arm_length_2,
+      arm_length_1_minus_arm_length_2 = k->arm_length_1_minus_arm_length_2, arm_length_2 = k->arm_length_2,
       half_by_arm_length_1_by_arm_length_2 = k->half_by_arm_length_1_by_arm_length_2,
-      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
-      mid_a2 = k->mid_a2, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_z = k->offset_z,
-      quotient_in_cos_a2 = k->quotient_in_cos_a2, single_a1 = k->single_a1 ? 1.0 : 0.0,
-      single_a2 = k->single_a2 ? 1.0 : 0.0;
+      machine_scale = k->machine_scale, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_z = k->offset_z, quotient_in_cos_a2 = k->quotient_in_cos_a2,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane];
     double missed = misses[lane];
     const double reach = softkin_lane_root(x*x + y*y); /* distance that the remaining links must span */
     /* law of cosines for a2 (x² + y²): 1 - cosine, times a scale */
-    const double one_less_cos_a2 = (arm_length_1_plus_arm_length_2 + reach)
-        *(arm_length_1_plus_arm_length_2 - reach);
+    const double one_less_cos_a2 = (machine_scale + reach)*(machine_scale - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2)
         *(arm_length_1_minus_arm_length_2 + reach);

@@ -13,13 +13,12 @@ void scara4_cczc_zccoupled_regular(const void *machine, const softkin_lanes *giv
       half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
-      link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
-      link_length_2 = k->link_length_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a4 = k->mid_a4, offset_a1 = k->offset_a1,
-      offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      quotient_in_cos_a2 = k->quotient_in_cos_a2, quotient_in_z = k->quotient_in_z,
-      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
-      single_a4 = k->single_a4 ? 1.0 : 0.0;
+      link_length_2 = k->link_length_2, machine_scale = k->machine_scale,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a4 = k->mid_a4, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, offset_a4 = k->offset_a4, quotient_in_cos_a2 = k->quotient_in_cos_a2,
+      quotient_in_z = k->quotient_in_z, single_a1 = k->single_a1 ? 1.0 : 0.0,
+      single_a2 = k->single_a2 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r21 = given->rotation[3][lane],
@@ -35,8 +34,7 @@ void scara4_cczc_zccoupled_regular(const void *machine, const softkin_lanes *giv
     missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
     const double reach = softkin_lane_root(x*x + y*y); /* distance that the remaining links must span */
     /* law of cosines for a2 (x² + y²): 1 - cosine, times a scale */
-    const double one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)
-        *(link_length_1_plus_link_length_2 - reach);
+    const double one_less_cos_a2 = (machine_scale + reach)*(machine_scale - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)
         *(link_length_1_minus_link_length_2 + reach);
@@ -87,13 +85,12 @@ void scara4_cczc_zccoupled_regular_all(const void *machine, const softkin_lanes 
       half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
-      link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
-      link_length_2 = k->link_length_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a4 = k->mid_a4, offset_a1 = k->offset_a1,
-      offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      quotient_in_cos_a2 = k->quotient_in_cos_a2, quotient_in_z = k->quotient_in_z,
-      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
-      single_a4 = k->single_a4 ? 1.0 : 0.0;
+      link_length_2 = k->link_length_2, machine_scale = k->machine_scale,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a4 = k->mid_a4, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, offset_a4 = k->offset_a4, quotient_in_cos_a2 = k->quotient_in_cos_a2,
+      quotient_in_z = k->quotient_in_z, single_a1 = k->single_a1 ? 1.0 : 0.0,
+      single_a2 = k->single_a2 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r21 = given->rotation[3][lane],
@@ -108,8 +105,7 @@ void scara4_cczc_zccoupled_regular_all(const void *machine, const softkin_lanes 
     missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
     const double reach = softkin_lane_root(x*x + y*y); /* distance that the remaining links must span */
     /* law of cosines for a2 (x² + y²): 1 - cosine, times a scale */
-    const double one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)
-        *(link_length_1_plus_link_length_2 - reach);
+    const double one_less_cos_a2 = (machine_scale + reach)*(machine_scale - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)
         *(link_length_1_minus_link_length_2 + reach);

@@ -175,8 +175,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   }
   const double reach = sqrt(x*x + y*y); /* distance that the remaining links must span */
   /* law of cosines for a2 (x² + y²): 1 - cosine, times a scale */
-  const double one_less_cos_a2 = (k->link_length_1_plus_link_length_2 + reach)
-      *(k->link_length_1_plus_link_length_2 - reach);
+  const double one_less_cos_a2 = (k->machine_scale + reach)*(k->machine_scale - reach);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = (reach - k->link_length_1_minus_link_length_2)
       *(k->link_length_1_minus_link_length_2 + reach);
@@ -184,9 +183,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a2: out of reach */
   if (!(fabs(cos_a2) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "u",
-        (reach - k->link_length_1_plus_link_length_2 > fabs(k->link_length_1_minus_link_length_2) - reach
-        ? reach - k->link_length_1_plus_link_length_2 : fabs(k->link_length_1_minus_link_length_2) - reach),
-        0);
+        (reach - k->machine_scale > fabs(k->link_length_1_minus_link_length_2) - reach ? reach
+        - k->machine_scale : fabs(k->link_length_1_minus_link_length_2) - reach), 0);
   }
   const double sign_elbow = sigma_elbow; /* elbow: +1 right, -1 left */
   /* sine squared, times the squared scale */
@@ -395,8 +393,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double reach = sqrt(x*x + y*y); /* distance that the remaining links must span */
   /* law of cosines for a2 (x² + y²): 1 - cosine, times a scale */
-  const double one_less_cos_a2 = (k->link_length_1_plus_link_length_2 + reach)
-      *(k->link_length_1_plus_link_length_2 - reach);
+  const double one_less_cos_a2 = (k->machine_scale + reach)*(k->machine_scale - reach);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = (reach - k->link_length_1_minus_link_length_2)
       *(k->link_length_1_minus_link_length_2 + reach);
@@ -496,7 +493,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double shared_sum = p->gear_coupling*SOFTKIN_RADIAN - p->pitch_zc/360.0*SOFTKIN_RADIAN;
   const double quotient_in_z = (p->gear_coupling - p->pitch_zc/360.0)*SOFTKIN_RADIAN;
-  const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
   const double quotient_in_cos_a2 = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);
   made.lowest_a1 = window_of_a1.lowest;
@@ -520,12 +516,12 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a2 = p->offset_a2;
   made.offset_a3 = p->offset_a3;
   made.offset_a4 = p->offset_a4;
+  made.machine_scale = machine_scale;
   made.shared_value = shared_value;
   made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.shared_sum = shared_sum;
   made.quotient_in_z = quotient_in_z;
-  made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
   made.quotient_in_cos_a2 = quotient_in_cos_a2;
   made.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};

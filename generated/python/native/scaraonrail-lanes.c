@@ -12,10 +12,10 @@ void scaraonrail_regular(const void *machine, const softkin_lanes *given,
   const double half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
-      link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
-      link_length_2 = k->link_length_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a4 = k->mid_a4, offset_a1 = k->offset_a1,
-      offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4, offset_e1 = k->offset_e1,
+      link_length_2 = k->link_length_2, machine_scale = k->machine_scale,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a4 = k->mid_a4, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, offset_a4 = k->offset_a4, offset_e1 = k->offset_e1,
       quotient_in_cos_a2 = k->quotient_in_cos_a2, single_a1 = k->single_a1 ? 1.0 : 0.0,
       single_a2 = k->single_a2 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
@@ -37,8 +37,7 @@ void scaraonrail_regular(const void *machine, const softkin_lanes *given,
     /* distance that the remaining links must span */
     const double reach = softkin_lane_root(wrist_x*wrist_x + y*y);
     /* law of cosines for a2 (x² + y²): 1 - cosine, times a scale */
-    const double one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)
-        *(link_length_1_plus_link_length_2 - reach);
+    const double one_less_cos_a2 = (machine_scale + reach)*(machine_scale - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)
         *(link_length_1_minus_link_length_2 + reach);
@@ -83,10 +82,10 @@ void scaraonrail_regular_all(const void *machine, const softkin_lanes *given,
   const double half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
-      link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
-      link_length_2 = k->link_length_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a4 = k->mid_a4, offset_a1 = k->offset_a1,
-      offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4, offset_e1 = k->offset_e1,
+      link_length_2 = k->link_length_2, machine_scale = k->machine_scale,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a4 = k->mid_a4, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
+      offset_a3 = k->offset_a3, offset_a4 = k->offset_a4, offset_e1 = k->offset_e1,
       quotient_in_cos_a2 = k->quotient_in_cos_a2, single_a1 = k->single_a1 ? 1.0 : 0.0,
       single_a2 = k->single_a2 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
@@ -108,8 +107,7 @@ void scaraonrail_regular_all(const void *machine, const softkin_lanes *given,
     /* distance that the remaining links must span */
     const double reach = softkin_lane_root(wrist_x*wrist_x + y*y);
     /* law of cosines for a2 (x² + y²): 1 - cosine, times a scale */
-    const double one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)
-        *(link_length_1_plus_link_length_2 - reach);
+    const double one_less_cos_a2 = (machine_scale + reach)*(machine_scale - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)
         *(link_length_1_minus_link_length_2 + reach);

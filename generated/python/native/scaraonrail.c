@@ -164,8 +164,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double wrist_x = x - reference_e1;
   const double reach = sqrt(wrist_x*wrist_x + y*y); /* distance that the remaining links must span */
   /* law of cosines for a2 (x² + y²): 1 - cosine, times a scale */
-  const double one_less_cos_a2 = (k->link_length_1_plus_link_length_2 + reach)
-      *(k->link_length_1_plus_link_length_2 - reach);
+  const double one_less_cos_a2 = (k->machine_scale + reach)*(k->machine_scale - reach);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = (reach - k->link_length_1_minus_link_length_2)
       *(k->link_length_1_minus_link_length_2 + reach);
@@ -173,9 +172,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a2: out of reach */
   if (!(fabs(cos_a2) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "u",
-        (reach - k->link_length_1_plus_link_length_2 > fabs(k->link_length_1_minus_link_length_2) - reach
-        ? reach - k->link_length_1_plus_link_length_2 : fabs(k->link_length_1_minus_link_length_2) - reach),
-        0);
+        (reach - k->machine_scale > fabs(k->link_length_1_minus_link_length_2) - reach ? reach
+        - k->machine_scale : fabs(k->link_length_1_minus_link_length_2) - reach), 0);
   }
   const double sign_elbow = sigma_elbow; /* elbow: +1 right, -1 left */
   /* sine squared, times the squared scale */
@@ -391,8 +389,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double wrist_x = x - reference_e1;
   const double reach = sqrt(wrist_x*wrist_x + y*y); /* distance that the remaining links must span */
   /* law of cosines for a2 (x² + y²): 1 - cosine, times a scale */
-  const double one_less_cos_a2 = (k->link_length_1_plus_link_length_2 + reach)
-      *(k->link_length_1_plus_link_length_2 - reach);
+  const double one_less_cos_a2 = (k->machine_scale + reach)*(k->machine_scale - reach);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = (reach - k->link_length_1_minus_link_length_2)
       *(k->link_length_1_minus_link_length_2 + reach);
@@ -479,7 +476,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale = p->link_length_1 + p->link_length_2;
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
-  const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
   const double quotient_in_cos_a2 = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);
   made.lowest_e1 = window_of_e1.lowest;
@@ -505,9 +501,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a2 = p->offset_a2;
   made.offset_a3 = p->offset_a3;
   made.offset_a4 = p->offset_a4;
+  made.machine_scale = machine_scale;
   made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
-  made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
   made.quotient_in_cos_a2 = quotient_in_cos_a2;
   made.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};

@@ -15,29 +15,26 @@ void tripod_p3z_regular(const void *machine, const softkin_lanes *given,
       min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
       offset_a3 = k->offset_a3, pivot_1_x = k->pivot_1_x, pivot_1_y = k->pivot_1_y, pivot_2_x = k->pivot_2_x,
       pivot_2_y = k->pivot_2_y, pivot_3_x = k->pivot_3_x, pivot_3_y = k->pivot_3_y,
-      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar,
-      sum_in_span_1_x = k->sum_in_span_1_x, sum_in_span_1_y = k->sum_in_span_1_y,
-      sum_in_span_2_x = k->sum_in_span_2_x, sum_in_span_2_y = k->sum_in_span_2_y,
-      sum_in_span_3_x = k->sum_in_span_3_x, sum_in_span_3_y = k->sum_in_span_3_y;
+      quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         sigma_carriage_1 = given->signs[0][lane], sigma_carriage_2 = given->signs[1][lane],
         sigma_carriage_3 = given->signs[2][lane];
     double missed = misses[lane];
-    const double span_1_x = x - sum_in_span_1_x; /* rod 1: known part of its vector */
-    const double span_1_y = y - sum_in_span_1_y;
+    const double span_1_x = x - pivot_1_x; /* rod 1: known part of its vector */
+    const double span_1_y = y - pivot_1_y;
     /* quadratic equation for a1: rod 1 */
     const double radicand_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y;
     /* rod 1 cannot reach */
     missed += radicand_a1 >= -arm_length_squared_times_rounding ? 0.0 : 1.0;
-    const double span_2_x = x - sum_in_span_2_x; /* rod 2: known part of its vector */
-    const double span_2_y = y - sum_in_span_2_y;
+    const double span_2_x = x - pivot_2_x; /* rod 2: known part of its vector */
+    const double span_2_y = y - pivot_2_y;
     /* quadratic equation for a2: rod 2 */
     const double radicand_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y;
     /* rod 2 cannot reach */
     missed += radicand_a2 >= -arm_length_squared_times_rounding ? 0.0 : 1.0;
-    const double span_3_x = x - sum_in_span_3_x; /* rod 3: known part of its vector */
-    const double span_3_y = y - sum_in_span_3_y;
+    const double span_3_x = x - pivot_3_x; /* rod 3: known part of its vector */
+    const double span_3_y = y - pivot_3_y;
     /* quadratic equation for a3: rod 3 */
     const double radicand_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y;
     /* rod 3 cannot reach */

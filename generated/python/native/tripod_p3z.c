@@ -185,8 +185,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!softkin_are_reasonable((const double[]){x, y, z}, 3)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
-  const double span_1_x = x - k->sum_in_span_1_x; /* rod 1: known part of its vector */
-  const double span_1_y = y - k->sum_in_span_1_y;
+  const double span_1_x = x - k->pivot_1_x; /* rod 1: known part of its vector */
+  const double span_1_y = y - k->pivot_1_y;
   /* quadratic equation for a1: rod 1 */
   const double radicand_a1 = k->arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y;
   /* rod 1 cannot reach */
@@ -194,8 +194,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "rod 1 cannot reach", "u",
         fabs(k->arm_length - sqrt(span_1_x*span_1_x + span_1_y*span_1_y)), 0);
   }
-  const double span_2_x = x - k->sum_in_span_2_x; /* rod 2: known part of its vector */
-  const double span_2_y = y - k->sum_in_span_2_y;
+  const double span_2_x = x - k->pivot_2_x; /* rod 2: known part of its vector */
+  const double span_2_y = y - k->pivot_2_y;
   /* quadratic equation for a2: rod 2 */
   const double radicand_a2 = k->arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y;
   /* rod 2 cannot reach */
@@ -203,8 +203,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "rod 2 cannot reach", "u",
         fabs(k->arm_length - sqrt(span_2_x*span_2_x + span_2_y*span_2_y)), 0);
   }
-  const double span_3_x = x - k->sum_in_span_3_x; /* rod 3: known part of its vector */
-  const double span_3_y = y - k->sum_in_span_3_y;
+  const double span_3_x = x - k->pivot_3_x; /* rod 3: known part of its vector */
+  const double span_3_y = y - k->pivot_3_y;
   /* quadratic equation for a3: rod 3 */
   const double radicand_a3 = k->arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y;
   /* rod 3 cannot reach */
@@ -698,24 +698,18 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double sum_in_projection_3 = 0.5*centre_1_to_3_x*centre_1_to_3_x
       + 0.5*centre_1_to_3_y*centre_1_to_3_y;
   const double one_by_arm_length = 1.0/p->arm_length;
-  const double root_in_span_1_x = sqrt(p->rail_x_1*p->rail_x_1 + p->rail_y_1*p->rail_y_1);
-  const double sum_in_span_1_x = p->rail_x_1 - p->rail_x_1*p->tcp_displacement/root_in_span_1_x;
-  const double sum_in_span_1_y = p->rail_y_1 - p->rail_y_1*p->tcp_displacement/root_in_span_1_x;
-  const double root_in_span_2_x = sqrt(p->rail_x_2*p->rail_x_2 + p->rail_y_2*p->rail_y_2);
-  const double sum_in_span_2_x = p->rail_x_2 - p->rail_x_2*p->tcp_displacement/root_in_span_2_x;
-  const double sum_in_span_2_y = p->rail_y_2 - p->rail_y_2*p->tcp_displacement/root_in_span_2_x;
-  const double root_in_span_3_x = sqrt(p->rail_x_3*p->rail_x_3 + p->rail_y_3*p->rail_y_3);
-  const double sum_in_span_3_x = p->rail_x_3 - p->rail_x_3*p->tcp_displacement/root_in_span_3_x;
-  const double sum_in_span_3_y = p->rail_y_3 - p->rail_y_3*p->tcp_displacement/root_in_span_3_x;
   const double quotient_in_type2_rods_coplanar = assembly_sign/(p->arm_length*p->arm_length*p->arm_length);
   const double quotient_in_margin_rods_coplanar = 1.0/(p->arm_length*p->arm_length*p->arm_length);
-  const double sum_in_slope_1_by_x = p->tcp_displacement/root_in_span_1_x - 1.0;
+  const double sum_in_slope_1_by_x = p->tcp_displacement
+      /sqrt(p->rail_x_1*p->rail_x_1 + p->rail_y_1*p->rail_y_1) - 1.0;
   const double product_in_slope_1_by_x = -p->rail_x_1*sum_in_slope_1_by_x;
   const double product_in_slope_1_by_y = -p->rail_y_1*sum_in_slope_1_by_x;
-  const double sum_in_slope_2_by_x = p->tcp_displacement/root_in_span_2_x - 1.0;
+  const double sum_in_slope_2_by_x = p->tcp_displacement
+      /sqrt(p->rail_x_2*p->rail_x_2 + p->rail_y_2*p->rail_y_2) - 1.0;
   const double product_in_slope_2_by_x = -p->rail_x_2*sum_in_slope_2_by_x;
   const double product_in_slope_2_by_y = -p->rail_y_2*sum_in_slope_2_by_x;
-  const double sum_in_slope_3_by_x = p->tcp_displacement/root_in_span_3_x - 1.0;
+  const double sum_in_slope_3_by_x = p->tcp_displacement
+      /sqrt(p->rail_x_3*p->rail_x_3 + p->rail_y_3*p->rail_y_3) - 1.0;
   const double product_in_slope_3_by_x = -p->rail_x_3*sum_in_slope_3_by_x;
   const double product_in_slope_3_by_y = -p->rail_y_3*sum_in_slope_3_by_x;
   made.lowest_a1 = window_of_a1.lowest;
@@ -754,12 +748,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.sum_in_projection_2 = sum_in_projection_2;
   made.sum_in_projection_3 = sum_in_projection_3;
   made.one_by_arm_length = one_by_arm_length;
-  made.sum_in_span_1_x = sum_in_span_1_x;
-  made.sum_in_span_1_y = sum_in_span_1_y;
-  made.sum_in_span_2_x = sum_in_span_2_x;
-  made.sum_in_span_2_y = sum_in_span_2_y;
-  made.sum_in_span_3_x = sum_in_span_3_x;
-  made.sum_in_span_3_y = sum_in_span_3_y;
   made.quotient_in_type2_rods_coplanar = quotient_in_type2_rods_coplanar;
   made.quotient_in_margin_rods_coplanar = quotient_in_margin_rods_coplanar;
   made.product_in_slope_1_by_x = product_in_slope_1_by_x;

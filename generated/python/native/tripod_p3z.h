@@ -94,8 +94,7 @@ typedef struct {
       assembly_sign, normal_z_squared, product_in_normal_divisor, centre_1_to_3_y_times_normal_z,
       centre_1_to_2_y_times_normal_z, centre_1_to_3_x_times_normal_z, centre_1_to_2_x_times_normal_z,
       arm_length_squared, arm_length_squared_times_rounding, product_in_determinant_divisor,
-      sum_in_projection_2, sum_in_projection_3, one_by_arm_length, sum_in_span_1_x, sum_in_span_1_y,
-      sum_in_span_2_x, sum_in_span_2_y, sum_in_span_3_x, sum_in_span_3_y, quotient_in_type2_rods_coplanar,
+      sum_in_projection_2, sum_in_projection_3, one_by_arm_length, quotient_in_type2_rods_coplanar,
       quotient_in_margin_rods_coplanar, product_in_slope_1_by_x, product_in_slope_1_by_y,
       product_in_slope_2_by_x, product_in_slope_2_by_y, product_in_slope_3_by_x, product_in_slope_3_by_y;
 } tripod_p3z_machine;

@@ -89,18 +89,17 @@ class Constants:
         effective_q3_tried = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
         searched = abs(j6_offset_x) > 0.0  # whether to scan A6 for a root
         machine_scale_times_free_angle = 1e-11 * machine_scale
-        size_of_j6_offset_x = abs(j6_offset_x)
         a2_minus_effective_q3_tried = a2 - effective_q3_tried
         a2_plus_effective_q3_tried = a2 + effective_q3_tried
         d4_by_effective_q3_tried = d4 / effective_q3_tried
         a3_by_effective_q3_tried = a3 / effective_q3_tried
         one_by_machine_scale = 1.0 / machine_scale
-        quotient_in_fits = 0.5 * machine_scale * machine_scale / (sqrt(a3 * a3 + d4 * d4) * a2)
+        quotient_in_fits = 0.5 * machine_scale * machine_scale / (a2 * effective_q3_tried)
         self.d1, self.a1, self.a2, self.a3, self.d4, self.j6_offset_x, self.d6 = d1, a1, a2, a3, d4, j6_offset_x, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.offset_a5, self.offset_a6, self.effective_q3_tried = offset_a5, offset_a6, effective_q3_tried
         self.searched, self.machine_scale_times_free_angle = searched, machine_scale_times_free_angle
-        self.size_of_j6_offset_x, self.a2_minus_effective_q3_tried = size_of_j6_offset_x, a2_minus_effective_q3_tried
+        self.a2_minus_effective_q3_tried = a2_minus_effective_q3_tried
         self.a2_plus_effective_q3_tried = a2_plus_effective_q3_tried
         self.d4_by_effective_q3_tried = d4_by_effective_q3_tried
         self.a3_by_effective_q3_tried, self.one_by_machine_scale = a3_by_effective_q3_tried, one_by_machine_scale
@@ -116,7 +115,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 8e5420feaa78e7fa"
+    KEY = "ac6_rzryryrxryrz_j6offset 2653ed5b2cb79064"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -551,7 +550,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         a3_by_effective_q3_tried, d1, d4 = k.a3_by_effective_q3_tried, k.d1, k.d4
         d4_by_effective_q3_tried, d6, j6_offset_x = k.d4_by_effective_q3_tried, k.d6, k.j6_offset_x
         machine_scale_times_free_angle, one_by_machine_scale = k.machine_scale_times_free_angle, k.one_by_machine_scale
-        quotient_in_fits, size_of_j6_offset_x = k.quotient_in_fits, k.size_of_j6_offset_x
+        quotient_in_fits, searched = k.quotient_in_fits, k.searched
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # wrist centre: the last joints do not move this point
@@ -932,7 +931,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
         fits = (
             (error <= 1e-10)
-            and ((sin_q4 if size_of_j6_offset_x > 0.0 else cos_q5) * wanted_wrist >= -1e-6)
+            and ((sin_q4 if searched else cos_q5) * wanted_wrist >= -1e-6)
             and (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * quotient_in_fits >= -1e-6)
             and (wanted_elbow * (a3 * sin(q3) + cos(q3) * d4) * one_by_machine_scale >= -1e-6)
             and (wanted_shoulder * (a1 + a2 * sin_q2 + a3 * sin_q23 + d4 * cos_q23) * one_by_machine_scale >= -1e-6)
@@ -1111,7 +1110,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         d4_by_effective_q3_tried, d6, j6_offset_x = k.d4_by_effective_q3_tried, k.d6, k.j6_offset_x
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
         offset_a5, offset_a6, one_by_machine_scale = k.offset_a5, k.offset_a6, k.one_by_machine_scale
-        quotient_in_fits, searched, size_of_j6_offset_x = k.quotient_in_fits, k.searched, k.size_of_j6_offset_x
+        quotient_in_fits, searched = k.quotient_in_fits, k.searched
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
@@ -1226,7 +1225,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wrist_x_tried = wrist_x_closed + (r12_at_q6 * sin_q6 - r11_at_q6 * cos_q6) * j6_offset_x
             wrist_y_tried = wrist_y_closed + (r22_at_q6 * sin_q6 - r21_at_q6 * cos_q6) * j6_offset_x
             branch_shoulder = one_by_machine_scale * (wrist_x_tried * cos_q1 + wrist_y_tried * sin_q1)
-            branch_wrist = (sin_q4 if size_of_j6_offset_x > 0.0 else cos_q5) * one_by_machine_scale
+            branch_wrist = one_by_machine_scale * sin_q4
             branch_crossing = (
                 -(1.0 if branch_shoulder >= 0.0 else -1.0)
                 * (1.0 if margin_elbow_closed >= 0.0 else -1.0)

@@ -95,8 +95,8 @@ class Constants:
         quotient_in_sin_q3 = 0.5 / abs(a2 * a3)
         self.d1, self.a2, self.a3, self.d4, self.d5, self.d6, self.offset_a1 = d1, a2, a3, d4, d5, d6, offset_a1
         self.offset_a2, self.offset_a3, self.offset_a4, self.offset_a5 = offset_a2, offset_a3, offset_a4, offset_a5
-        self.offset_a6, self.rounding_q1, self.size_q1_for_q3 = offset_a6, rounding_q1, size_q1_for_q3
-        self.machine_scale_times_free_angle = machine_scale_times_free_angle
+        self.offset_a6, self.machine_scale, self.rounding_q1 = offset_a6, machine_scale, rounding_q1
+        self.size_q1_for_q3, self.machine_scale_times_free_angle = size_q1_for_q3, machine_scale_times_free_angle
         self.size_q1_for_q3_times_rounding = size_q1_for_q3_times_rounding
         self.product_in_divisor_q6_q1_for_q3 = product_in_divisor_q6_q1_for_q3
         self.product_in_highest_q6_q1_for_q3 = product_in_highest_q6_q1_for_q3
@@ -118,7 +118,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 88f089974c50f240"
+    KEY = "ac6_threeparallel a7a72bc9a2c07b55"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -403,7 +403,7 @@ class Ac6ThreeParallel(Mechanism):
         k = self._constants
         a2, a2_minus_a3, a2_plus_a3 = k.a2, k.a2_minus_a3, k.a2_plus_a3
         a2_squared_plus_a3_squared, a3, d1 = k.a2_squared_plus_a3_squared, k.a3, k.d1
-        d1_times_d5_times_2, d4, d5, d6 = k.d1_times_d5_times_2, k.d4, k.d5, k.d6
+        d1_times_d5_times_2, d4, d5, d6, machine_scale = k.d1_times_d5_times_2, k.d4, k.d5, k.d6, k.machine_scale
         machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
@@ -833,7 +833,7 @@ class Ac6ThreeParallel(Mechanism):
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
         # q3: out of reach
         if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):
-            missing = max(abs(abs(a2) - abs(a3)) - reach, reach - abs(a2) - abs(a3))
+            missing = max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1

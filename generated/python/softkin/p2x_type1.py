@@ -76,9 +76,8 @@ class Constants:
         centre_1_to_2_y_squared = centre_1_to_2_y * centre_1_to_2_y
         product_in_normal_divisor = 1e-22 * arm_length_1 * arm_length_1
         arm_length_1_squared_times_rounding = 1e-12 * arm_length_1 * arm_length_1
-        arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
-        product_in_foot_fraction = arm_length_1_minus_arm_length_2 * arm_length_1_plus_arm_length_2
+        product_in_foot_fraction = arm_length_1_minus_arm_length_2 * machine_scale
         machine_scale_times_plane = 1e-6 * machine_scale
         arm_length_2_squared_times_rounding = 1e-12 * arm_length_2 * arm_length_2
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
@@ -88,12 +87,11 @@ class Constants:
         quotient_in_margin_arms_aligned = 1.0 / (arm_length_1 * arm_length_2)
         self.arm_length_1, self.arm_length_2, self.rail_y_1 = arm_length_1, arm_length_2, rail_y_1
         self.rail_y_2, self.tcp_offset_1, self.tcp_offset_2 = rail_y_2, tcp_offset_1, tcp_offset_2
-        self.offset_a1, self.offset_a2, self.min_type2_margin, self.tie = offset_a1, offset_a2, min_type2_margin, tie
-        self.centre_1_to_2_y, self.assembly_sign = centre_1_to_2_y, assembly_sign
-        self.centre_1_to_2_y_squared = centre_1_to_2_y_squared
+        self.offset_a1, self.offset_a2, self.min_type2_margin = offset_a1, offset_a2, min_type2_margin
+        self.machine_scale, self.tie, self.centre_1_to_2_y = machine_scale, tie, centre_1_to_2_y
+        self.assembly_sign, self.centre_1_to_2_y_squared = assembly_sign, centre_1_to_2_y_squared
         self.product_in_normal_divisor = product_in_normal_divisor
         self.arm_length_1_squared_times_rounding = arm_length_1_squared_times_rounding
-        self.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2
         self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
         self.product_in_foot_fraction = product_in_foot_fraction
         self.machine_scale_times_plane = machine_scale_times_plane
@@ -113,7 +111,7 @@ class P2XType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2X_Type1"
-    KEY = "p2x_type1 b312440d4f218c6d"
+    KEY = "p2x_type1 84ad968c26a4cac0"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),
@@ -229,10 +227,10 @@ class P2XType1(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
-        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding, assembly_sign = k.arm_length_1_squared_times_rounding, k.assembly_sign
-        centre_1_to_2_y, centre_1_to_2_y_squared, offset_a1 = k.centre_1_to_2_y, k.centre_1_to_2_y_squared, k.offset_a1
-        offset_a2, one_by_arm_length_1, one_by_arm_length_2 = k.offset_a2, k.one_by_arm_length_1, k.one_by_arm_length_2
+        centre_1_to_2_y, centre_1_to_2_y_squared = k.centre_1_to_2_y, k.centre_1_to_2_y_squared
+        machine_scale, offset_a1, offset_a2 = k.machine_scale, k.offset_a1, k.offset_a2
+        one_by_arm_length_1, one_by_arm_length_2 = k.one_by_arm_length_1, k.one_by_arm_length_2
         product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
         rail_y_1, tcp_offset_1, tcp_offset_2 = k.rail_y_1, k.tcp_offset_1, k.tcp_offset_2
         # inputs must be numbers, and of reasonable size
@@ -252,10 +250,10 @@ class P2XType1(OffsetKinematics):
         # square of the height over the line of the centres
         height_square = (
             0.25
-            * (between_centres - arm_length_1_plus_arm_length_2)
             * (arm_length_1_minus_arm_length_2 + between_centres)
             * (arm_length_1_minus_arm_length_2 - between_centres)
-            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * (between_centres + machine_scale)
+            * (between_centres - machine_scale)
             * one_by_normal_square
         )
         # the rods do not meet
@@ -351,10 +349,10 @@ class P2XType1(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
-        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding, assembly_sign = k.arm_length_1_squared_times_rounding, k.assembly_sign
-        centre_1_to_2_y, centre_1_to_2_y_squared, offset_a1 = k.centre_1_to_2_y, k.centre_1_to_2_y_squared, k.offset_a1
-        offset_a2, one_by_arm_length_1, one_by_arm_length_2 = k.offset_a2, k.one_by_arm_length_1, k.one_by_arm_length_2
+        centre_1_to_2_y, centre_1_to_2_y_squared = k.centre_1_to_2_y, k.centre_1_to_2_y_squared
+        machine_scale, offset_a1, offset_a2 = k.machine_scale, k.offset_a1, k.offset_a2
+        one_by_arm_length_1, one_by_arm_length_2 = k.one_by_arm_length_1, k.one_by_arm_length_2
         product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
         quotient_in_margin_arms_aligned, rail_y_1, rail_y_2 = k.quotient_in_margin_arms_aligned, k.rail_y_1, k.rail_y_2
         tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
@@ -375,10 +373,10 @@ class P2XType1(OffsetKinematics):
         # square of the height over the line of the centres
         height_square = (
             0.25
-            * (between_centres - arm_length_1_plus_arm_length_2)
             * (arm_length_1_minus_arm_length_2 + between_centres)
             * (arm_length_1_minus_arm_length_2 - between_centres)
-            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * (between_centres + machine_scale)
+            * (between_centres - machine_scale)
             * one_by_normal_square
         )
         # the rods do not meet
@@ -406,9 +404,9 @@ class P2XType1(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
-        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding, assembly_sign = k.arm_length_1_squared_times_rounding, k.assembly_sign
         centre_1_to_2_y, centre_1_to_2_y_squared = k.centre_1_to_2_y, k.centre_1_to_2_y_squared
+        machine_scale = k.machine_scale
         machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
         offset_a2, product_in_foot_fraction = k.offset_a2, k.product_in_foot_fraction
         product_in_normal_divisor, rail_y_1, rail_y_2 = k.product_in_normal_divisor, k.rail_y_1, k.rail_y_2
@@ -430,10 +428,10 @@ class P2XType1(OffsetKinematics):
         # square of the height over the line of the centres
         height_square = (
             0.25
-            * (between_centres - arm_length_1_plus_arm_length_2)
             * (arm_length_1_minus_arm_length_2 + between_centres)
             * (arm_length_1_minus_arm_length_2 - between_centres)
-            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * (between_centres + machine_scale)
+            * (between_centres - machine_scale)
             * one_by_normal_square
         )
         # the rods do not meet
@@ -530,10 +528,10 @@ class P2XType1(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
-        arm_length_1_plus_arm_length_2 = k.arm_length_1_plus_arm_length_2
         arm_length_1_squared_times_rounding, assembly_sign = k.arm_length_1_squared_times_rounding, k.assembly_sign
-        centre_1_to_2_y, centre_1_to_2_y_squared, offset_a1 = k.centre_1_to_2_y, k.centre_1_to_2_y_squared, k.offset_a1
-        offset_a2, one_by_arm_length_1, one_by_arm_length_2 = k.offset_a2, k.one_by_arm_length_1, k.one_by_arm_length_2
+        centre_1_to_2_y, centre_1_to_2_y_squared = k.centre_1_to_2_y, k.centre_1_to_2_y_squared
+        machine_scale, offset_a1, offset_a2 = k.machine_scale, k.offset_a1, k.offset_a2
+        one_by_arm_length_1, one_by_arm_length_2 = k.one_by_arm_length_1, k.one_by_arm_length_2
         product_in_foot_fraction, product_in_normal_divisor = k.product_in_foot_fraction, k.product_in_normal_divisor
         tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
         # inputs must be numbers, and of reasonable size
@@ -553,10 +551,10 @@ class P2XType1(OffsetKinematics):
         # square of the height over the line of the centres
         height_square = (
             0.25
-            * (between_centres - arm_length_1_plus_arm_length_2)
             * (arm_length_1_minus_arm_length_2 + between_centres)
             * (arm_length_1_minus_arm_length_2 - between_centres)
-            * (arm_length_1_plus_arm_length_2 + between_centres)
+            * (between_centres + machine_scale)
+            * (between_centres - machine_scale)
             * one_by_normal_square
         )
         # the rods do not meet

@@ -65,14 +65,13 @@ class Constants:
         machine_scale_times_plane = 1e-6 * machine_scale
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
-        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         quotient_in_cos_a2_from_a1 = 0.25 / (link_length_1 * link_length_2)
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         self.link_length_1, self.link_length_2, self.offset_a1 = link_length_1, link_length_2, offset_a1
-        self.offset_a2, self.machine_scale_times_plane = offset_a2, machine_scale_times_plane
+        self.offset_a2, self.machine_scale = offset_a2, machine_scale
+        self.machine_scale_times_plane = machine_scale_times_plane
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.quotient_in_cos_a2_from_a1 = quotient_in_cos_a2_from_a1
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
 
@@ -86,7 +85,7 @@ class PCC(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_PCC"
-    KEY = "pcc 782aa33b9d41e415"
+    KEY = "pcc b6d9d041a1d17355"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Inner arm about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Outer arm about Z, its absolute angle", multi_turn=True),
@@ -219,7 +218,7 @@ class PCC(OffsetKinematics):
         k = self._constants
         half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        link_length_2, machine_scale = k.link_length_2, k.machine_scale
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         offset_a1, offset_a2, quotient_in_cos_a2_from_a1 = k.offset_a1, k.offset_a2, k.quotient_in_cos_a2_from_a1
@@ -232,9 +231,7 @@ class PCC(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach) * (
-            link_length_1_plus_link_length_2 - reach
-        )
+        one_less_cos_a2_from_a1 = (machine_scale + reach) * (machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
             link_length_1_minus_link_length_2 + reach
@@ -242,7 +239,7 @@ class PCC(OffsetKinematics):
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * quotient_in_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
-            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
@@ -367,7 +364,7 @@ class PCC(OffsetKinematics):
         k = self._constants
         half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        link_length_2, machine_scale = k.link_length_2, k.machine_scale
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         offset_a1, offset_a2, quotient_in_cos_a2_from_a1 = k.offset_a1, k.offset_a2, k.quotient_in_cos_a2_from_a1
@@ -382,9 +379,7 @@ class PCC(OffsetKinematics):
         flange_y = y - point_y  # position of the flange: the point less its offset
         reach = sqrt(flange_x * flange_x + flange_y * flange_y)  # distance that the remaining links must span
         # law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach) * (
-            link_length_1_plus_link_length_2 - reach
-        )
+        one_less_cos_a2_from_a1 = (machine_scale + reach) * (machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
             link_length_1_minus_link_length_2 + reach
@@ -392,7 +387,7 @@ class PCC(OffsetKinematics):
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * quotient_in_cos_a2_from_a1
         # a2_from_a1: out of reach
         if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
-            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1

@@ -64,16 +64,14 @@ class Constants:
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
-        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         quotient_in_cos_a2 = 0.25 / (link_length_1 * link_length_2)
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.offset_a1 = link_length_1, link_length_2, offset_a1
-        self.offset_a2, self.offset_a3 = offset_a2, offset_a3
+        self.offset_a2, self.offset_a3, self.machine_scale = offset_a2, offset_a3, machine_scale
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
-        self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.quotient_in_cos_a2 = quotient_in_cos_a2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
         self.one_by_machine_scale = one_by_machine_scale
@@ -88,7 +86,7 @@ class Scara3CCZ(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_CCZ"
-    KEY = "scara3_ccz 771c367210c7a7bb"
+    KEY = "scara3_ccz df3704f0f3a81309"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -230,7 +228,7 @@ class Scara3CCZ(OffsetKinematics):
         k = self._constants
         half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        link_length_2, machine_scale = k.link_length_2, k.machine_scale
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
         quotient_in_cos_a2, single_a1, single_a2 = k.quotient_in_cos_a2, k.single_a1, k.single_a2
@@ -238,13 +236,13 @@ class Scara3CCZ(OffsetKinematics):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (machine_scale + reach) * (machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
-            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (

@@ -83,16 +83,15 @@ class Constants:
         shared_sum = gear_coupling * RADIAN - pitch_zc / 360.0 * RADIAN
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         quotient_in_z = (gear_coupling - pitch_zc / 360.0) * RADIAN
-        link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         quotient_in_cos_a2 = 0.25 / (link_length_1 * link_length_2)
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.flange_down = link_length_1, link_length_2, flange_down
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.shared_value, self.link_length_1_minus_link_length_2 = shared_value, link_length_1_minus_link_length_2
+        self.machine_scale, self.shared_value = machine_scale, shared_value
+        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle, self.shared_sum = machine_scale_times_free_angle, shared_sum
         self.link_length_1_times_shortest_link, self.quotient_in_z = link_length_1_times_shortest_link, quotient_in_z
-        self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.quotient_in_cos_a2 = quotient_in_cos_a2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
         self.one_by_machine_scale = one_by_machine_scale
@@ -107,7 +106,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_CCZC_ZCcoupled"
-    KEY = "scara4_cczc_zccoupled 305bb0f24a7916d8"
+    KEY = "scara4_cczc_zccoupled f3ac70f2a3a22485"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -308,7 +307,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         k = self._constants
         flange_down, half_by_link_length_1_by_link_length_2 = k.flange_down, k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
-        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        link_length_2, machine_scale = k.link_length_2, k.machine_scale
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
         offset_a4, quotient_in_cos_a2, quotient_in_z = k.offset_a4, k.quotient_in_cos_a2, k.quotient_in_z
@@ -328,13 +327,13 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (machine_scale + reach) * (machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
         if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
-            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (

@@ -172,24 +172,15 @@ class Constants:
         sum_in_projection_2 = 0.5 * centre_1_to_2_x * centre_1_to_2_x + 0.5 * centre_1_to_2_y * centre_1_to_2_y
         sum_in_projection_3 = 0.5 * centre_1_to_3_x * centre_1_to_3_x + 0.5 * centre_1_to_3_y * centre_1_to_3_y
         one_by_arm_length = 1.0 / arm_length
-        root_in_span_1_x = sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1)
-        sum_in_span_1_x = rail_x_1 - rail_x_1 * tcp_displacement / root_in_span_1_x
-        sum_in_span_1_y = rail_y_1 - rail_y_1 * tcp_displacement / root_in_span_1_x
-        root_in_span_2_x = sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2)
-        sum_in_span_2_x = rail_x_2 - rail_x_2 * tcp_displacement / root_in_span_2_x
-        sum_in_span_2_y = rail_y_2 - rail_y_2 * tcp_displacement / root_in_span_2_x
-        root_in_span_3_x = sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3)
-        sum_in_span_3_x = rail_x_3 - rail_x_3 * tcp_displacement / root_in_span_3_x
-        sum_in_span_3_y = rail_y_3 - rail_y_3 * tcp_displacement / root_in_span_3_x
         quotient_in_type2_rods_coplanar = assembly_sign / (arm_length * arm_length * arm_length)
         quotient_in_margin_rods_coplanar = 1.0 / (arm_length * arm_length * arm_length)
-        sum_in_slope_1_by_x = tcp_displacement / root_in_span_1_x - 1.0
+        sum_in_slope_1_by_x = tcp_displacement / sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1) - 1.0
         product_in_slope_1_by_x = -rail_x_1 * sum_in_slope_1_by_x
         product_in_slope_1_by_y = -rail_y_1 * sum_in_slope_1_by_x
-        sum_in_slope_2_by_x = tcp_displacement / root_in_span_2_x - 1.0
+        sum_in_slope_2_by_x = tcp_displacement / sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2) - 1.0
         product_in_slope_2_by_x = -rail_x_2 * sum_in_slope_2_by_x
         product_in_slope_2_by_y = -rail_y_2 * sum_in_slope_2_by_x
-        sum_in_slope_3_by_x = tcp_displacement / root_in_span_3_x - 1.0
+        sum_in_slope_3_by_x = tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3) - 1.0
         product_in_slope_3_by_x = -rail_x_3 * sum_in_slope_3_by_x
         product_in_slope_3_by_y = -rail_y_3 * sum_in_slope_3_by_x
         self.arm_length, self.offset_a1, self.offset_a2, self.offset_a3 = arm_length, offset_a1, offset_a2, offset_a3
@@ -207,10 +198,8 @@ class Constants:
         self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
         self.product_in_determinant_divisor = product_in_determinant_divisor
         self.sum_in_projection_2, self.sum_in_projection_3 = sum_in_projection_2, sum_in_projection_3
-        self.one_by_arm_length, self.sum_in_span_1_x = one_by_arm_length, sum_in_span_1_x
-        self.sum_in_span_1_y, self.sum_in_span_2_x = sum_in_span_1_y, sum_in_span_2_x
-        self.sum_in_span_2_y, self.sum_in_span_3_x = sum_in_span_2_y, sum_in_span_3_x
-        self.sum_in_span_3_y, self.quotient_in_type2_rods_coplanar = sum_in_span_3_y, quotient_in_type2_rods_coplanar
+        self.one_by_arm_length = one_by_arm_length
+        self.quotient_in_type2_rods_coplanar = quotient_in_type2_rods_coplanar
         self.quotient_in_margin_rods_coplanar = quotient_in_margin_rods_coplanar
         self.product_in_slope_1_by_x, self.product_in_slope_1_by_y = product_in_slope_1_by_x, product_in_slope_1_by_y
         self.product_in_slope_2_by_x, self.product_in_slope_2_by_y = product_in_slope_2_by_x, product_in_slope_2_by_y
@@ -226,7 +215,7 @@ class TripodP3Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_P3Z"
-    KEY = "tripod_p3z 87f157e47423eace"
+    KEY = "tripod_p3z 6b6690d53aabf89e"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along Z, up", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along Z, up", multi_turn=False),
@@ -443,28 +432,26 @@ class TripodP3Z(OffsetKinematics):
         offset_a1, offset_a2, offset_a3, pivot_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.pivot_1_x
         pivot_1_y, pivot_2_x, pivot_2_y, pivot_3_x = k.pivot_1_y, k.pivot_2_x, k.pivot_2_y, k.pivot_3_x
         pivot_3_y, quotient_in_type2_rods_coplanar = k.pivot_3_y, k.quotient_in_type2_rods_coplanar
-        sum_in_span_1_x, sum_in_span_1_y, sum_in_span_2_x = k.sum_in_span_1_x, k.sum_in_span_1_y, k.sum_in_span_2_x
-        sum_in_span_2_y, sum_in_span_3_x, sum_in_span_3_y = k.sum_in_span_2_y, k.sum_in_span_3_x, k.sum_in_span_3_y
         if not reasonable(x, y, z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = x - sum_in_span_1_x  # rod 1: known part of its vector
-        span_1_y = y - sum_in_span_1_y
+        span_1_x = x - pivot_1_x  # rod 1: known part of its vector
+        span_1_y = y - pivot_1_y
         # quadratic equation for a1: rod 1
         radicand_a1 = arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_1_x * span_1_x + span_1_y * span_1_y))
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = x - sum_in_span_2_x  # rod 2: known part of its vector
-        span_2_y = y - sum_in_span_2_y
+        span_2_x = x - pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - pivot_2_y
         # quadratic equation for a2: rod 2
         radicand_a2 = arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_2_x * span_2_x + span_2_y * span_2_y))
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_x = x - sum_in_span_3_x  # rod 3: known part of its vector
-        span_3_y = y - sum_in_span_3_y
+        span_3_x = x - pivot_3_x  # rod 3: known part of its vector
+        span_3_y = y - pivot_3_y
         # quadratic equation for a3: rod 3
         radicand_a3 = arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         # rod 3 cannot reach
@@ -712,30 +699,28 @@ class TripodP3Z(OffsetKinematics):
         offset_a1, offset_a2, offset_a3, pivot_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.pivot_1_x
         pivot_1_y, pivot_2_x, pivot_2_y, pivot_3_x = k.pivot_1_y, k.pivot_2_x, k.pivot_2_y, k.pivot_3_x
         pivot_3_y, quotient_in_type2_rods_coplanar = k.pivot_3_y, k.quotient_in_type2_rods_coplanar
-        sum_in_span_1_x, sum_in_span_1_y, sum_in_span_2_x = k.sum_in_span_1_x, k.sum_in_span_1_y, k.sum_in_span_2_x
-        sum_in_span_2_y, sum_in_span_3_x, sum_in_span_3_y = k.sum_in_span_2_y, k.sum_in_span_3_x, k.sum_in_span_3_y
         if not reasonable(x, y, z, point_x, point_y, point_z):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # position of the flange: the point less its offset
-        span_1_x = flange_x - sum_in_span_1_x  # rod 1: known part of its vector
+        span_1_x = flange_x - pivot_1_x  # rod 1: known part of its vector
         flange_y = y - point_y  # position of the flange: the point less its offset
-        span_1_y = flange_y - sum_in_span_1_y
+        span_1_y = flange_y - pivot_1_y
         # quadratic equation for a1: rod 1
         radicand_a1 = arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
         # rod 1 cannot reach
         if not (radicand_a1 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_1_x * span_1_x + span_1_y * span_1_y))
             return Diagnosis(Status.UNREACHABLE, "rod 1 cannot reach [u]", missing)
-        span_2_x = flange_x - sum_in_span_2_x  # rod 2: known part of its vector
-        span_2_y = flange_y - sum_in_span_2_y
+        span_2_x = flange_x - pivot_2_x  # rod 2: known part of its vector
+        span_2_y = flange_y - pivot_2_y
         # quadratic equation for a2: rod 2
         radicand_a2 = arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
         # rod 2 cannot reach
         if not (radicand_a2 >= -arm_length_squared_times_rounding):
             missing = abs(arm_length - sqrt(span_2_x * span_2_x + span_2_y * span_2_y))
             return Diagnosis(Status.UNREACHABLE, "rod 2 cannot reach [u]", missing)
-        span_3_x = flange_x - sum_in_span_3_x  # rod 3: known part of its vector
-        span_3_y = flange_y - sum_in_span_3_y
+        span_3_x = flange_x - pivot_3_x  # rod 3: known part of its vector
+        span_3_y = flange_y - pivot_3_y
         # quadratic equation for a3: rod 3
         radicand_a3 = arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         # rod 3 cannot reach

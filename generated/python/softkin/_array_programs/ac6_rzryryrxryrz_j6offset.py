@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 120533
+    VALUES = 120532
 
     def try_joint(self, given: Values, status: Codes) -> Values:
         """The residual of the closure at a trial, its slope, and the angles that may turn fast."""
@@ -710,7 +710,7 @@ class ArrayPrograms(Programs):
         )
         fits = (
             (error <= 1e-10)
-            & (select(k.size_of_j6_offset_x > 0.0, sin_q4, cos_q5) * wanted_wrist >= -1e-6)
+            & (select(k.searched, sin_q4, cos_q5) * wanted_wrist >= -1e-6)
             & (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * k.quotient_in_fits >= -1e-6)
             & (wanted_elbow * (k.a3 * sin(q3) + cos(q3) * k.d4) * k.one_by_machine_scale >= -1e-6)
             & (
@@ -924,7 +924,7 @@ class ArrayPrograms(Programs):
             wrist_x_tried = wrist_x_closed + (r12_at_q6 * sin_q6 - r11_at_q6 * cos_q6) * k.j6_offset_x
             wrist_y_tried = wrist_y_closed + (r22_at_q6 * sin_q6 - r21_at_q6 * cos_q6) * k.j6_offset_x
             branch_shoulder = k.one_by_machine_scale * (wrist_x_tried * cos_q1 + wrist_y_tried * sin_q1)
-            branch_wrist = select(k.size_of_j6_offset_x > 0.0, sin_q4, cos_q5) * k.one_by_machine_scale
+            branch_wrist = k.one_by_machine_scale * sin_q4
             branch_crossing = (
                 -select(branch_shoulder >= 0.0, 1.0, -1.0)
                 * select(margin_elbow_closed >= 0.0, 1.0, -1.0)

@@ -39,10 +39,10 @@ class ArrayPrograms(Programs):
         # square of the height over the line of the centres
         height_square = (
             0.25
-            * (between_centres - k.arm_length_1_plus_arm_length_2)
             * (k.arm_length_1_minus_arm_length_2 + between_centres)
             * (k.arm_length_1_minus_arm_length_2 - between_centres)
-            * (k.arm_length_1_plus_arm_length_2 + between_centres)
+            * (between_centres + k.machine_scale)
+            * (between_centres - k.machine_scale)
             * one_by_normal_square
         )
         # foot of the perpendicular, as a fraction of this distance
@@ -132,10 +132,10 @@ class ArrayPrograms(Programs):
         # square of the height over the line of the centres
         height_square = (
             0.25
-            * (between_centres - k.arm_length_1_plus_arm_length_2)
             * (k.arm_length_1_minus_arm_length_2 + between_centres)
             * (k.arm_length_1_minus_arm_length_2 - between_centres)
-            * (k.arm_length_1_plus_arm_length_2 + between_centres)
+            * (between_centres + k.machine_scale)
+            * (between_centres - k.machine_scale)
             * one_by_normal_square
         )
         # foot of the perpendicular, as a fraction of this distance
@@ -182,10 +182,10 @@ class ArrayPrograms(Programs):
         # square of the height over the line of the centres
         height_square = (
             0.25
-            * (between_centres - k.arm_length_1_plus_arm_length_2)
             * (k.arm_length_1_minus_arm_length_2 + between_centres)
             * (k.arm_length_1_minus_arm_length_2 - between_centres)
-            * (k.arm_length_1_plus_arm_length_2 + between_centres)
+            * (between_centres + k.machine_scale)
+            * (between_centres - k.machine_scale)
             * one_by_normal_square
         )
         # height, as a multiple of the normal

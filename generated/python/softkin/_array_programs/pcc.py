@@ -68,9 +68,7 @@ class ArrayPrograms(Programs):
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2_from_a1 = (k.link_length_1_plus_link_length_2 + reach) * (
-            k.link_length_1_plus_link_length_2 - reach
-        )
+        one_less_cos_a2_from_a1 = (k.machine_scale + reach) * (k.machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2_from_a1 = (reach - k.link_length_1_minus_link_length_2) * (
             k.link_length_1_minus_link_length_2 + reach

@@ -73,7 +73,7 @@ class ArrayPrograms(Programs):
         require(status, reasonable(ref_a1, ref_a2, x, y, z), Status.BAD_INPUT)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (k.arm_length_1_plus_arm_length_2 + reach) * (k.arm_length_1_plus_arm_length_2 - reach)
+        one_less_cos_a2 = (k.machine_scale + reach) * (k.machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.arm_length_1_minus_arm_length_2) * (k.arm_length_1_minus_arm_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * k.quotient_in_cos_a2

@@ -95,7 +95,7 @@ class ArrayPrograms(Programs):
             heading_across = r21 - r12
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (k.link_length_1_plus_link_length_2 + reach) * (k.link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (k.machine_scale + reach) * (k.machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * k.quotient_in_cos_a2

@@ -17,7 +17,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 54
+    VALUES = 48
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -88,16 +88,16 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(x, y, z), Status.BAD_INPUT)
-        span_1_x = x - k.sum_in_span_1_x  # rod 1: known part of its vector
-        span_1_y = y - k.sum_in_span_1_y
+        span_1_x = x - k.pivot_1_x  # rod 1: known part of its vector
+        span_1_y = y - k.pivot_1_y
         # quadratic equation for a1: rod 1
         radicand_a1 = k.arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
-        span_2_x = x - k.sum_in_span_2_x  # rod 2: known part of its vector
-        span_2_y = y - k.sum_in_span_2_y
+        span_2_x = x - k.pivot_2_x  # rod 2: known part of its vector
+        span_2_y = y - k.pivot_2_y
         # quadratic equation for a2: rod 2
         radicand_a2 = k.arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
-        span_3_x = x - k.sum_in_span_3_x  # rod 3: known part of its vector
-        span_3_y = y - k.sum_in_span_3_y
+        span_3_x = x - k.pivot_3_x  # rod 3: known part of its vector
+        span_3_y = y - k.pivot_3_y
         # quadratic equation for a3: rod 3
         radicand_a3 = k.arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
         rod_1_x = x - k.pivot_1_x

@@ -19,7 +19,7 @@ def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
     half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
     link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
-    link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+    link_length_2, machine_scale = k.link_length_2, k.machine_scale
     machine_scale_times_free_angle = k.machine_scale_times_free_angle
     machine_scale_times_plane, offset_a1, offset_a2 = k.machine_scale_times_plane, k.offset_a1, k.offset_a2
     quotient_in_cos_a2_from_a1 = k.quotient_in_cos_a2_from_a1
@@ -36,9 +36,7 @@ def unrolled(k: Constants) -> Unrolled:
             return 2 * (refused[Status.UNREACHABLE],)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach) * (
-            link_length_1_plus_link_length_2 - reach
-        )
+        one_less_cos_a2_from_a1 = (machine_scale + reach) * (machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
             link_length_1_minus_link_length_2 + reach
@@ -82,9 +80,7 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2_from_a1 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2_from_a1 = (link_length_1_plus_link_length_2 + reach) * (
-            link_length_1_plus_link_length_2 - reach
-        )
+        one_less_cos_a2_from_a1 = (machine_scale + reach) * (machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2_from_a1 = (reach - link_length_1_minus_link_length_2) * (
             link_length_1_minus_link_length_2 + reach

@@ -21,8 +21,8 @@ def unrolled(k: Constants) -> Unrolled:
     flange_down, half_by_link_length_1_by_link_length_2 = k.flange_down, k.half_by_link_length_1_by_link_length_2
     highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
     link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
-    link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
-    lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
+    link_length_2, lowest_a1, lowest_a2, lowest_a3 = k.link_length_2, k.lowest_a1, k.lowest_a2, k.lowest_a3
+    lowest_a4, machine_scale = k.lowest_a4, k.machine_scale
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
     offset_a4, quotient_in_cos_a2, quotient_in_z = k.offset_a4, k.quotient_in_cos_a2, k.quotient_in_z
@@ -48,7 +48,7 @@ def unrolled(k: Constants) -> Unrolled:
             return 2 * (refused[Status.UNREACHABLE],)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (machine_scale + reach) * (machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
@@ -104,7 +104,7 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (machine_scale + reach) * (machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2

@@ -21,10 +21,10 @@ def unrolled(k: Constants) -> Unrolled:
     half_by_link_length_1_by_link_length_2, highest_a1 = k.half_by_link_length_1_by_link_length_2, k.highest_a1
     highest_a2, highest_a3, highest_a4, highest_e1 = k.highest_a2, k.highest_a3, k.highest_a4, k.highest_e1
     link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
-    link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
-    lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
-    lowest_e1, machine_scale_times_free_angle, mid_a1 = k.lowest_e1, k.machine_scale_times_free_angle, k.mid_a1
-    mid_a2, mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a2, k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
+    link_length_2, lowest_a1, lowest_a2, lowest_a3 = k.link_length_2, k.lowest_a1, k.lowest_a2, k.lowest_a3
+    lowest_a4, lowest_e1, machine_scale = k.lowest_a4, k.lowest_e1, k.machine_scale
+    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+    mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
     offset_a4, offset_e1, quotient_in_cos_a2 = k.offset_a4, k.offset_e1, k.quotient_in_cos_a2
     single_a1, single_a2, single_a4 = k.single_a1, k.single_a2, k.single_a4
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_e1))
@@ -45,7 +45,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - (ref_e1 - offset_e1)  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (machine_scale + reach) * (machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
@@ -90,7 +90,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - (ref_e1 - offset_e1)  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
-        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
+        one_less_cos_a2 = (machine_scale + reach) * (machine_scale - reach)
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
