@@ -47,6 +47,17 @@ def with_stated_rods(mechanism: Mechanism) -> Mechanism:
     return replace(own, closure=tuple(left))
 
 
+def with_positive_lengths(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with the lengths of its rods among its positive quantities, if joints change them; not a length
+    whose sign a branch of the description tells.
+    """
+    joints = {j.symbol for j in mechanism.joints}
+    told = {s for b in mechanism.branches if not b.is_crossing for s in b.indicator.free_symbols}
+    read = [(rod.length, rod.length.free_symbols & joints) for rod in mechanism.rods]
+    own = [length for length, names in read if names and not names & told and length not in mechanism.positive]
+    return replace(mechanism, positive=(*mechanism.positive, *own)) if own else mechanism
+
+
 def _plane_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Plane | None:
     """The plane that has this equation; None where there is none."""
     size = 2 if _is_flat(mechanism, equation) else 3

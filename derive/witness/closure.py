@@ -172,7 +172,7 @@ def _positive(mechanism: Mechanism) -> list[sp.Expr]:
         return left
     way = mechanism.assembly
     mode = way.signs[0] * (1 - 2 * real(way.parameter)) * way.indicator * sp.sign(way.handedness)
-    return [*left, mode / sp.Mul(*[rod.length for rod in mechanism.rods]) - LEAST_MARGIN]
+    return [*left, mode / sp.Mul(*[sp.Abs(rod.length) for rod in mechanism.rods]) - LEAST_MARGIN]
 
 
 def _indicator(branch: Branch, named: dict[sp.Symbol, Term]) -> Term:
