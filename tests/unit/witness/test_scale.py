@@ -132,3 +132,18 @@ def test_a_leg_whose_sign_a_branch_tells_keeps_it() -> None:
     assert solutions(witness(build(validate(plain)))) == 1
     named = replace(plain, branches=(branch("side", own[0], out=+1, through=-1),))
     assert solutions(witness(build(validate(named)))) == 2
+
+
+def test_fewer_solutions_than_branches_are_told_as_what_was_seen() -> None:
+    """A five-bar has four branches; those of the other assembly mode are no solutions of this machine."""
+    sizes = (("base", 160.0), ("arm", 210.0), ("rod", 330.0))
+    base, link, forearm = (length(n, n, nominal=v) for n, v in sizes)
+    joints = tuple(rotary(f"A{k}", "arm") for k in (1, 2))
+    knees = [(s * base / 2 + link * cos(a), link * sin(a)) for s, a in zip((-1, 1), joints, strict=True)]
+    rods = tuple(rod(str(k), knee, (X, Y), forearm) for k, knee in enumerate(knees, 1))
+    told: list[str] = []
+    five_bar = Mechanism(name="Bars", parameters=(base, link, forearm), joints=joints, task=Task("xy"), rods=rods)
+    kin = derive_and_measure(validate(five_bar), lambda stage, found: told.append(f"{stage} {found}"))
+    assert kin.evidence is not None and kin.evidence.inverted is not None
+    seen = kin.evidence.inverted.solutions
+    assert seen < 4 and told[-1].endswith(f"up to {seen} solutions seen, of 4 branches")
