@@ -121,9 +121,26 @@ REFUSALS: Mapping[str, tuple[str, str, str]] = {
     ),
     "ways that are no task": (
         "r.urdf",
-        urdf("r", joint("a", "revolute"), joint("b", "revolute", axis="1 0 0")),
-        "its tip moves in 2 ways that are no task of a description: choose another base or tip, or write the "
+        urdf(
+            "r",
+            joint("a", "revolute"),
+            joint("b", "revolute", axis="1 0 0"),
+            joint("c", "prismatic", axis="1 0 0"),
+        ),
+        "its tip moves in 3 ways that are no task of a description: choose another base or tip, or write the "
         "description by hand$",
+    ),
+    "a tip on the last axis": (
+        "r.urdf",
+        urdf(
+            "r",
+            joint("a", "revolute"),
+            joint("b", "revolute", "0.1 0 0", axis="0 1 0"),
+            joint("c", "revolute", "0 0 0.4", axis="0 0 1"),
+            joint("tip", "fixed", "0 0 0.2"),
+        ),
+        "its tip moves in 3 ways that are no task of a description: it lies on the axis of the last joint; choose a "
+        "--tip beside that axis, or one before this joint$",
     ),
 }
 

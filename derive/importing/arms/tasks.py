@@ -145,10 +145,10 @@ def _task(seen: Motions, rank: int) -> tuple[str, str]:
         return "", "FULL"
     if rank == 6:
         return "xyz", "FULL"
-    raise UnreadableRobot(
-        f"its tip moves in {rank} ways that are no task of a description: choose another base or tip, or write the "
-        "description by hand"
-    )
+    what = "choose another base or tip, or write the description by hand"
+    if np.abs(seen.jacobians[:, :3, -1]).max() < _SMALL:
+        what = "it lies on the axis of the last joint; choose a --tip beside that axis, or one before this joint"
+    raise UnreadableRobot(f"its tip moves in {rank} ways that are no task of a description: {what}")
 
 
 def _position(shifts: Array, rank: int) -> str:
