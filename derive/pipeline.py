@@ -170,8 +170,7 @@ def derive_one(
     found = ((language.name, language.part(whole)) for language in outputs)
     parts = {name: part for name, part in found if part is not None}
     pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in drawn.items()}
-    assert whole.evidence is not None
-    measured, seconds = _measured(whole.evidence), time.perf_counter() - start
+    measured, seconds = _measured(whole), time.perf_counter() - start
     return Built(_derived(whole), measured, seconds, parts, pictures, whole.evidence, whole.undrawn)
 
 
@@ -191,8 +190,9 @@ def derive_and_measure(mechanism: Mechanism, told: Told = _nobody) -> Kinematics
         evidence = witness(derived, mechanism)
     except NoPose:
         raise Disagreement(f"{mechanism.name}: {why_no_pose(derived.mechanism)}") from None
-    told("measure", _measured(evidence))
-    return replace(derived, evidence=evidence, self_test=self_test(derived))
+    whole = replace(derived, evidence=evidence)
+    told("measure", _measured(whole))
+    return replace(whole, self_test=self_test(derived))
 
 
 def _pictures(kinematics: Kinematics) -> tuple[Mapping[str, bytes], str]:
@@ -271,12 +271,17 @@ def _derived(kinematics: Kinematics) -> str:
     return f"{kinematics.mechanism.name:28}{statements:5} statements"
 
 
-def _measured(seen: Evidence) -> str:
+def _measured(kinematics: Kinematics) -> str:
+    seen = kinematics.evidence
+    assert seen is not None
     poses = f"{seen.poses} poses  closure {seen.closure_residual:.0e}"
     if seen.inverted is None:
         return poses
     found = seen.inverted
     solutions = f"{found.solutions} solution{'' if found.solutions == 1 else 's'}"
+    branches = 2 ** len(kinematics.branches)
+    if found.solutions < branches:  # as where some are in the other assembly mode, or out of reach
+        solutions = f"up to {solutions} seen, of {branches} branches"
     exact = "  exact" if seen.exact.trials else ""
     return f"{poses}  round trip {found.round_trip:.0e}  Jacobian {found.jacobian:.0e}  {solutions}{exact}"
 

@@ -103,6 +103,10 @@ def _trial(mechanism: Mechanism, inverse: Inverse) -> Iterator[str]:
     yield from _equations(inverse.closure.equations)
     for number, step in enumerate(inverse.derivation.steps, 1):
         yield from _step(mechanism, number, step, ())
+    for left in inverse.derivation.residuals:
+        yield f"  residual, which vanishes at a root: {_written(left)}"
+    yield from _branches(mechanism)
+    yield from _forward(mechanism)
 
 
 def _equations(equations: Sequence[Equation]) -> Iterator[str]:
@@ -146,6 +150,12 @@ def _branches(mechanism: Mechanism) -> Iterator[str]:
     yield "Branches"
     for branch in mechanism.branches:
         signs = ", ".join(f"{n}={s:+d}" for n, s in zip(branch.names, branch.signs, strict=True))
+        if branch.is_crossing and mechanism.search is not None:
+            joint, (first, second) = mechanism.search.joint.name, branch.names
+            yield f'  crossing("{branch.name}", {signs})'
+            yield f"       whether the residual rises (1 {first}) or falls (2 {second}) with {joint} at the root;"
+            yield f"       of the roots of one branch the answer is the one whose {joint} is nearest to the reference"
+            continue
         indicator = in_words(mechanism, branch.indicator)
         yield f'  branch("{branch.name}", {indicator}, {signs})'
         if branch.meanings[0]:

@@ -22,7 +22,7 @@ from derive.importing.formats.mjcf import read_mjcf
 from derive.importing.formats.tables import read_table
 from derive.importing.formats.urdf import read_urdf
 from derive.importing.naming import axis_names, place_names
-from derive.importing.report import Bounds, bounds, closed_form, neighbours, snaps, weak_axes
+from derive.importing.report import Bounds, bounds, closed_form, neighbours, redundant, snaps, weak_axes
 from derive.importing.robot import Robot, UnreadableRobot, about
 from derive.importing.writing import FAR, Description, description_of, written
 
@@ -106,10 +106,14 @@ def _imported(robot: Robot, options: Options) -> Imported:
     description = description_of(robot, arm, chain, task)
     notes = (*weak, *faced, *robot.notes)
     found = bounds(moved, raw, _strokes(robot, raw))
+    too_many = [*redundant(arm, places, options.snap)]
+    if too_many and "DH table" in robot.source:
+        too_many.append("A table that is read by the wrong convention has such joints: is its convention right?")
     report = "\n".join(
         [
             _head(robot, description, task, options.unit),
             *neighbours(raw, arm, places, options.snap, options.unit),
+            *too_many,
             *([closed_form(arm, places, options.snap)] if task.turning == "FULL" else []),
             *snaps(moved, nearly(put_back), found, options.snap, options.unit),
             *notes,

@@ -10,7 +10,7 @@ import numpy as np
 
 from derive.description.joints import Kind
 from derive.importing.arms.conditions import motions
-from derive.importing.arms.lines import ROUNDING, Arm, relation, spread
+from derive.importing.arms.lines import ROUNDING, Arm, Line, relation, spread
 from derive.importing.arms.snapping import Snapped
 from derive.importing.arms.tasks import WEAK, Followed, on_axis
 
@@ -48,6 +48,36 @@ def neighbours(raw: Arm, arm: Arm, names: Sequence[str], limit: float, unit: str
         if not is_slide and back.angle > limit:
             hints += _distance_hints(stands.distance / raw.size, back.distance / arm.size, limit)
         yield f"  {one}-{other}: {distance}, angle {degrees:.6g}°{'; ' if hints else ''}{'; '.join(hints)}"
+
+
+def redundant(arm: Arm, names: Sequence[str], limit: float) -> Iterator[str]:
+    """A sentence for neighbouring joints of which one moves nothing of its own, whatever the others do."""
+    for first in range(len(arm.lines)):
+        for count in (2, 4):
+            lines, own = arm.lines[first : first + count], names[first : first + count]
+            drives = {number for line in lines for number, _ in line.drives}
+            if len(lines) == count == len(drives) and (words := _shared(lines, arm.size, max(limit, ROUNDING * 100))):
+                them = " and ".join(own) if count == 2 else ", ".join(own)
+                yield f"{them} {words}: one of them moves nothing of its own."
+
+
+def _shared(lines: Sequence[Line], size: float, tolerance: float) -> str:
+    """What all of two or four lines have in common, if one of the joints is too many for it; else nothing."""
+    related = [relation(lines[0], other) for other in lines[1:]]
+    are_parallel = all(one.angle <= tolerance for one in related)
+    slides = [line.kind is Kind.LINEAR for line in lines]
+    if len(lines) == 2 and are_parallel and all(slides):
+        return "slide in the same direction"
+    if any(slides):
+        return ""
+    if len(lines) == 2:
+        return "turn about the same line" if are_parallel and related[0].distance <= tolerance * size else ""
+    if are_parallel:
+        return "are parallel"
+    across = [np.eye(3) - np.outer(line.direction, line.direction) for line in lines]
+    at = np.concatenate([a @ line.point for a, line in zip(across, lines, strict=True)])
+    missed = np.concatenate(across) @ np.linalg.lstsq(np.concatenate(across), at, rcond=None)[0] - at
+    return "meet in one point" if np.abs(missed).max() <= tolerance * size else ""
 
 
 def closed_form(arm: Arm, names: Sequence[str], limit: float) -> str:

@@ -67,7 +67,7 @@ many radians."""
 DAMPED = sp.Float("1e-12")
 """The square of the damping in damped least squares: an error that the joints reduce more slowly than the damping, in
 lengths of the machine, is left."""
-IMPROVEMENTS = 3
+IMPROVEMENTS = 6
 """The largest number of Newton steps that improve a root of a scan."""
 TIE = sp.Float("1e-6")
 """An automatic choice takes a later branch only where its squared distance (degrees) is smaller by more than this."""

@@ -61,7 +61,7 @@ from derive.kinematics.shared_names import (
 from derive.plate.fixed_point import with_fixed_point
 from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
-from derive.plate.stated_rods import with_stated_rods
+from derive.plate.stated_rods import with_positive_lengths, with_stated_rods
 from derive.plate.turning import forward_from_given, joints_at_home
 from derive.solver.solve import Unsolved
 
@@ -80,11 +80,11 @@ def build(mechanism: Mechanism) -> Kinematics:
 
 def prepared(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> Mechanism:
     """The mechanism as it is derived: its inputs have unique names, its numbers have names, its gears are moved to the
-    joints, and its rods are recognised.
+    joints, its rods are recognised, and their lengths are positive.
     """
     mechanism = with_gears(with_named_numbers(_with_half_turns_last(with_inner_names(mechanism, further))))
     check_joints(mechanism)
-    return with_stated_rods(with_fixed_point(mechanism))
+    return with_positive_lengths(with_stated_rods(with_fixed_point(mechanism)))
 
 
 def _with_half_turns_last(mechanism: Mechanism) -> Mechanism:

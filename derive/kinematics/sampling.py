@@ -33,14 +33,17 @@ def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False)
         if optional_zero and parameter.role is Role.DISTANCE:
             value = 0.0
         values[parameter.name] = np.asarray(value)
-    values |= fixed_values(mechanism)
-    values[SCALE.name] = np.asarray(evaluate(machine_scale(mechanism), values), dtype=float)
-    return values
+    return _with_scale(mechanism, values | fixed_values(mechanism))
 
 
 def machine_at(mechanism: Mechanism) -> Samples:
     """The nominal machine without limits: its parameters, and its characteristic length."""
-    values = {name: np.asarray(value) for name, value in unlimited_values(mechanism).items()} | fixed_values(mechanism)
+    values = {name: np.asarray(value) for name, value in unlimited_values(mechanism).items()}
+    return _with_scale(mechanism, values | fixed_values(mechanism))
+
+
+def _with_scale(mechanism: Mechanism, values: Samples) -> Samples:
+    """The machine with its characteristic length."""
     if mechanism.is_platform:  # its length follows from its home pose, and is not needed here
         return {**values, SCALE.name: np.asarray(_coordinates(mechanism, values))}
     return {**values, SCALE.name: np.asarray(evaluate(machine_scale(mechanism), values), dtype=float)}
@@ -56,12 +59,15 @@ def fixed_values(mechanism: Mechanism) -> Samples:
     return {p.name: np.asarray(p.nominal) for p in mechanism.parameters if p.fixed is not None}
 
 
-def size_of(mechanism: Mechanism, machine: Mapping[str, NDArray[np.float64]]) -> float:
+def size_of(mechanism: Mechanism, machine: Mapping[str, NDArray[np.float64]], otherwise: float = 1.0) -> float:
     """A length of the size of the machine. Without a length that is never zero, it is the sum of the distances; for a
     loop it is at least the largest coordinate that is a number or a distance.
+
+    otherwise: what a machine without any length gets.
     """
     distances = [abs(_first(machine[p.name])) for p in mechanism.parameters if p.role is Role.DISTANCE]
-    size = _first(machine[SCALE.name]) if has_length(mechanism) else sum(distances) or 1.0
+    is_scaled = mechanism.is_platform or has_length(mechanism)
+    size = _first(machine[SCALE.name]) if is_scaled else sum(distances) or otherwise
     if not mechanism.rods:
         return size
     ends = [sp.sympify(v) for rod in mechanism.rods for v in (*rod.base, *rod.plate)]
@@ -83,27 +89,36 @@ def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, s
     generator = np.random.default_rng(seed)
     values: Samples = {}
     for joint in mechanism.joints:
-        low, high = joint.domain or ((-180.0, 180.0) if joint.is_angle else (-1.0, 1.0))
-        turns = abs(float(evaluate(joint.ratio, machine))) if joint.is_geared else 1.0
-        reach = 1.0 / turns if joint.is_angle else size_of(mechanism, machine)
-        high = min(high, 1e3 if joint.is_angle else 2.0)
-        low, high = _inside_limits(joint, machine, low, high, reach)
-        drawn = joint.nominal + share * (generator.uniform(low, high, count) * reach - joint.nominal)
+        turns = abs(float(evaluate(joint.ratio, machine))) if joint.is_geared and joint.is_angle else 1.0
+        low, high = _inside_limits(joint, machine, _range_of(joint, size_of(mechanism, machine)), 1.0 / turns)
+        drawn = joint.nominal + share * (generator.uniform(low, high, count) / turns - joint.nominal)
         values[joint.axis.name] = values[joint.reference.name] = drawn + float(machine[joint.offset.name])
     return values
 
 
-def _inside_limits(joint: Joint, machine: Samples, low: float, high: float, unit: float) -> tuple[float, float]:
+def _inside_limits(joint: Joint, machine: Samples, values: tuple[float, float], unit: float) -> tuple[float, float]:
     """The part of a range, in some unit, that the limits of a joint allow: they, if they allow nothing of it.
 
     A machine that is measured has other limits than its description, or none: then it is the whole range.
     """
+    low, high = values
     lower, upper = (_first(machine[f"{word}_{joint.key}"]) for word in ("lower", "upper"))
     if joint.limits != (lower, upper):
         return low, high
     first, last = ((end - _first(machine[joint.offset.name])) / unit for end in (lower, upper))
     inside = max(low, first), min(high, last)
     return inside if inside[0] < inside[1] else (first, last)
+
+
+def _range_of(joint: Joint, size: float) -> tuple[float, float]:
+    """The values of a joint that are tried: of a slide those up to once or twice the size of the machine."""
+    if joint.is_angle:
+        low, high = joint.domain or (-180.0, 180.0)
+        return low, min(high, 1e3)
+    if joint.domain is None:
+        return -size, size
+    low = max(joint.domain[0], -size)
+    return low, min(joint.domain[1], max(2.0 * size, low + size))
 
 
 def possible_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, program: Program) -> Samples:

@@ -9,6 +9,6 @@ legs: the legs (rods, and planes in which points stay) as lines: names, vectors,
 newton: the pose by Newton's method on the lengths of the rods
 passive: the coordinates that the loop moves but the task does not command
 plate: the home pose, and the checks of the inverse
-stated_rods: stated equations that are rods, or planes, whatever their form
+stated_rods: stated equations that are rods, or planes, whatever their form; lengths of rods that are positive
 turning: forward kinematics by iteration, the joints at the home pose, sampled poses
 """

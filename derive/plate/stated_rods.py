@@ -47,6 +47,17 @@ def with_stated_rods(mechanism: Mechanism) -> Mechanism:
     return replace(own, closure=tuple(left))
 
 
+def with_positive_lengths(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with the lengths of its rods among its positive quantities, if joints change them; not a length
+    whose sign a branch of the description tells.
+    """
+    joints = {j.symbol for j in mechanism.joints}
+    told = {s for b in mechanism.branches if not b.is_crossing for s in b.indicator.free_symbols}
+    read = [(rod.length, rod.length.free_symbols & joints) for rod in mechanism.rods]
+    own = [length for length, names in read if names and not names & told and length not in mechanism.positive]
+    return replace(mechanism, positive=(*mechanism.positive, *own)) if own else mechanism
+
+
 def _plane_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Plane | None:
     """The plane that has this equation; None where there is none."""
     size = 2 if _is_flat(mechanism, equation) else 3
@@ -101,10 +112,14 @@ def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
     at_rest = dict(zip(ROTATION_ENTRIES, sp.eye(3), strict=True)) | {c: sp.Integer(0) for c in coordinates}
     between = sp.Add(*[(p - b) ** 2 for p, b in zip(plate, base, strict=True)])
     square = _without_rounding(between.xreplace(at_rest), (expanded / factor).xreplace(at_rest))
-    length = sp.powdenest(sp.sqrt(sp.factor(square)), force=True)
+    length = sp.powdenest(sp.sqrt(sp.factor(square)), force=True).replace(sp.Abs, lambda of: of)
     joints = {j.symbol for j in mechanism.joints}
     if any(p.exp == sp.Rational(1, 2) and p.free_symbols & joints for p in length.atoms(sp.Pow)):
         return None
+    nominal = {p.symbol: sp.Float(p.nominal) for p in mechanism.parameters}
+    nominal |= {j.symbol: sp.Float(j.nominal) for j in mechanism.joints}
+    if length.xreplace(nominal).is_negative:  # a square tells no sign, and a rod has a positive length
+        length = -length
     read = rod(name, [_plain(v) for v in base], [_plain(v) for v in plate], _plain(length))
     return read if not length.has(sp.I) and _is_same(mechanism, read.equation * factor, equation) else None
 

@@ -17,7 +17,7 @@ from derive.ir.interpret import Array, Repeats, evaluate, repeats_counted, run
 from derive.ir.program import Program, Status
 from derive.ir.symbols import ROTATION_ENTRIES, branch_sign
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.parameters import TIE_OF_LENGTHS, has_length
+from derive.kinematics.parameters import TIE_OF_LENGTHS
 from derive.kinematics.reference_cases import Bytes, Reals
 from derive.kinematics.sampling import size_of
 from derive.plate.plate import home_position, home_rotation
@@ -26,8 +26,8 @@ FRAME = ("x", "y", "z", *(r.name for r in ROTATION_ENTRIES))
 _DECIMALS, _ROTATION_DECIMALS = 6, 9
 """Far coarser than rounding, and fine enough that a rotation is still one."""
 _HIGHEST_BYTE = 3
-_SMALL, _MILLIMETRES = 10.0, 100.0
-"""A machine smaller than ten of its units is in metres; one in millimetres is at least a hundred large."""
+_SMALL, _USUAL = 1, 100.0
+"""A machine smaller than a usual one, a hundred units large, by more than so many powers of ten is given in metres."""
 
 
 _KEPT = 1000
@@ -44,13 +44,15 @@ class Machine:
     values: Mapping[str, Array]
 
     @cached_property
+    def smaller(self) -> int:
+        """The powers of ten by which the machine is smaller than a usual one."""
+        size = 0.0 if self.status is not Status.OK else size_of(self.kinematics.mechanism, self.values, 0.0)
+        return max(0, math.ceil(math.log10(_USUAL / size))) if size > 0.0 else 0
+
+    @property
     def finer(self) -> int:
         """The number of decimals that lengths need more than in millimetres, where the machine is given in metres."""
-        mechanism = self.kinematics.mechanism
-        if self.status is not Status.OK or not has_length(mechanism):
-            return 0
-        size = size_of(mechanism, self.values)
-        return math.ceil(math.log10(_MILLIMETRES / size)) if 0.0 < size < _SMALL else 0
+        return self.smaller if self.smaller > _SMALL else 0
 
     def rounded(self, values: Sequence[float], decimals: int = _DECIMALS) -> Reals:
         """Lengths as they are written: far coarser than rounding, without a negative zero."""

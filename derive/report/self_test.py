@@ -39,6 +39,8 @@ _TOO_SHORT = 0.2
 """Legs whose lengths are multiplied by this do not reach the platform."""
 _SIZE = 100.0
 """The range of linear axes in a machine without lengths."""
+_DECIMALS = 6
+"""Those of the limits and offsets of a usual machine."""
 _NO_ROTATION = 1.1
 """A rotation multiplied by this is no rotation."""
 
@@ -66,9 +68,15 @@ def self_test(kinematics: Kinematics) -> SelfTest:
 def _nominal(kinematics: Kinematics) -> Machine:
     """The nominal machine without limits, with an offset on every axis where it may have one."""
     given = kinematics.unlimited_values
-    offsets = {j.offset.name: 10.5 * (i + 1) for i, j in enumerate(kinematics.mechanism.joints)}
+    plain = machine_with(kinematics, given)
+    offsets = {j.offset.name: _scaled(plain, j, 10.5 * (i + 1)) for i, j in enumerate(kinematics.mechanism.joints)}
     shifted = machine_with(kinematics, given | offsets)
-    return shifted if shifted.status is Status.OK else machine_with(kinematics, given)
+    return shifted if shifted.status is Status.OK else plain
+
+
+def _scaled(machine: Machine, joint: Joint, value: float) -> float:
+    """The value of an axis as it is, or a length as small as the machine is."""
+    return value if joint.is_angle else round(value * 10.0**-machine.smaller, _DECIMALS + machine.smaller)
 
 
 def _refused(nominal: Machine) -> Machine | None:
@@ -81,12 +89,14 @@ def _refused(nominal: Machine) -> Machine | None:
 
 
 def _limited(nominal: Machine, axes: Reals) -> Machine | None:
-    """The machine with limits one unit away from every axis value, in both directions."""
-    keys = [j.key for j in nominal.kinematics.mechanism.joints]
-    limits = {f"lower_{k}": round(v - 1.0, 6) for k, v in zip(keys, axes, strict=True)}
-    limits |= {f"upper_{k}": round(v + 1.0, 6) for k, v in zip(keys, axes, strict=True)}
+    """The machine with limits one unit away from every axis value, in both directions; of a small one, less."""
+    limits = {}
+    for joint, value in zip(nominal.kinematics.mechanism.joints, axes, strict=True):
+        for word, away in (("lower", -1.0), ("upper", 1.0)):
+            end = value + _scaled(nominal, joint, away)
+            limits[f"{word}_{joint.key}"] = round(end, _DECIMALS + nominal.smaller)
     machine = machine_with(nominal.kinematics, {**nominal.given, **limits})
-    return machine if keys and machine.status is Status.OK else None
+    return machine if limits and machine.status is Status.OK else None
 
 
 def _once_more(machine: Machine, found: _Vectors) -> Iterator[Case]:

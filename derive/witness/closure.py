@@ -238,12 +238,15 @@ def _positive(described: Mechanism, named: Symbols, machine: Mechanism, labels: 
     """
     stated = [*described.positive, *(b.largest - sp.Abs(b.value) for b in described.bounds)]
     left = [term(sp.sympify(e), named) for e in stated]
+    own = machine.positive[len(described.positive) :]  # lengths of rods that joints change: these are positive as such
+    left += [term(sp.sympify(e), labels) for e in own]
     if machine.assembly is None:
         return left
     owner, symbols = (machine, labels) if described.assembly is None else (described, named)
     way = owner.assembly
     assert way is not None
-    mode = way.signs[0] * way.indicator * sp.sign(way.handedness) / sp.Mul(*[rod.length for rod in owner.rods])
+    lengths = sp.Mul(*[sp.Abs(rod.length) for rod in owner.rods])
+    mode = way.signs[0] * way.indicator * sp.sign(way.handedness) / lengths
     return [*left, (1 - 2 * labels[real(machine.assembly.parameter)]) * term(mode, symbols) - LEAST_MARGIN]
 
 

@@ -18,7 +18,7 @@ from derive.witness.checks import CLOSURE_TOLERANCE, clear_of_zero, least_move, 
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
 from derive.witness.planted import refused_when_planted
-from derive.witness.roots import Problem, all_solutions, distinct, polished, problem_at, same
+from derive.witness.roots import Problem, all_solutions, distinct, is_solution, polished, problem_at, same
 from derive.witness.samples import SEED, Samples, describe, turns_of
 
 AXES_TOLERANCE = 1e-9
@@ -69,11 +69,12 @@ def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> tupl
     axes, ok = _ranks(kin, part)
     offered = [polished(problem, closure.joints(a, part.parameters)[:, :, 0] / problem.units) for a in axes]
     counts, missed = [], 0
+    held = [np.stack(offered)[ok[:, row], row] for row in range(len(part))]
     solutions = all_solutions(problem, starts_for(kin.mechanism))
+    solutions = [_with_slots(problem, row, *both) for row, both in enumerate(zip(solutions, held, strict=True))]
     own = in_own_mode(kin, closure, part, solutions, problem.units)
     for row, found in enumerate(f[kept] for f, kept in zip(solutions, own, strict=True)):
-        slots = np.array([offered[slot][row] for slot in np.flatnonzero(ok[:, row])]).reshape(-1, axes.shape[2])
-        slots = distinct(problem, row, slots) if is_search else slots  # one opposite the reference is found twice
+        slots = distinct(problem, row, held[row]) if is_search else held[row]  # opposite the reference: found twice
         missing = _compare(kin, problem, row, (found, slots), describe(kin, part, row))
         missed += missing
         counts.append(len(found))
@@ -85,6 +86,12 @@ def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> tupl
     if refused > _MOST_MISSED * planted:
         raise Disagreement(f"the search refuses {refused} of {planted} poses next to where branches meet")
     return max(counts), (missed + refused, sum(counts) + planted)
+
+
+def _with_slots(problem: Problem, row: int, found: Array, slots: Array) -> Array:
+    """The solutions that were found, and the slots that are solutions too: no start may have led there."""
+    good = is_solution(problem.take(np.full(len(slots), row)), slots)
+    return distinct(problem, row, np.concatenate([found, slots[good]]))
 
 
 def check_offset(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[float, float]:

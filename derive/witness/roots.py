@@ -16,10 +16,14 @@ Rows = NDArray[np.int64]
 STARTS = 160
 _ITERATIONS = 40
 _POLISH = 4
+_LEAST_DAMPING = 1e-15
 _CONVERGED = 1e-9
 _SAME = 1e-6
 _FAR = 4.0
 """The largest length from which a search starts, in reaches."""
+_LAST_STEP = 1e-7
+"""A solution is found where the next step of Newton's method is at most this. A small residual alone is not enough: a
+joint that hardly moves the pose leaves a small one far away from the solution."""
 _ROUNDING = 1e-13
 """An equation of order one is met but for rounding."""
 _EXACT = 4e-15
@@ -118,13 +122,23 @@ def all_solutions(problem: Problem, starts_of_each: int = STARTS) -> list[Array]
         1::2
     ]  # six lengths have 64 mirror images, one is wanted
     ends = _newton(many, starts, _ITERATIONS)
-    good = (np.linalg.norm(many.residual(ends), axis=1) < _CONVERGED) & many.is_positive(ends)
+    good = is_solution(many, ends)
     return [distinct(problem, i, ends[(rows == i) & good]) for i in range(count)]
 
 
 def polished(problem: Problem, unknowns: Array) -> Array:
     """The solutions nearest to these unknowns."""
     return _newton(problem, unknowns, _POLISH)
+
+
+def is_solution(problem: Problem, unknowns: Array) -> NDArray[np.bool_]:
+    """Whether each row is a solution that the description admits."""
+    residual = problem.residual(unknowns)
+    good = np.linalg.norm(residual, axis=1) < _CONVERGED
+    near = np.flatnonzero(good)
+    step = np.linalg.pinv(problem.take(near).slopes(unknowns[near])) @ residual[near][:, :, None]
+    good[near] = np.abs(step[:, :, 0]).max(axis=1) <= _LAST_STEP
+    return np.asarray(good & problem.is_positive(unknowns), dtype=bool)
 
 
 def distinct(problem: Problem, row: int, unknowns: Array) -> Array:
@@ -142,7 +156,8 @@ def same(one: Array, others: Array) -> NDArray[np.bool_]:
 
 
 def _newton(problem: Problem, start: Array, iterations: int) -> Array:
-    """Levenberg-Marquardt, every row with its own damping.
+    """Levenberg-Marquardt, every row with its own damping, which falls with the error: the last steps then are those of
+    Newton's method, also along a joint that hardly moves the pose.
 
     A row is at its end where it meets the equations exactly, or but for rounding and a step does not bring it nearer.
     """
@@ -151,7 +166,8 @@ def _newton(problem: Problem, start: Array, iterations: int) -> Array:
     part, here, before = problem, unknowns, np.linalg.norm(residual, axis=1)
     for _ in range(iterations):
         slopes = part.slopes(here)
-        normal = np.swapaxes(slopes, 1, 2) @ slopes + damping[:, None, None] * identity
+        damped = np.maximum(damping * np.minimum(1.0, before), _LEAST_DAMPING)
+        normal = np.swapaxes(slopes, 1, 2) @ slopes + damped[:, None, None] * identity
         step = np.linalg.solve(normal, np.swapaxes(slopes, 1, 2) @ residual[:, :, None])[:, :, 0]
         trial = here - step
         missed = part.residual(trial)
@@ -164,7 +180,7 @@ def _newton(problem: Problem, start: Array, iterations: int) -> Array:
             break
         residual = np.where(better[:, None], missed, residual)[going]
         before = now[going]
-        damping = np.clip(np.where(better, damping * 0.1, damping * 10.0), 1e-15, 1e6)[going]
+        damping = np.clip(np.where(better, damping * 0.1, damping * 10.0), _LEAST_DAMPING, 1e6)[going]
         rows, part = rows[going], part if len(going) == len(rows) else part.take(going)
         here = unknowns[rows]
     return unknowns

@@ -43,9 +43,9 @@ _LOOP_CANDIDATES = 2500
 _LARGER = (1.0, 4.0, 16.0)
 """The ranges of slides that are tried in turn, in reaches, until a loop closes: cords are longer than their share of
 the base."""
-_SHIFT = 50.0
-"""The largest random value of a length whose nominal value is zero, as far as the machine is that large."""
-_SPREAD = {Role.PITCH: 20.0, Role.GEAR: 0.1, Role.COUPLING: 0.5, Role.ANGLE: 200.0}
+_SHIFT = 0.05
+"""The largest random value of a length whose nominal value is zero, in reaches."""
+_SPREAD = {Role.GEAR: 0.1, Role.COUPLING: 0.5, Role.ANGLE: 200.0}
 """The largest random value of another parameter whose nominal value is zero."""
 
 
@@ -162,12 +162,15 @@ def jacobian_of(closure: Closure, samples: Samples) -> Array:
     """J = -A⁻¹ B, by least squares where Φ has more rows than the task.
 
     Rows of Φ are squares of lengths, lengths and numbers: each over its size, or a number has the rounding of a square.
+    Lengths of the pose are measured in reaches, so that the unit of length changes no digit.
     """
-    state = (samples.joints, samples.pose, samples.parameters)
-    a, b = closure.by_pose(*state), closure.by_joints(*state)
-    sizes = np.linalg.norm(np.concatenate([a, b], axis=2), axis=2, keepdims=True)
+    state, units = (samples.joints, samples.pose, samples.parameters), closure.row_scale(samples.reach)
+    a, b = closure.by_pose(*state) * units[:, None, :], closure.by_joints(*state)
+    scaled = b * closure.joint_scale(samples.reach, samples.joints, samples.parameters)[:, None, :]
+    sizes = np.linalg.norm(np.concatenate([a, scaled], axis=2), axis=2, keepdims=True)
     sizes[sizes == 0.0] = 1.0
-    by_joints = -np.linalg.pinv(a / sizes) @ (b / sizes) @ closure.gearing(samples.axes, samples.parameters)
+    moved = -np.linalg.pinv(a / sizes) @ (b / sizes) @ closure.gearing(samples.axes, samples.parameters)
+    by_joints = moved * units[:, :, None]
     return np.asarray(by_joints[:, : len(closure.task)])
 
 
@@ -190,7 +193,7 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
     names -= {s.name for cone in cones for s in cone.free_symbols}  # they refuse poses, and change no answer
     values = {}
     nominal = kin.unlimited_values
-    largest = min(_SHIFT, float(_reach(kin.mechanism, _nominal(kin))[0]))
+    largest = _SHIFT * float(_reach(kin.mechanism, _nominal(kin))[0])
     for parameter in kin.parameters:
         own = nominal[parameter.name]
         drawn = _draw(parameter, count, rng, largest) if parameter.name in names else np.full(count, own)
@@ -227,7 +230,6 @@ def _nominal(kin: Kinematics) -> dict[str, Array]:
 
 def _draw(parameter: Parameter, count: int, rng: Generator, largest: float) -> Array:
     """Random values of one parameter; a parameter with a default keeps it in half of the machines."""
-    low, high = max(parameter.low, -1e3), min(parameter.high, 1e3)
     size = abs(parameter.nominal) or _SPREAD.get(parameter.role, largest)
     if parameter.role is Role.LENGTH:
         drawn = parameter.nominal * rng.uniform(0.5, 1.5, count)
@@ -239,7 +241,7 @@ def _draw(parameter: Parameter, count: int, rng: Generator, largest: float) -> A
         drawn = -np.ones(count)
     else:
         drawn = parameter.nominal + size * rng.uniform(-1.0, 1.0, count)
-    drawn = np.clip(drawn, low, high)
+    drawn = np.clip(drawn, parameter.low, parameter.high)
     return drawn if parameter.default is None else np.where(rng.random(count) < 0.5, parameter.default, drawn)
 
 

@@ -10,6 +10,7 @@ from derive.command.explain import explanation
 from derive.description.catalogue import MECHANISMS, load
 from tests.command.files import RAIL, SCARA, Folder
 from tests.command.wrong import changed
+from tests.unit.kinematics.test_search_choice import SIDEWAYS, arm
 
 
 def explained(file: str) -> str:
@@ -85,6 +86,15 @@ def test_every_kind_of_machine_is_explained(file: str, lines: list[str]) -> None
     text = explained(file)
     for line in lines:
         assert re.search(line, text, re.MULTILINE), (line, text)
+
+
+def test_a_searched_arm_without_named_branches_is_explained_to_its_end() -> None:
+    """What is left of a trial, the branches that the derivation names, and the meaning of the crossing."""
+    text = "\n".join(explanation(arm(SIDEWAYS)))
+    assert re.search(r"^  residual, which vanishes at a root: ", text, re.MULTILINE)
+    assert re.search(r'^  branch\("elbow_1", cos\(A3\), positive=\+1, negative=-1\)', text, re.MULTILINE)
+    assert "whether the residual rises (1 rising) or falls (2 falling) with A6 at the root" in text
+    assert text.endswith("Forward kinematics\n  the product of the chain") and ", nan," not in text
 
 
 def test_no_step_is_without_its_equations() -> None:

@@ -110,3 +110,34 @@ def test_a_joint_may_follow_one_that_is_not_on_the_way(tmp_path: Path) -> None:
     finger = imported(path, "base", "finger")
     position, rotation = differences(finger, described(finger, tmp_path), by_yourdfpy(path, "base", "finger"))
     assert position <= 1e-9 and rotation <= 1e-12 and np.isfinite(finger.bounds.position)
+
+
+def dh_table(rows: list[tuple[float, float, float, float]]) -> str:
+    joints = (
+        f'[[joints]]\nname = "A{k}"\ntheta = {theta}\nd = {d}\na = {a}\nalpha = {alpha}\n'
+        for k, (theta, d, a, alpha) in enumerate(rows, 1)
+    )
+    return 'convention = "standard"\nangles = "degrees"\nlengths = "mm"\n' + "".join(joints)
+
+
+ARM = [(0.0, 310.0, 40.0, -90.0), (0.0, 0.0, 270.0, 0.0), (0.0, 0.0, 30.0, -90.0)]
+REDUNDANT = {
+    "A5 and A6 turn about the same line": [*ARM, (0, 290, 0, 90), (0, 0, 0, 0), (0, 0, 0, 0)],
+    "A3, A4, A5, A6 meet in one point": [*ARM[:2], (0, 0, 0, -90), (0, 0, 0, 90), (0, 0, 0, -90), (0, 65, 0, 0)],
+    "A2, A3, A4, A5 are parallel": [
+        ARM[0],
+        *[(0, 0, size, 0) for size in (200, 180, 90)],
+        (0, 0, 50, 90),
+        (0, 70, 0, 0),
+    ],
+}
+
+
+@pytest.mark.parametrize("words", [*REDUNDANT, ""])
+def test_a_joint_that_moves_nothing_of_its_own_is_told(words: str, tmp_path: Path) -> None:
+    """As a table typed by the other convention has one; an arm with a spherical wrist has none."""
+    path = tmp_path / "arm.toml"
+    wrist = [(0, 290, 0, 90), (0, 0, 0, -90), (0, 65, 0, 0)]
+    path.write_text(dh_table(REDUNDANT.get(words, [*ARM, *wrist])), encoding="utf-8")
+    told = [line for line in imported(path).report.splitlines() if "moves nothing of its own" in line]
+    assert told == ([f"{words}: one of them moves nothing of its own."] if words else [])

@@ -44,7 +44,6 @@ SEARCH = {
     "narrow": literal(cells.NARROW),
     "rim": literal(roots.RIM),
     "gap": literal(cells.GAP),
-    "flat": literal(cells.FLAT),
 }
 """The constants of a root scan, by the names in the text."""
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from derive.algebra.normal_form import polynomial
 from derive.description.branches import assembly
@@ -23,7 +24,7 @@ from derive.ir.constants import BOUNDARY, DEGREE
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select, angle_of_sine
-from derive.ir.program import Let, Output, Require, Statement, Status
+from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Reason, Unit, Why, about
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
@@ -36,10 +37,10 @@ from derive.ir.symbols import (
     real,
     sine,
 )
-from derive.kinematics.forward import solve_for_position
+from derive.kinematics.forward import pose_at_axes, solve_for_position
 from derive.kinematics.no_pose import why_no_pose
-from derive.kinematics.sampling import possible_axes, sample_machine
-from derive.plate.legs import MARGIN
+from derive.kinematics.sampling import Samples, machine_at, possible_axes, sample_axes, sample_machine
+from derive.plate.legs import MARGIN, is_driven
 from derive.plate.plate import platform_checks
 
 _SAMPLES = 256
@@ -91,8 +92,35 @@ def _derived(mechanism: Mechanism) -> Assembly:
     held = _without_held(sp.Matrix.vstack(slopes, rods))
     is_of_rods = held.rows == len(mechanism.rods)
     margin = _MARGINS.get(held.rows, _CLOSURE) if is_of_rods else _CLOSURE
-    derived = assembly(_NAME, held.det(), margin=margin, positive=+1, negative=-1)
-    return replace(derived, meanings=_meanings(mechanism, held.rows if is_of_rods else 0))
+    meanings = _meanings(mechanism, held.rows if is_of_rods else 0)
+    lower = _lower(mechanism, held.det())
+    if lower == 0:
+        return replace(assembly(_NAME, held.det(), margin=margin, positive=+1, negative=-1), meanings=meanings)
+    names = {"below": lower, "above": -lower}  # arms and carriages hold the tool below them, legs without any stand
+    if not is_driven(mechanism, [v for rod in mechanism.rods for v in rod.base]):
+        names = dict(reversed(names.items()))
+    named = assembly(_NAME, held.det(), margin=margin, **names)
+    return replace(named, meanings=meanings if named.signs[0] > 0 else (meanings[1], meanings[0]))
+
+
+def _lower(mechanism: Mechanism, determinant: sp.Expr) -> int:
+    """The sign of the determinant at the lower of the two positions of the nominal pose; 0 where the two are not above
+    each other. A loop that does not close at the nominal joints is asked at the poses around them.
+    """
+    if "z" not in mechanism.task.position:
+        return 0
+    program, machine = _position_program(mechanism, pose_at_axes(mechanism), determinant), machine_at(mechanism)
+    either = {**machine, ASSEMBLY_SIGN.name: np.asarray(1.0)}
+    nominal = {**machine, **sample_axes(mechanism, machine, 1, 33, share=0.0)}
+    for samples in (nominal, possible_axes(mechanism, either, _SAMPLES, 33, program)):
+        (first, one), (second, other) = _in_both_modes(program, samples)
+        both = one & other
+        if both.any():
+            apart = {c: (first[c] - second[c])[both] for c in mechanism.task.position}
+            rise = np.median(np.abs(apart["z"]))
+            is_vertical = all(np.median(np.abs(way)) <= rise for way in apart.values())
+            return int(np.sign(-np.sum(np.sign(apart["z"] * first["indicator"][both])))) if is_vertical else 0
+    return 0
 
 
 def _along(rod: Rod, coordinates: list[sp.Symbol]) -> list[sp.Expr]:
@@ -144,17 +172,11 @@ def assembled(mechanism: Mechanism, forward: Forward) -> Assembled:
 def _orientation(mechanism: Mechanism, forward: Forward) -> int:
     """+1 where the sign of the determinant is that of the indicator, -1 where it is the opposite."""
     assert mechanism.assembly is not None
-    described = mechanism.assembly.indicator * mechanism.assembly.handedness
-    lets, (indicator,) = named_trigonometry(mechanism, [with_fixed_names(mechanism, described)])
-    program = normalise("assembly", (*forward.statements, *lets), [Output("indicator", indicator)])
-    machine = sample_machine(mechanism, 31)
-    either = {ASSEMBLY_SIGN.name: np.asarray(1.0)}
-    samples = possible_axes(mechanism, {**machine, **either}, _SAMPLES, 32, program)
-    count = max(column.size for column in samples.values())
+    program = _position_program(mechanism, forward, mechanism.assembly.indicator * mechanism.assembly.handedness)
+    either = {**sample_machine(mechanism, 31), ASSEMBLY_SIGN.name: np.asarray(1.0)}
+    first, second = _in_both_modes(program, possible_axes(mechanism, either, _SAMPLES, 32, program))
     found: set[int] = set()
-    for side in (1.0, -1.0):
-        values, status = run(program, {**samples, ASSEMBLY_SIGN.name: np.asarray(side)})
-        good = np.broadcast_to(status == Status.OK, (count,))
+    for side, (values, good) in ((1.0, first), (-1.0, second)):
         found |= {int(s) for s in np.sign(side * values["indicator"][good])}
     if not found:
         raise DescriptionError(f"assembly {mechanism.assembly.name!r}: {why_no_pose(mechanism)}")
@@ -163,6 +185,27 @@ def _orientation(mechanism: Mechanism, forward: Forward) -> int:
             f"assembly {mechanism.assembly.name!r}: its indicator does not tell the two solutions apart"
         )
     return found.pop()
+
+
+def _position_program(mechanism: Mechanism, forward: Forward, described: sp.Expr) -> Program:
+    """The position at axis values, and an indicator there; the assembly mode is an input."""
+    lets, (indicator,) = named_trigonometry(mechanism, [with_fixed_names(mechanism, described)])
+    position = [Output(c, v) for c, v in zip(COORDINATE_NAMES, forward.position, strict=True)]
+    return normalise("assembly", (*forward.statements, *lets), [Output("indicator", indicator), *position])
+
+
+def _in_both_modes(
+    program: Program, samples: Samples
+) -> tuple[tuple[Samples, NDArray[np.bool_]], tuple[Samples, NDArray[np.bool_]]]:
+    """The outputs in both assembly modes, and where there is a position."""
+    count = max(column.size for column in samples.values())
+
+    def run_in(side: float) -> tuple[Samples, NDArray[np.bool_]]:
+        values, status = run(program, {**samples, ASSEMBLY_SIGN.name: np.asarray(side)})
+        spread = {name: np.broadcast_to(value, (count,)) for name, value in values.items()}
+        return spread, np.asarray(np.broadcast_to(status == Status.OK, (count,)), dtype=bool)
+
+    return run_in(1.0), run_in(-1.0)
 
 
 def assembly_checks(

@@ -52,7 +52,7 @@ def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Po
         *(() if radicand.is_nonnegative else (reaches,)),
         Let(unknown, middle + sigma * Root(square)),
     )
-    over = cancelled(scale / a)
+    over = cancelled(scale / sp.Abs(a))
     if known_sign is not None:
         return Binding(
             "quadratic", (unknown,), statements, conditioning=Conditioning(unknown, determinant, over, "meet")

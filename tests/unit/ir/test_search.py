@@ -178,6 +178,45 @@ def test_a_direction_that_turns_fast(
             )
 
 
+def counted(
+    trial: Trial, start: float, search: Callable[[Trial, float], list[tuple[float, float, float]]]
+) -> tuple[int, list[tuple[float, float, float]]]:
+    """The number of trials of a search, and what it finds."""
+    asked = 0
+
+    def counting(*place: Array) -> tuple[Array, ...]:
+        nonlocal asked
+        asked += np.size(place[0])
+        return trial(*place)
+
+    found = search(counting, start)
+    return asked, found
+
+
+@BOTH
+def test_a_search_does_not_depend_on_its_start(
+    search: Callable[[Trial, float], list[tuple[float, float, float]]],
+) -> None:
+    """Not on the whole turns of a reference, nor on its place: the same candidates, from as many trials. Near the ends
+    of the reach the guard is rounding, and takes no trials of its own: a search with a budget would run out of it.
+    """
+
+    def trial(t: Array, side: Array, freed: Array, angle: Array) -> tuple[Array, ...]:
+        guard = (np.cos(2.0 * t) - 0.2) * 0.37
+        ahead = side * np.sqrt(np.maximum(guard, 0.0))
+        rate = -0.74 * np.sin(2.0 * t)
+        slope = np.where(guard > 0.0, rate / np.where(guard > 0.0, 2.0 * ahead, 1.0), 0.0)
+        return ahead - 0.3, slope, guard, rate
+
+    counts, found = set(), set()
+    for start in (0.3, 0.3 + 2.0 * np.pi, 0.3 - 4.0 * np.pi, 9.0, -2.0, 217.0):
+        asked, places = counted(trial, start, search)
+        counts.add(asked)
+        found.add(tuple(sorted(round(t, 9) for t, _, _ in places)))
+    assert len(counts) == len(found) == 1
+    assert counts.pop() < 2 * CELLS + 4 * 20
+
+
 def test_both_searches_offer_the_same() -> None:
     """The trials between two cells do not depend on how the numbers are arranged."""
     rng = np.random.default_rng(5)

@@ -22,8 +22,10 @@ from derive.description.mechanism import (
     rod,
     rotary,
 )
+from derive.description.validate import validate
 from derive.ir.interpret import evaluate
 from derive.ir.program import Status
+from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from derive.pipeline import derive_and_measure
 from derive.report.reference_calls import Machine, forward, machine_with
@@ -38,7 +40,8 @@ def _feet(k: int) -> tuple[object, object, int]:
     return F * cos(2 * pi * k / 3), F * sin(2 * pi * k / 3), 0
 
 
-LOOPS: dict[str, tuple[Callable[[], Mechanism], str, int]] = {
+PLAIN, STANDING = ("positive", "negative"), ("above", "below")
+LOOPS: dict[str, tuple[Callable[[], Mechanism], str, int, tuple[str, str]]] = {
     "orthoglide": (
         lambda: Mechanism(
             name="Orthoglide",
@@ -53,6 +56,7 @@ LOOPS: dict[str, tuple[Callable[[], Mechanism], str, int]] = {
         ),
         "rods_coplanar",
         8,
+        PLAIN,
     ),
     "three cylinders": (
         lambda: Mechanism(
@@ -65,6 +69,7 @@ LOOPS: dict[str, tuple[Callable[[], Mechanism], str, int]] = {
         ),
         "rods_coplanar",
         1,
+        STANDING,
     ),
     "two cords": (
         lambda: Mechanism(
@@ -77,6 +82,7 @@ LOOPS: dict[str, tuple[Callable[[], Mechanism], str, int]] = {
         ),
         "rods_aligned",
         1,
+        PLAIN,
     ),
     "slides in one line": (
         lambda: Mechanism(
@@ -88,6 +94,7 @@ LOOPS: dict[str, tuple[Callable[[], Mechanism], str, int]] = {
         ),
         "rods_aligned",
         1,
+        PLAIN,
     ),
     "motors in one axis": (
         lambda: Mechanism(
@@ -99,6 +106,7 @@ LOOPS: dict[str, tuple[Callable[[], Mechanism], str, int]] = {
         ),
         "rods_aligned",
         1,
+        PLAIN,
     ),
     "a crank and a slide on a quill": (
         lambda: Mechanism(
@@ -111,6 +119,7 @@ LOOPS: dict[str, tuple[Callable[[], Mechanism], str, int]] = {
         ),
         "rods_aligned",
         4,
+        PLAIN,
     ),
 }
 """The description, where its two positions meet, and the most solutions that a pose has: of slides in one line, and of
@@ -119,8 +128,9 @@ motors in one axis, equal rods lean to opposite sides."""
 
 def _machines(kin: Kinematics) -> tuple[Machine, Machine]:
     """The nominal machine in both of its assemblies."""
-    nominal = {p.name: p.nominal for p in kin.parameters}
-    first, second = (machine_with(kin, nominal | {"assembly_negative": v}) for v in (0.0, 1.0))
+    nominal, way = {p.name: p.nominal for p in kin.parameters}, kin.mechanism.assembly
+    assert way is not None
+    first, second = (machine_with(kin, nominal | {way.parameter: v}) for v in (0.0, 1.0))
     return first, second
 
 
@@ -129,13 +139,13 @@ def test_both_assemblies_are_derived_and_measured(name: str) -> None:
     """The witness finds as many solutions as the loop has. At the same axes both machines have a position, and the
     indicator has the stated sign.
     """
-    described, margin, solutions = LOOPS[name]
+    described, margin, solutions, names = LOOPS[name]
     kin = derive_and_measure(described())
     way = kin.mechanism.assembly
-    assert way is not None and way.margin == margin and (way.names, way.signs) == (("positive", "negative"), (1, -1))
+    assert way is not None and way.margin == margin and way.names == names
     assert kin.evidence is not None and kin.evidence.inverted is not None
     assert kin.evidence.inverted.solutions == solutions
-    assert any("assembly_negative chooses" in note for note in kin.mechanism.notes)
+    assert any(f"{way.parameter} chooses" in note for note in kin.mechanism.notes)
     pair, found = _machines(kin), 0
     for axes in np.random.default_rng(5).uniform(-90.0, 700.0, (300, len(kin.mechanism.joints))).tolist():
         poses = [forward(machine, tuple(axes)) for machine in pair]
@@ -149,9 +159,26 @@ def test_both_assemblies_are_derived_and_measured(name: str) -> None:
             float(evaluate(way.indicator, known | {c: np.asarray(p[k]) for k, c in enumerate("xyz")}))
             for _, p, _ in poses
         ]
-        assert signs[0] >= 0 >= signs[1] and np.isclose(signs[0], -signs[1], rtol=1e-6, atol=1e-3 * abs(signs[0]))
+        assert way.signs[0] * signs[0] >= 0 >= way.signs[0] * signs[1]
+        assert np.isclose(signs[0], -signs[1], rtol=1e-6, atol=1e-3 * abs(signs[0]))
         found += 1
     assert found > 5
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (0, 2, 1)])
+@pytest.mark.parametrize("height", [250.0, 0.0])
+def test_what_hangs_on_arms_or_carriages_is_below_them(order: tuple[int, ...], height: float) -> None:
+    """Whichever way its towers are numbered: the first mode has the plate below the carriages of the nominal pose."""
+    carriages = tuple(linear(f"C{k}", "carriage, up", nominal=height) for k in (1, 2, 3))
+    feet = [_feet(k)[:2] for k in order]
+    rods = tuple(rod(c.key, (*foot, c), (X, Y, Z), R) for foot, c in zip(feet, carriages, strict=True))
+    kin = build(validate(Mechanism(name="Towers", joints=carriages, parameters=(R, F), task=Task("xyz"), rods=rods)))
+    way = kin.mechanism.assembly
+    assert way is not None and (way.names, way.parameter) == (("below", "above"), "assembly_above")
+    drop = float(np.sqrt(400.0**2 - 300.0**2))
+    for machine, side in zip(_machines(kin), (-1, 1), strict=True):
+        _, frame, _ = forward(machine, (height, height, height))
+        assert frame[:3] == pytest.approx((0.0, 0.0, height + side * drop), abs=1e-6)
 
 
 def test_a_loop_with_one_assembly_needs_no_name() -> None:

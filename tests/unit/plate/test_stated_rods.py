@@ -8,10 +8,10 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
-from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, Task, Turning, X, Y, Z
+from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, Task, Turning, X, Y, Z, length
 from derive.description.validate import validate
 from derive.kinematics.build import build
-from derive.plate.stated_rods import with_stated_rods
+from derive.plate.stated_rods import with_positive_lengths, with_stated_rods
 from tests.mechanisms import kinematics_of, named
 from tests.unit.kinematics.turning_inventions import TURNING_INVENTIONS, three_prr, three_rpr
 
@@ -105,3 +105,14 @@ def test_what_no_rule_derives_is_refused_with_the_reason(what: str) -> None:
         build(validate(change()))
     assert said in str(refused.value)
     assert time.process_time() - began < QUICK
+
+
+def test_a_length_under_a_square_has_the_sign_that_makes_it_positive() -> None:
+    """A winch that pays out less than the whole cable: the equation holds the square of the rest."""
+    total = length("cable", "whole length of a cable", nominal=2000.0)
+    own = three_rpr()
+    taut = tuple(r.equation + r.length**2 - (r.length - total) ** 2 for r in own.rods)
+    stated = replace(own, parameters=(*own.parameters, total), rods=(), closure=taut, positive=())
+    rods = with_stated_rods(stated).rods
+    assert [r.length for r in rods] == [total.symbol - r.length for r in own.rods]
+    assert with_positive_lengths(with_stated_rods(stated)).positive == tuple(r.length for r in rods)
