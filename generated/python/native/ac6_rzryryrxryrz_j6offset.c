@@ -453,7 +453,7 @@ static softkin_status find_finish_root(const void *machine, const double *given,
       step_q1, sum_in_step_q2, step_q2, step_q3, step_q4, step_q5, step_q6, size;
   bool taken;
   for (int pass = 0;; pass += 1) {
-    if (pass == 4) {
+    if (pass == 7) {
       return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
     }
     cos_q1 = cos(q1);
@@ -615,7 +615,7 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     size = step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4 + step_q5*step_q5
         + step_q6*step_q6;
     taken = size <= error; /* whether the error becomes smaller */
-    if ((!taken) || (error <= 1e-14) || (passes >= 3)) {
+    if ((!taken) || (error <= 1e-14) || (passes >= 6)) {
       break;
     }
     q1 = q1 + (taken ? step_q1 : 0.0);

@@ -805,7 +805,7 @@ softkin_status softkin_inverse_all(const softkin_mechanism *kind, const void *ma
 #define MOST_CELLS 64
 #define MOST_PLACES 128
 
-static const double SHIFTS[] = {0.5, 0.25};
+static const double SHIFTS[] = {0.414, 0.192};
 
 typedef struct {
   double base, scale;
@@ -829,6 +829,11 @@ typedef struct {
 static softkin_place place_of(const path *map, double s) {
   const double way = map->is_curved ? s*s : s;
   return (softkin_place){map->base + map->scale*way, 0.0, map->is_curved && s < 0.0 ? -1 : 1, -1};
+}
+
+/* The distance that the joint travels from one end of a cell to the other. */
+static double extent_of(const path *map, double low, double high) {
+  return fabs(map->scale)*(high - low)*(map->is_curved ? fabs(low) + fabs(high) : 1.0);
 }
 
 static void try_at(const scan *on, const softkin_place *place, double *results) {
@@ -1016,7 +1021,7 @@ static closed closing(scan *on, const cell *one, int column, double level) {
       copy(last, results);
       b = value;
     }
-    if (fabs(value) <= FINEST*fabs(results[column + 1]) || high - low <= FINEST) {
+    if (fabs(value) <= FINEST*fabs(results[column + 1]) || extent_of(&one->map, low, high) <= FINEST) {
       break;
     }
   }
@@ -1109,6 +1114,7 @@ static void touch(scan *on, const cell *one, bool is_seam) {
 static void cut(scan *on, const cell *one) {
   const bool is_curved = one->map.is_curved;
   const double low = one->low, high = one->high, width = high - low;
+  const double extent = extent_of(&one->map, low, high);
   const double f = one->first[0], df = one->first[1], g = one->first[2], dg = one->first[3];
   const double f1 = one->last[0], df1 = one->last[1], g1 = one->last[2], dg1 = one->last[3];
   const bool is_seam = is_curved && -2.0*SEAM <= low && high <= 2.0*SEAM;
@@ -1116,8 +1122,7 @@ static void cut(scan *on, const cell *one) {
     return;
   }
   if (turned_most(on, one->first, one->last) < TURNED) {
-    const double way = is_curved ? fabs(low) + fabs(high) : 1.0;
-    if (fabs(one->map.scale)*width*way > NARROW && !is_seam) {
+    if (extent > NARROW && !is_seam) {
       halves(on, one, low + ASIDE*width);
     } else if (g >= -GAP || g1 >= -GAP) {
       jump(on, &one->map, low, one->first, high, one->last);
@@ -1127,7 +1132,7 @@ static void cut(scan *on, const cell *one) {
     }
     return;
   }
-  if (!is_curved && width > FLAT && hides_roots(g, dg, g1, dg1, width)) {
+  if (!is_curved && extent > NARROW && hides_roots(g, dg, g1, dg1, width)) {
     halves(on, one, low + where_to_cut(one->cuts, g, dg, g1, dg1, width));
     return;
   }
@@ -1140,7 +1145,7 @@ static void cut(scan *on, const cell *one) {
   }
   const bool changes = f*f1 <= 0.0, doubtful = hides_roots(f, df, f1, df1, width);
   const bool small = fmin(fabs(f), fabs(f1)) <= TOUCHED;
-  if (doubtful && width > FINEST && !small && !is_seam) {
+  if (doubtful && extent > FINEST && !small && !is_seam) {
     const double s = low + where_to_cut(one->cuts, f, df, f1, df1, width);
     const double beside = high > 1.5*SEAM ? SEAM : -SEAM;
     halves(on, one, is_curved && fabs(s) < SEAM ? beside : s);
@@ -1157,16 +1162,16 @@ static void find_roots(scan *on, double start, double shift) {
   const path still = {start, 0.0, false};
   double results[MOST_RESULTS], begin[MOST_RESULTS], next[MOST_RESULTS];
   on->found = 0;
-  path map = {start + width*(0 + shift), width, false};
+  path map = {width*shift, width, false};
   evaluate(on, &map, 0.0, begin);
   on->trials += CELLS - 1; /* those at the ends of the other cells, which are made when they are needed */
   evaluate(on, &still, 0.0, results);
   offer(on, &still, 0.0, results);
   copy(results, begin);
   for (int k = 0; k < CELLS; k += 1) {
-    cell one = {.map = {start + width*(k + shift), width, false}, .cuts = 0, .low = 0.0, .high = 1.0};
+    cell one = {.map = {width*(k + shift), width, false}, .cuts = 0, .low = 0.0, .high = 1.0};
     if (k + 1 < CELLS) {
-      map.base = start + width*(k + 1 + shift);
+      map.base = width*(k + 1 + shift);
       evaluate(on, &map, 0.0, next);
       on->trials -= 1;
     } else {

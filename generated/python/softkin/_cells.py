@@ -14,11 +14,12 @@ Reals = NDArray[np.float64]
 Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 NARROW = 1e-10
-"""A cell narrower than this, over which a direction turns, is a jump (radians)."""
+"""A cell narrower than this (radians) is a jump if a direction turns over it; and a change of the guard's sign over a
+shorter part is not noticed."""
 FLAT = 1e-7
-"""A change of the guard's sign over a shorter part of a cell than this is not noticed."""
+"""Candidates nearer to each other than this (radians) are one, if their value vanishes."""
 FINEST = 1e-15
-"""A cell shorter than this fraction of the first one is not cut."""
+"""A cell narrower than this (radians) is not cut: the joint has no more digits."""
 GAP = 1e-6
 """A jump may hold roots where the guard is above minus this at one end."""
 NEAR_ZERO = 0.5
@@ -126,22 +127,22 @@ class Verdicts(NamedTuple):
 
 
 def look(cells: Cells) -> Verdicts:
-    width = cells.high - cells.low
+    width, extent = cells.high - cells.low, cells.extent()
     (f, df, g, dg), (f1, df1, g1, dg1) = (e[:, :DIRECTIONS].T for e in (cells.first, cells.last))
     turned = turned_over(cells)
     fast = turned.min(axis=1, initial=1.0) < TURNED
     seam = at_seam(cells)
-    wide = (cells.extent() > NARROW) & ~seam
+    wide = (extent > NARROW) & ~seam
     jumps = fast & ~wide & ((g >= -GAP) | (g1 >= -GAP))
     slow = ~fast
-    returns = slow & (width > FLAT) & ~cells.curved & _hides_roots(g, dg, g1, dg1, width)
+    returns = slow & (extent > NARROW) & ~cells.curved & _hides_roots(g, dg, g1, dg1, width)
     ends = slow & ((g < 0.0) != (g1 < 0.0)) & ~cells.curved & ~returns
     within = slow & ((g >= 0.0) & (g1 >= 0.0) | cells.curved)
     seen = within & ~returns
     changes = f * f1 <= 0.0
     doubtful = seen & _hides_roots(f, df, f1, df1, width)
     small = np.minimum(np.abs(f), np.abs(f1)) <= TOUCHED
-    again = doubtful & ~small & (width > FINEST) & ~seam
+    again = doubtful & ~small & (extent > FINEST) & ~seam
     touches = doubtful & (small | seam) & ~changes | jumps & seam
     holds = seen & changes & ~again
     return Verdicts(jumps, ends, holds, touches, (fast & wide) | returns | again, returns)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 CHOICE = "SOFTKIN_CORE"
 """The variable of the environment that chooses `python`, or `native`: an error where there is no extension."""
-SOURCES = "af73cfd628b72941"
+SOURCES = "2c87d7e2b9fdb160"
 """The digest of what all machines share in C: an extension that was made of other sources is not used."""
 _ASKED_FOR = f"{CHOICE} is native, but the extension _softkin_native"
 _STATUSES = tuple(Status)

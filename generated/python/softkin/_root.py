@@ -27,7 +27,7 @@ NEXT = 1e-6
 RESERVE = 126
 RIM = 0.999
 SEAM = 0.001
-SHIFTS = (0.5, 0.25)
+SHIFTS = (0.414, 0.192)
 TOUCHED = 1e-12
 TURNED = 0.7
 VANISHING = 1e-10
@@ -103,7 +103,7 @@ def _finished(
     for shift in SHIFTS:
         if shift != SHIFTS[0] and search.trials + CELLS > _TRIALS - RESERVE:
             return
-        places = search.roots(start, shift, _scanned(scan, start, shift, trial_given))
+        places = search.roots(start, shift, _scanned(scan, shift, trial_given))
         places.sort(key=lambda place: _away(place, start))
         is_there = False
         for place in places[: most - looked_at]:
@@ -125,11 +125,11 @@ def _listed(said: Sequence[Any], sides: tuple[int, ...]) -> list[Place]:
     return [(said[2 * k], side, -1, 0.0) for k, side in enumerate(sides) if said[2 * k + 1]]
 
 
-def _scanned(scan: Scan, start: float, shift: float, given: Values) -> list[Results]:
-    """The results at the ends of the first cells, all in one batch. No cell ends at the start."""
+def _scanned(scan: Scan, shift: float, given: Values) -> list[Results]:
+    """The results at the ends of the first cells, all in one batch."""
     import numpy as np
 
-    joint = start + 2.0 * pi / CELLS * (np.arange(CELLS) + shift)
+    joint = 2.0 * pi / CELLS * (np.arange(CELLS) + shift)
     place = {"tried": joint, "side": 1, "freed": -1, "freed_angle": 0.0}
     with np.errstate(all="ignore"):
         results = scan(tuple(place[v] if isinstance(v, str) else v for v in given), np.zeros(CELLS, np.uint8))
@@ -167,9 +167,7 @@ class _Search:
         results = [(value, slope * width, guard, rate * width, *rest) for value, slope, guard, rate, *rest in ends]
         self.offer(start, 0.0, False, 0.0, self.evaluate(start, 0.0, False, 0.0))
         for k in range(CELLS):
-            cells: list[Cell] = [
-                (start + (k + shift) * width, width, False, 0, 0.0, results[k], 1.0, results[(k + 1) % CELLS])
-            ]
+            cells: list[Cell] = [((k + shift) * width, width, False, 0, 0.0, results[k], 1.0, results[(k + 1) % CELLS])]
             while cells:
                 cells += self.cut(cells.pop())
         return self.found
@@ -193,20 +191,19 @@ class _Search:
         base, scale, curved, depth, low, first, high, last = cell
         if self.trials > _TRIALS - RESERVE:
             return []
-        width = high - low
+        width, extent = high - low, _extent(scale, curved, low, high)
         f, df, g, dg = first[:4]
         f1, df1, g1, dg1 = last[:4]
         seam = curved and -2.0 * SEAM <= low and high <= 2.0 * SEAM
         if _turned(first, last) < TURNED:
-            way = abs(low) + abs(high) if curved else 1.0
-            if abs(scale) * width * way > NARROW and not seam:
+            if extent > NARROW and not seam:
                 return self.halves(cell, low + ASIDE * width)
             if g >= -GAP or g1 >= -GAP:
                 self.jump(cell)
                 if seam:
                     self.touch(cell, seam)
             return []
-        if not curved and width > FLAT and _hides_roots(g, dg, g1, dg1, width):
+        if not curved and extent > NARROW and _hides_roots(g, dg, g1, dg1, width):
             return self.halves(cell, low + self.where(depth, g, dg, g1, dg1, width))
         if not curved and (g < 0.0) != (g1 < 0.0):
             return self.over_the_end(cell)
@@ -215,7 +212,7 @@ class _Search:
         changes = f * f1 <= 0.0
         doubtful = _hides_roots(f, df, f1, df1, width)
         small = min(abs(f), abs(f1)) <= TOUCHED
-        if doubtful and width > FINEST and not small and not seam:
+        if doubtful and extent > FINEST and not small and not seam:
             s = low + self.where(depth, f, df, f1, df1, width)
             return self.halves(cell, (SEAM if high > 1.5 * SEAM else -SEAM) if curved and abs(s) < SEAM else s)
         if changes:
@@ -304,7 +301,7 @@ class _Search:
                 low, first, a = s, new, value
             else:
                 high, last, b = s, new, value
-            if abs(value) <= FINEST * abs(new[column + 1]) or high - low <= FINEST:
+            if abs(value) <= FINEST * abs(new[column + 1]) or _extent(scale, curved, low, high) <= FINEST:
                 break
         is_low = abs(a) <= abs(b)
         return low, high, low if is_low else high, first if is_low else last
@@ -336,6 +333,11 @@ class _Search:
         if abs(level) + swing <= NEXT:  # every angle is a root
             angles += [centre - half + pi, centre + half + pi]
         self.found += [(joint, side, freed, angle) for angle in angles]
+
+
+def _extent(scale: float, curved: bool, low: float, high: float) -> float:
+    """The distance that the joint travels from one end of a cell to the other."""
+    return abs(scale) * (high - low) * (abs(low) + abs(high) if curved else 1.0)
 
 
 def _turn(first: Results, last: Results, k: int) -> float:

@@ -33,8 +33,10 @@ from softkin._cells import (
 T = TypeVar("T")
 CELLS = 72
 """The number of cells into which the circle is cut at first."""
-SHIFTS = (0.5, 0.25)
-"""The shift of the first cell from the start, in cells: at first, and where no root fits, for the second search."""
+SHIFTS = (0.414, 0.192)
+"""The beginning of the first cell, in cells: at first, and where no root fits, for the second search. The cells do not
+depend on the start, so a pose is searched in the same way from every reference; and none ends at a round angle, where
+value and guard may vanish."""
 ROUNDS = 50
 """The largest number of rounds in which cells are cut."""
 CLOSING = 60
@@ -62,7 +64,7 @@ def find_roots(trial: Trial, start: Reals, shift: float = SHIFTS[0]) -> At:
     if not len(start):
         none = np.zeros(0, dtype=int)
         return At(none, start, none, none, start)
-    cells = _around(trial, start, shift)
+    cells = _around(trial, len(start), shift)
     found = [_start(trial, start)]
     ends, holding = [cells.take(np.zeros(0, dtype=int))], [cells.take(np.zeros(0, dtype=int))]
     for _ in range(2 * ROUNDS):  # roots are refined when no cell is cut any more: in one loop for all rows
@@ -145,14 +147,11 @@ def _start(trial: Trial, start: Reals) -> At:
     return At(rows[is_root], start[is_root], place.side[is_root], place.freed[is_root], place.angle[is_root])
 
 
-def _around(trial: Trial, start: Reals, shift: float) -> Cells:
-    """The first cells: number 0 of every row, then number 1, and so on.
-
-    No cell ends at the start, where value and guard may vanish.
-    """
-    count, width = len(start), 2.0 * np.pi / CELLS
+def _around(trial: Trial, count: int, shift: float) -> Cells:
+    """The first cells of some rows: number 0 of every row, then number 1, and so on."""
+    width = 2.0 * np.pi / CELLS
     rows = np.tile(np.arange(count), CELLS)
-    base = (start[None, :] + width * (np.arange(CELLS)[:, None] + shift)).ravel()
+    base = np.asarray(width * (np.repeat(np.arange(CELLS), count) + shift), dtype=float)
     zero, one = np.zeros(len(rows)), np.ones(len(rows))
     empty = np.empty((len(rows), 0))
     cells = Cells(rows, base, np.full(len(rows), width), zero > 0.0, 0 * rows, zero, one, empty, empty)
@@ -222,7 +221,8 @@ def _closing(trial: Trial, cells: Cells, column: int, level: Reals) -> tuple[Rea
             np.where(same[:, None], last[going], new),
         )
         settled = np.abs(new[:, 0]) <= FINEST * np.abs(new[:, 1])  # the next step would be rounding
-        done = settled | (new[:, 0] == 0.0) | (high[going] - low[going] <= FINEST)
+        left = replace(cells.take(going), low=low[going], high=high[going]).extent()
+        done = settled | (new[:, 0] == 0.0) | (left <= FINEST)
         going = going[~done]
     return low, high, np.where(np.abs(first[:, 0]) <= np.abs(last[:, 0]), low, high)
 

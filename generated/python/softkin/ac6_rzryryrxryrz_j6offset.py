@@ -30,9 +30,9 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 142 additions, 207 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 109805 additions, 164285 multiplications, 8609 divisions, 3994 square roots, 6048 sines
-    inverse, all 16 branches: 1757153 additions, 2628656 multiplications, 137744 divisions, 63904 square
-    roots, 96768 sines
+    inverse: 130325 additions, 191573 multiplications, 9041 divisions, 4066 square roots, 6912 sines
+    inverse, all 16 branches: 2085473 additions, 3065264 multiplications, 144656 divisions, 65056 square
+    roots, 110592 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
     12 sines
@@ -115,7 +115,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 2653ed5b2cb79064"
+    KEY = "ac6_rzryryrxryrz_j6offset d28c026e1eb830d5"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -645,7 +645,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             arctan2(sin_q6_tried + 0.0, cos_q6_tried + 0.0),
             0,
         )
-        for _ in range(4):
+        for _ in range(7):
             cos_q1 = cos(q1)
             q2_plus_q3 = q2 + q3
             cos_q23 = cos(q2_plus_q3)
@@ -906,7 +906,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 + step_q6 * step_q6
             )
             taken = size <= error  # whether the error becomes smaller
-            if (not taken) or (error <= 1e-14) or (passes >= 3):
+            if (not taken) or (error <= 1e-14) or (passes >= 6):
                 break
             q1 = q1 + (step_q1 if taken else 0.0)
             q2 = q2 + (step_q2 if taken else 0.0)

@@ -418,7 +418,7 @@ class ArrayPrograms(Programs):
             atan2(sin_q6_tried, cos_q6_tried),
             0,
         )
-        for _ in range(4):
+        for _ in range(7):
             cos_q1 = cos(q1)
             q2_plus_q3 = q2 + q3
             cos_q23 = cos(q2_plus_q3)
@@ -679,7 +679,7 @@ class ArrayPrograms(Programs):
                 + step_q6 * step_q6
             )
             taken = size <= error  # whether the error becomes smaller
-            done = (opposite(taken)) | (error <= 1e-14) | (passes >= 3)
+            done = (opposite(taken)) | (error <= 1e-14) | (passes >= 6)
             if settled(done, status):
                 break
             q1, q2, q3, q4, q5, q6, passes = advanced(
