@@ -184,12 +184,21 @@ def _require(condition: Array, otherwise: Status, status: NDArray[np.object_]) -
 
 
 def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> None:
-    """Run a shared program with its arguments and constants; a row that it refuses gets its status."""
+    """Run a shared program with its arguments and constants; a row that it refuses gets its status, or that of the
+    call.
+    """
+    asked = evaluate(call.asked, known)
+    if not np.any(asked):
+        known.update({name.name: np.asarray(0.0) for name in call.names})
+        return
     inner = {s.name: known[s.name] for s in call.constants}
     inner |= {name.name: evaluate(value, known) for name, value in call.given}
-    _execute(call.program.body, inner, status)
+    own = status.copy()
+    _execute(call.program.body, inner, own)
+    refused = (own != status) & asked
+    status[refused] = own[refused] if call.refusal is None else call.refusal[0]
     outputs = {o.name: o.value for o in call.program.outputs}
-    known.update({name.name: evaluate(outputs[name.name], inner) for name in call.names})
+    known.update({name.name: np.where(asked, evaluate(outputs[name.name], inner), 0) for name in call.names})
 
 
 def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]) -> None:

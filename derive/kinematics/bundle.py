@@ -38,6 +38,7 @@ def _hoisted(
     """The lowered programs; refuses a name that no program may read or return."""
     constants = constants_of(mechanism, parameters, at_home)
     unsettled = {o.name for window in windows(mechanism) for o in window.outputs}  # drives may change these later
+    unsettled |= {s.name for s in (*START_POSITION, *START_ROTATION)}  # and callers these
     settled = [name for name in constants if name not in unsettled]
     whole, first = hoist([with_choices(p, parameters) for p in (*shared(programs), *programs)], settled)
     shorter, second = lowered(whole, [*settled, *(let.name.name for let in first)])
@@ -81,7 +82,6 @@ def bundle_of(
         freedom=freedom_of(mechanism),
         reads_rotation=mechanism.task.turning is not Turning.NONE,
         setup_less_windows=moved.setup_less_windows,
-        forward_from=finished.get("forward_from"),
         search_given=finished.get("search_given"),
         from_joints=finished.get("from_joints"),
         twist=finished.get("twist"),

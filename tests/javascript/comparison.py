@@ -33,7 +33,7 @@ def calls_of(question: Answer) -> list[Call]:
     if question["call"] == "forward":
         start = [_frame(question["start"])] if "start" in question else []
         axes = question["axes"]
-        return [["forward", axes, *start], ["singularity", axes], ["jacobian", axes]]
+        return [[call, axes, *start] for call in ("forward", "singularity", "jacobian")]
     if question["call"] == "inverse":
         frame, reference = _frame(question["frame"]), question["reference"]
         named = [["inverse", frame, given, reference] for given in question["configurations"]]

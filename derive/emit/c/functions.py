@@ -68,7 +68,6 @@ def functions(kin: Kinematics) -> list[Function]:
     joints = kin.mechanism.joints
     axes = _places("axes", [j.axis.name for j in joints])
     frame = {name: f"frame->{place}" for name, place in FRAME}
-    start = {f"start_{name}": f"start->{place}" for name, place in FRAME}
     turns = _places("turns", [j.turn.name for j in kin.period_joints])
     reference = _places("reference", [j.reference.name for j in joints])
     choice = _places("signs", [branch_sign(b.name).name for b in kin.branches]) | turns | reference
@@ -88,10 +87,6 @@ def functions(kin: Kinematics) -> list[Function]:
         Function("The Jacobian by rows, per radian.", kin.jacobian, f"{given_axes}, double *rows", axes,
                  tuple(_places("rows", entries).items()), "jacobian"),
     ]  # fmt: skip
-    if kin.forward_from is not None:
-        text = "Position, rotation and margins, found from a given start."
-        parameters = f"{given_axes}, const softkin_frame *start, softkin_frame *frame, double *margins"
-        found.append(Function(text, kin.forward_from, parameters, axes | start, placed, "forward_from"))
     return [*found, *_further(kin, axes, frame | choice, turns | reference)]
 
 
