@@ -62,6 +62,7 @@ from derive.plate.legs import (
     vector_word,
     with_note,
 )
+from derive.plate.passive import completed
 
 SEARCH = "find_platform"
 """The name of the program."""
@@ -94,8 +95,13 @@ def at_given(mechanism: Mechanism) -> Start:
     about z alone, the start is the nearest rotation about z.
     """
     position = _position(mechanism, "start_")
-    if _is_free(mechanism):
-        return Start(finite(position), position, START_ROTATION, "the start")
+    lets, rotation = ((), START_ROTATION) if _is_free(mechanism) else _heading_of_start()
+    further, position_there, rotation_there = completed(mechanism, position, rotation)
+    return Start((*finite(position), *lets, *further), position_there, rotation_there, "the start")
+
+
+def _heading_of_start() -> tuple[tuple[Statement, ...], tuple[sp.Symbol, ...]]:
+    """The statements of the nearest rotation about z, and its cosine and sine."""
     along, across, size = (real(f"start_{word}") for word in ("along", "across", "length"))
     given = sp.Matrix(3, 3, START_ROTATION)
     determined = sp.Gt(size, FREE_ANGLE)
@@ -110,7 +116,7 @@ def at_given(mechanism: Mechanism) -> Start:
         Let(heading[0], along / divisor),
         Let(heading[1], across / divisor),
     )
-    return Start((*finite(position), *lets), position, heading, "the start")
+    return lets, heading
 
 
 def _is_free(mechanism: Mechanism) -> bool:

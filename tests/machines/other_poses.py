@@ -95,6 +95,8 @@ class Platform:
     def _solved(self, frame: Frame, solution: softkin.Solution) -> Solved | None:
         """The solution with its Jacobian; None near a singularity or the edge of the workspace."""
         assert solution.axes is not None
+        commanded, frame = frame, self.open_robot.forward(solution.axes, frame)[0]
+        assert self.is_same(frame, commanded, 1e-6)  # a loop may also move what the task does not command
         there = self.open_robot.singularity(solution.axes, frame)
         if there.is_singular or min(map(abs, there.margins.values())) < _REGULAR:
             return None

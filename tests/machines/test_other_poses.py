@@ -52,20 +52,24 @@ def test_calls_answer_for_the_given_pose(name: str) -> None:
         confirm(solved, robot.jacobian(axes, start))
         assert one.is_same(start, robot.forward(axes, start)[0], 1e-6)
         moved = robot.twist(axes, [1.0] * len(axes), start=start)
-        assert_allclose(moved, np.array(robot.jacobian(axes, start)).sum(axis=1))
+        assert_allclose(moved, np.array(robot.jacobian(axes, start)).sum(axis=1), atol=1e-12)
         assert_allclose(robot.axis_velocities(axes, moved, start=start), 1.0, atol=1e-6)
         assert robot.condition(axes, 100.0, start) >= 1.0
         radians = robot.in_radians()
         own = [a * np.pi / 180.0 if axis.unit == "deg" else a for a, axis in zip(axes, robot.AXES, strict=True)]
         assert_allclose(radians.jacobian(own, start), robot.jacobian(axes, start), rtol=1e-9, atol=1e-9)
         there = Frame((10.0, -20.0, 30.0)) @ start
-        assert_allclose(based.jacobian(axes, there), robot.jacobian(axes, start), rtol=1e-9, atol=1e-9)
+        shown = [row for row, word in enumerate(robot.JACOBIAN_ROWS) if "tilt" not in word]
+        found, own = (np.array(rows)[shown] for rows in (based.jacobian(axes, there), robot.jacobian(axes, start)))
+        assert_allclose(found, own, rtol=1e-9, atol=1e-9)
     every = np.array([s.axes for s in lost + kept])
     starts = [s.frame.position for s in lost + kept], [s.frame.rotation for s in lost + kept]
-    for answers in (robot.jacobian_batch(every, starts), based.jacobian_batch(every, _on(starts))):
-        assert (answers[1] == Status.OK).all()
-        for solved, rows in zip(lost + kept, answers[0], strict=True):
-            assert_allclose(rows, robot.jacobian(solved.axes, solved.frame), rtol=1e-9, atol=1e-9)
+    for made, begun in ((robot, starts), (based, _on(starts))):
+        rows, statuses = made.jacobian_batch(every, begun)
+        assert (statuses == Status.OK).all()
+        for k, solved in enumerate(lost + kept):
+            start = begun[0][k], begun[1][k]
+            assert_allclose(rows[k], made.jacobian(solved.axes, start), rtol=1e-9, atol=1e-9)
     margins = robot.singularity_batch(every, starts)[1]
     for solved, found in zip(lost + kept, margins, strict=True):
         assert_allclose(found, list(robot.singularity(solved.axes, solved.frame).margins.values()), atol=1e-9)

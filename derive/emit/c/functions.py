@@ -47,12 +47,16 @@ def function_name(program: Program) -> str:
 
 def read_by(program: Program) -> set[str]:
     """The names that a program itself reads, without those that only its called programs read."""
+    return names_in(program) - {s.name for s in program.bound()}
+
+
+def names_in(program: Program) -> set[str]:
+    """The names that stand in the expressions of a program."""
     values = [e for s in program.body for e in (*expressions(s), *reason_expressions(s))] + [
         o.value for o in program.outputs
     ]
     given = {g.name for s in program.body if isinstance(s, FindRoot) for p in (s.trial, s.finish) for g in s.given(p)}
-    found = {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
-    return found - {s.name for s in program.bound()}
+    return {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
 
 
 def rotation_function() -> Function:
