@@ -256,7 +256,10 @@ def _mirrors(mechanism: Mechanism) -> tuple[Statement, ...]:
     values = [with_fixed_names(mechanism, v) for v in mechanism.positive if not v.free_symbols <= joints]
     lets, named = named_trigonometry(mechanism, values) if values else ((), [])
     reason = about_machine(Why.OTHER_MIRROR)
-    return (*fixed_lets(mechanism), *lets, *(Require(sp.Ge(v, 0), Status.IMPOSSIBLE, reason=reason) for v in named))
+    lengths = {*_position(mechanism), *(j.symbol for j in mechanism.joints if not j.is_angle)}
+    least = (-PLANE * (SCALE if v.free_symbols & lengths else 1) for v in values)  # both meet where it is zero
+    checks = (sp.Ge(v, low) for v, low in zip(named, least, strict=True))
+    return (*fixed_lets(mechanism), *lets, *(Require(c, Status.IMPOSSIBLE, reason=reason) for c in checks))
 
 
 def _turn(mechanism: Mechanism) -> sp.Matrix:

@@ -82,11 +82,12 @@ def _forward(one: Robot, question: Question) -> Answer:
         start = {"start": question["start"]} if "start" in question else {}
         frame, configuration = one.made.forward(axes, **start)
         singularity = one.made.singularity(axes, **start)
+        turned = _same(one.made.orientation(axes, **start), frame.rotation)
         more = {"jacobian": one.made.jacobian(axes, **start)} if question.get("jacobian") else {}
         return {
             "position": frame.position, "rotation": frame.rotation, "configuration": configuration,
             "margins": dict(singularity.margins), "singular": singularity.is_singular,
-            "margin": smallest_margin(one, axes, **start), "turned": _same(one.made.orientation(axes, **start), frame.rotation), **more,
+            "margin": smallest_margin(one, axes, **start), "turned": turned, **more,
         }  # fmt: skip
 
     return _caught(found)
