@@ -14,7 +14,7 @@ import softkin
 from numpy.typing import NDArray
 from softkin import Frame, KinematicsError
 
-from derive.description.mechanism import Mechanism
+from derive.description.mechanism import Mechanism, Turning
 from derive.description.validate import validate
 from derive.emit.language import Part
 from derive.ir.interpret import run
@@ -67,7 +67,7 @@ class Platform:
         """Poses that forward kinematics does not find again from home, and poses that it does."""
         lost: list[Solved] = []
         kept: list[Solved] = []
-        for frame in _frames(kinematics_of(self.mechanism)):
+        for frame in self.frames(0.9, 1.2):
             for solution in self.open_robot.inverse_all(frame):
                 if solution.axes is None or len(lost) >= _WANTED <= len(kept):
                     continue
@@ -75,6 +75,15 @@ class Platform:
                 if len(group) < _WANTED and (found := self._solved(frame, solution)) is not None:
                     group.append(found)
         return lost, kept
+
+    @property
+    def largest_turn(self) -> float:
+        """The largest turn about an axis of which the header tells."""
+        return float(np.pi / 2 if self.mechanism.motion.turning is Turning.FULL else np.pi)
+
+    def frames(self, away: float, turned: float) -> Iterator[Frame]:
+        """Frames within a distance of home in characteristic lengths, and an angle about each axis."""
+        return _frames(kinematics_of(self.mechanism), (away, turned))
 
     def finds(self, frame: Frame, axes: tuple[float, ...]) -> bool:
         """Whether forward kinematics from home leads to a frame."""
@@ -114,12 +123,11 @@ class Platform:
         return Solved(frame, solution.axes, bytes_, np.linalg.inv(np.array(columns).T))
 
 
-def _frames(kin: Kinematics) -> Iterator[Frame]:
-    """Frames around home, far enough that forward kinematics may lead elsewhere."""
+def _frames(kin: Kinematics, within: tuple[float, float]) -> Iterator[Frame]:
     given = {p.name: np.asarray(p.nominal) for p in kin.parameters}
     constants, _ = run(kin.setup, given)
     rng = np.random.default_rng(7)
-    drawn = poses_around_home(kin.mechanism, {**given, **constants}, rng, (0.9, 1.2), _DRAWN)
+    drawn = poses_around_home(kin.mechanism, {**given, **constants}, rng, within, _DRAWN)
     positions = np.stack([drawn[c] for c in "xyz"], axis=1)
     rotations = np.stack([drawn[f"r{i}{k}"] for i in (1, 2, 3) for k in (1, 2, 3)], axis=1).reshape(-1, 3, 3)
     if any(j.name == "Z1" for j in kin.mechanism.joints):  # a lift moves it up as well

@@ -4,6 +4,8 @@ would not find again.
 
 from __future__ import annotations
 
+import re
+import sys
 from typing import Any
 
 import numpy as np
@@ -112,6 +114,42 @@ def test_the_inverse_refuses_what_is_not_found_again(name: str) -> None:
         references = np.array([s.axes for s in group]).reshape(-1, size)
         found = robot.inverse_batch(*frames, np.array([s.configuration for s in group]), references)
         assert (found[1] == status).all()
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_the_header_states_how_many_are_found_again(name: str) -> None:
+    """The larger of its two shares is what counting in the package gives, with other poses."""
+    one = platform(name)
+    words = " ".join(str(sys.modules[type(one.robot).__module__].__doc__).split())
+    stated = re.search(r"and (\d+) % within twice as much", words)
+    assert stated is not None and "forward kinematics a start" in words
+    reached = found = 0
+    for frame in one.frames(1.0, one.largest_turn):
+        slots = [s.status is Status.OK for s in one.open_robot.inverse_all(frame)]
+        if any(slots):
+            reached += sum(slots)
+            found += sum(s.status is Status.OK for s in one.robot.inverse_all(frame))
+    assert reached >= 60
+    assert abs(100.0 * found / reached - float(stated[1])) < 150.0 / np.sqrt(reached) + 1.0
+
+
+def test_a_rod_at_its_fold_is_kept() -> None:
+    """Where a rod stands square to its rail, two carriages meet: rounding decides on which side forward kinematics
+    finds it, and the inverse must not refuse that.
+    """
+    robot = platform("Softkin_Hexaglide").robot
+    given = robot.parameters
+    away = [given[f"platform_{k}_y"] - given[f"rail_{k}_y"] for k in range(1, 7)]
+    leg = int(np.argmax(np.abs(away)))
+    height = -float(np.sqrt(given[f"rod_length_{leg + 1}"] ** 2 - away[leg] ** 2))
+    kept = 0
+    for x in np.linspace(-40.0, 40.0, 41).tolist():
+        frame = Frame((x, 0.0, height))
+        axes = robot.changed(check_forward=False).inverse(frame)
+        assert abs(axes[leg] - x - given[f"platform_{leg + 1}_x"]) < 1e-4
+        assert_allclose(robot.inverse(frame), axes)
+        kept += 1
+    assert kept == 41
 
 
 @EVERY

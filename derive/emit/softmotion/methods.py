@@ -9,7 +9,7 @@ from jinja2 import Environment
 
 from derive.emit.softmotion.base import BASE_VARIABLES, INHERITED, PRIVATE, Method, inherited_texts, statements_of
 from derive.emit.softmotion.block import Block, constants, direct, setup_of, start_in, stored_as
-from derive.emit.softmotion.calls import branch_of, commanded, offset_branch_of, without_axes
+from derive.emit.softmotion.calls import branch_of, commanded, from_home, offset_branch_of, without_axes
 from derive.emit.softmotion.inputs import inputs
 from derive.emit.softmotion.layout import tidy
 from derive.emit.softmotion.refused import refused_texts
@@ -118,10 +118,10 @@ def _programs(kinematics: Kinematics) -> dict[str, Program | None]:
 
     return {
         "ReadInputs": setup_of(kinematics),
-        "FindPose": of_axes(kinematics.forward),
+        "FindPose": from_home(kinematics.forward, kinematics),
         "SolveBranch": branch_of(kinematics),
         "SolveOffsetBranch": offset_branch_of(kinematics),
-        "FindOrientation": of_axes(kinematics.orientation),
+        "FindOrientation": from_home(kinematics.orientation, kinematics),
         "TestLimits": kinematics.limits,
         "FindMargins": of_axes(kinematics.singularity),
         "FindImage": kinematics.image,
