@@ -19,6 +19,7 @@ from derive.description.mechanism import Joint, Mechanism, Parameter
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
     BASE_AXIS,
+    CHECK_FORWARD,
     DETERMINANT,
     FLANGE_AXIS,
     HEADING,
@@ -49,7 +50,7 @@ _SHARED = frozenset(
         *(ASSEMBLY_SIGN, DETERMINANT, HEADING, SCALE, *POSITION, *ROTATION_ENTRIES, *OFFSET),
         *(*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS, *PLACE),
     )
-) | {"check_limits", "warning_distance", "tie", "searched", "found", MIN_TYPE2_MARGIN, REFUSAL}
+) | {"check_limits", "warning_distance", "tie", "searched", "found", CHECK_FORWARD, MIN_TYPE2_MARGIN, REFUSAL}
 """Inputs and outputs of the programs of every mechanism."""
 _WORDS = frozenset(
     """

@@ -184,12 +184,17 @@ def _require(condition: Array, otherwise: Status, status: NDArray[np.object_]) -
 
 
 def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> None:
-    """Run a shared program with its arguments and constants; a row that it refuses gets its status."""
-    inner = {s.name: known[s.name] for s in call.constants}
-    inner |= {name.name: evaluate(value, known) for name, value in call.given}
-    _execute(call.program.body, inner, status)
-    outputs = {o.name: o.value for o in call.program.outputs}
-    known.update({name.name: evaluate(outputs[name.name], inner) for name in call.names})
+    """Run a shared program with its arguments and constants; a row that it refuses gets its status, or the call's."""
+    known.update({name.name: np.asarray(0.0) for name in call.names})
+    if not np.any(asked := evaluate(call.asked, known)):
+        return
+    inner = {s.name: known[s.name] for s in call.constants} | {n.name: evaluate(v, known) for n, v in call.given}
+    own = status.copy()
+    _execute(call.program.body, inner, own)
+    refused = (own != status) & asked
+    status[refused] = call.refusal[0] if call.refusal else own[refused]
+    values = {o.name: o.value for o in call.program.outputs}
+    known.update({n.name: np.where(asked, evaluate(values[n.name], inner), 0) for n in call.names})
 
 
 def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]) -> None:

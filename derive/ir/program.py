@@ -122,7 +122,7 @@ class Call:
     """Run a program that several programs share, and bind names of its outputs; where it refuses, so does the caller.
 
     given: the values of the arguments. The other inputs of the shared program are constants of the machine, which are
-    inputs of the caller, too.
+    inputs of the caller, too. Where `asked` does not hold, nothing runs, and the names are bound to zeros.
     """
 
     program: Program
@@ -130,6 +130,10 @@ class Call:
     names: tuple[sp.Symbol, ...]
     """The outputs that the caller reads; all others are dropped."""
     note: str = ""
+    asked: Boolean = sp.true
+    """A condition on constants of the machine."""
+    refusal: tuple[Status, Reason] | None = None
+    """The status and the reason of the caller where the shared program refuses; None: the status of that program."""
 
     @property
     def arguments(self) -> tuple[sp.Expr, ...]:
@@ -246,6 +250,7 @@ def expressions(statement: Statement) -> Iterator[sp.Basic]:
         yield from (*statement.matrix, *statement.right)
     elif isinstance(statement, Call):
         yield from (value for _, value in statement.given)
+        yield from () if statement.asked is sp.true else (statement.asked,)
     elif isinstance(statement, FindRoot):
         yield from (statement.start, statement.wanted)
     else:
@@ -298,7 +303,9 @@ def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> S
             statement, matrix=tuple(map(change, statement.matrix)), right=tuple(map(change, statement.right))
         )
     if isinstance(statement, Call):
-        return replace(statement, given=tuple((name, change(value)) for name, value in statement.given))
+        given = tuple((name, change(value)) for name, value in statement.given)
+        asked = statement.asked if statement.asked is sp.true else change(statement.asked)
+        return replace(statement, given=given, asked=asked)
     if isinstance(statement, FindRoot):
         return replace(statement, start=change(statement.start), wanted=change(statement.wanted))
     return replace(

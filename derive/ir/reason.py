@@ -77,6 +77,7 @@ class Why(Enum):
     RODS_APART = "the rods do not meet"
     CENTRES_ON_A_LINE = "the centres coincide or lie on a line: nothing holds the plate"
     UNCONTROLLED = "nothing controls the plate"
+    NOT_FOUND_AGAIN = "forward kinematics from the home pose does not find this pose again"
     NOT_CONVERGED = "Newton's method does not find the pose"
     DRIVE_LIMITS_CROSSED = "the lower limit of the drive is above the upper one, or one of them is no number"
     NO_AXIS_VALUE = "no axis value is inside both limits"

@@ -128,6 +128,8 @@ ASSEMBLY_SIGN = real("assembly_sign")
 SCALE = real("machine_scale")
 """A length of the machine: the sum of its lengths, or one user's unit where it has none; the mean leg of a platform."""
 MIN_TYPE2_MARGIN = "min_type2_margin"
+CHECK_FORWARD = "check_forward"
+"""Whether the inverse refuses a pose that forward kinematics from the home pose does not find again."""
 DETERMINANT = real("determinant")
 POSITION = tuple(map(real, COORDINATE_NAMES))
 HOME_ROTATION = tuple(real(f"home_{r.name}") for r in ROTATION_ENTRIES)

@@ -10,6 +10,7 @@ coupling: the programs that a coupling calls of an orientation kinematics, and t
 differential: the Jacobian, from A x' + B q' = 0
 flange_rotation: the rotations that the flange can have: their programs
 forward: forward kinematics, and the values of the inverse derivation at given axis values
+home_share: how often forward kinematics that starts at home finds a pose again
 inverse: inverse kinematics of one branch, for a pose or for a point off the flange
 kinematics: the bundle that all later folders read: every program of a mechanism, and the meanings of its names
 margins/: the singularity margins of a machine that is solved in closed form

@@ -38,6 +38,7 @@ from derive.kinematics.coupling import coupling_programs
 from derive.kinematics.differential import jacobian_program, twist_program
 from derive.kinematics.flange_rotation import image_program, needs_twist, projection_program
 from derive.kinematics.forward import at_point, derivation_at_axes, forward_program, orientation_program, pose_at_axes
+from derive.kinematics.home_share import with_share
 from derive.kinematics.inverse import Inverse, inverse_program, solve_offset, solve_pose
 from derive.kinematics.kinematics import Kinematics, Margin
 from derive.kinematics.margins.candidates import Factor, factor_of
@@ -59,10 +60,11 @@ from derive.kinematics.shared_names import (
     with_free_names,
 )
 from derive.plate.fixed_point import with_fixed_point
+from derive.plate.newton import found_again
 from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
 from derive.plate.stated_rods import with_positive_lengths, with_stated_rods
-from derive.plate.turning import forward_from_given, joints_at_home
+from derive.plate.turning import joints_at_home
 from derive.solver.solve import Unsolved
 
 
@@ -71,7 +73,8 @@ def build(mechanism: Mechanism) -> Kinematics:
     told = almost_right_angles(mechanism)
     try:
         noted = replace(mechanism, notes=(*mechanism.notes, f"{told}.")) if told else mechanism
-        return with_free_names(noted, lambda further: replace(_built(prepared(noted, further)), further=dict(further)))
+        found = with_free_names(noted, lambda further: replace(_built(prepared(noted, further)), further=dict(further)))
+        return with_share(found)
     except (Unsolved, DescriptionError) as problem:
         if told:
             raise type(problem)(f"{problem}; {told}") from None
@@ -115,16 +118,18 @@ def _built(mechanism: Mechanism) -> Kinematics:
     at_poses = _samples(mechanism, inverse, at_home, jacobian)
     singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian, at_poses)
     forward_only = replace(forward, statements=at_axes)
+    last = _last(mechanism, closed, statements, offset=False)
+    again = found_again(mechanism) if mechanism.is_platform else ()
     programs = [
         forward_program(mechanism, forward_only, margins),
         orientation_program(forward),
-        inverse_program("branch", mechanism, inverse, statements, _last(mechanism, closed, statements, offset=False)),
+        inverse_program("branch", mechanism, inverse, statements, last, again),
         limits_program(mechanism),
         singularity,
         jacobian,
         image_program(mechanism),
     ]
-    programs += _further_programs(mechanism, closed, inverse, margins)
+    programs += _further_programs(mechanism, closed, inverse)
     return bundle_of(mechanism, programs, kept, at_home)
 
 
@@ -139,15 +144,11 @@ def _factors(
     return [*factors, Factor(closed.name, closed.margin)] if closed.margin is not None else factors
 
 
-def _further_programs(
-    mechanism: Mechanism, closed: Assembled, inverse: Inverse, margins: tuple[Let, ...]
-) -> list[Program]:
+def _further_programs(mechanism: Mechanism, closed: Assembled, inverse: Inverse) -> list[Program]:
     """The programs that only some mechanisms have."""
     programs = []
     if mechanism.task.turning is not Turning.NONE:
         programs.append(projection_program(mechanism))
-    if mechanism.is_platform:
-        programs.append(_forward_from(mechanism, inverse, margins))
     if needs_twist(mechanism):
         programs.append(twist_program(mechanism, closed.forward))
     if mechanism.is_orientation:
@@ -166,13 +167,6 @@ def _samples(
     samples = near_home(mechanism, inverse.known, inverse.signs, sample_machine(mechanism, 11), 12)
     constants, _ = run(setup_program(mechanism, machine_parameters(mechanism), at_home=at_home), samples)
     return samples | constants
-
-
-def _forward_from(mechanism: Mechanism, inverse: Inverse, margins: tuple[Let, ...]) -> Program:
-    """Forward kinematics from a start that is given."""
-    forward = forward_from_given(mechanism)
-    at_axes = replace(forward, statements=derivation_at_axes(mechanism, inverse, forward))
-    return replace(forward_program(mechanism, at_axes, margins), name="forward_from")
 
 
 def _scanned(mechanism: Mechanism) -> Kinematics:

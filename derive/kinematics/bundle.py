@@ -46,6 +46,7 @@ def _hoisted(
     """The lowered programs; refuses a name that no program may read or return."""
     constants = constants_of(mechanism, parameters, at_home)
     unsettled = {o.name for window in windows(mechanism) for o in window.outputs}  # drives may change these later
+    unsettled |= {s.name for s in (*START_POSITION, *START_ROTATION)}  # and callers these
     settled = [name for name in constants if name not in unsettled]
     whole, first = hoist([with_choices(p, parameters) for p in (*shared(programs), *programs)], settled)
     known = (*_given(setup_program(mechanism, parameters, at_home=at_home), settled), *first)
@@ -98,7 +99,6 @@ def bundle_of(
         freedom=freedom_of(mechanism),
         reads_rotation=mechanism.task.turning is not Turning.NONE,
         setup_less_windows=moved.setup_less_windows,
-        forward_from=finished.get("forward_from"),
         search_given=finished.get("search_given"),
         from_joints=finished.get("from_joints"),
         twist=finished.get("twist"),

@@ -37,7 +37,7 @@ from derive.ir.symbols import (
 from derive.kinematics.inverse import Inverse
 from derive.plate.legs import about_z
 from derive.plate.passive import at_the_pose
-from derive.plate.turning import forward_from_home
+from derive.plate.turning import forward_from_start
 from derive.solver.solve import Derivation, solve
 
 
@@ -46,7 +46,7 @@ def pose_at_axes(mechanism: Mechanism) -> Forward:
     to be positive.
     """
     if mechanism.is_platform:
-        return forward_from_home(mechanism)
+        return forward_from_start(mechanism)
     checks = (*finite([j.axis for j in mechanism.joints]), *joint_lets(mechanism), *_positive(mechanism))
     if mechanism.chain is not None and is_spatial(mechanism.chain):
         return _frame_by_frame(mechanism, checks)

@@ -204,9 +204,10 @@ def inverse_program(
     inverse: Inverse,
     statements: tuple[Statement, ...],
     last: tuple[Statement, ...] = (),
+    of_axes: tuple[Statement, ...] = (),
 ) -> Program:
     """The program of one branch: checks of inputs, the derivation with its branch signs, the checks `last`, axis
-    values.
+    values and the checks `of_axes` that read them.
     """
     in_plane = tuple(_in_plane(mechanism, name, value) for name, value in inverse.closure.planes)
     resolved = {s.name for s in statements if isinstance(s, Let)}
@@ -218,7 +219,7 @@ def inverse_program(
         if let.name not in resolved
     )
     outputs = [Output(j.axis.name, j.axis) for j in mechanism.joints]
-    body = spelled((*inverse.naming, *in_plane, *statements, *last, *axes), commanded(mechanism))
+    body = spelled((*inverse.naming, *in_plane, *statements, *last, *axes, *of_axes), commanded(mechanism))
     draft = normalise(name, body, outputs)
     groups = (POSITION, OFFSET, tuple(j.reference for j in mechanism.joints))
     checks = tuple(check for group in groups for check in finite([s for s in group if s in draft.inputs]))

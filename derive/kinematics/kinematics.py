@@ -102,9 +102,9 @@ class Kinematics:
     setup_less_windows   as setup, without `lowest_a1` `highest_a1` `single_a1` `mid_a1` of the axes: drives may hand
                          over limits of their own, so `windows.limits_of_axis` computes these
     forward          axis_* → x y z r11…r33, and `branch_<name>` per branch: the signed margin, positive = byte 1, at
-                     most 1e-11 in size = byte 3 (the branches coincide)
-    forward_from     axis_*, start_x … start_z, start_r11 … start_r33 → as forward, which is iterative and starts at a
-                     home pose; None where forward kinematics does not iterate
+                     most 1e-11 in size = byte 3 (the branches coincide). Where it iterates, it and all other programs
+                     of axis_* begin at the pose start_x … start_z, start_r11 … start_r33: outputs of `setup`, which
+                     a caller may replace
     orientation      axis_* → r11…r33
     branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*: one branch, with periods, without
                      limits
@@ -153,7 +153,6 @@ class Kinematics:
     freedom: Freedom
     reads_rotation: bool
     setup_less_windows: Program
-    forward_from: Program | None = None
     search_given: Program | None = None
     from_joints: Program | None = None
     tried_branches: int = 0
@@ -185,11 +184,16 @@ class Kinematics:
     def programs(self) -> tuple[Program, ...]:
         """All programs except `setup` and the shared ones."""
         found = (
-            self.forward, self.forward_from, self.orientation, self.branch, self.limits, self.singularity,
+            self.forward, self.orientation, self.branch, self.limits, self.singularity,
             self.jacobian,
             self.image, self.projection, self.offset_branch, self.offset_configuration,
         )  # fmt: skip
         return tuple(program for program in found if program is not None)
+
+    @property
+    def starts(self) -> bool:
+        """Whether forward kinematics iterates from a start that a caller may give."""
+        return self.mechanism.is_platform
 
     @property
     def branches(self) -> tuple[Branch, ...]:

@@ -17,7 +17,7 @@ from derive.ir.passes import without_assumptions
 from derive.ir.primitives import Select, ToReal
 from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Reason, about_parameters
-from derive.ir.symbols import MIN_TYPE2_MARGIN, SCALE, compared, flag, is_count, real
+from derive.ir.symbols import CHECK_FORWARD, MIN_TYPE2_MARGIN, SCALE, compared, flag, is_count, real
 from derive.ir.verify import verify
 from derive.plate.plate import home_branches, machine_constants, machine_statements
 
@@ -76,7 +76,7 @@ def unlimited_values(mechanism: Mechanism) -> dict[str, float]:
 def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:
     """The assembly mode of a closed loop, and its least distance from a type 2 singularity."""
     if mechanism.is_platform:
-        return [*map(_at_home, home_branches(mechanism)), _least_margin()]
+        return [*map(_at_home, home_branches(mechanism)), _least_margin(), _check_forward()]
     if mechanism.assembly is None:
         return []
     name, chosen = mechanism.assembly.parameter, mechanism.assembly.names[1]
@@ -97,6 +97,12 @@ def _at_home(branch: Branch) -> Parameter:
 def _least_margin() -> Parameter:
     meaning = "least distance from a type 2 singularity, a number without a unit; 0: off"
     return Parameter(real(MIN_TYPE2_MARGIN), MIN_TYPE2_MARGIN, Role.RATIO, meaning, "1", 0.0, 1.0, False, 1e-3, 1e-3)
+
+
+def _check_forward() -> Parameter:
+    """Whether the inverse asks forward kinematics for the pose of the axes that it has found."""
+    meaning = "inverse kinematics refuses a pose that forward kinematics from the home pose does not find again"
+    return Parameter(flag(CHECK_FORWARD), CHECK_FORWARD, Role.FLAG, meaning, "", 0.0, 1.0, False, 1.0, 1.0)
 
 
 def _number(joint: Joint, word: str, meaning: str, interval: tuple[float, float] | None) -> Parameter:

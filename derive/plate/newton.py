@@ -19,19 +19,19 @@ from derive.equations.axes import finite, joint_lets
 from derive.equations.closures.fixed_names import fixed_lets, with_fixed_names
 from derive.equations.pose_at_axes import Forward
 from derive.equations.trigonometry import named_trigonometry
-from derive.ir.constants import CONVERGED, FREE_ANGLE
+from derive.ir.constants import CONVERGED, FREE_ANGLE, PLANE
 from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Solve, Statement, Status
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
+    CHECK_FORWARD,
     DETERMINANT,
     HEADING,
     HOME_ROTATION,
     ROTATION_ENTRIES,
     SCALE,
-    START_POSITION,
     START_ROTATION,
     cosine,
     flag,
@@ -62,6 +62,7 @@ from derive.plate.legs import (
     vector_word,
     with_note,
 )
+from derive.plate.passive import completed
 
 SEARCH = "find_platform"
 """The name of the program."""
@@ -69,7 +70,8 @@ LIMIT = 20
 """The largest number of iterations; from a neighbouring pose four suffice."""
 _TURN = sp.Matrix(3, 3, [real(f"turned_{r.name[1:]}") for r in ROTATION_ENTRIES])
 """The rotation from the start."""
-_START_HEADING = (real("start_cos_heading"), real("start_sin_heading"))
+_BEGIN_HEADING = (real("begin_cos_heading"), real("begin_sin_heading"))
+_BEGIN_ROTATION = tuple(real(f"begin_{r.name}") for r in ROTATION_ENTRIES)
 
 
 @dataclass(frozen=True)
@@ -89,16 +91,21 @@ def at_home(mechanism: Mechanism) -> Start:
 
 
 def at_given(mechanism: Mechanism) -> Start:
-    """Start at a given pose, which is an input of the program. Where the platform turns about z alone, the start is the
-    nearest rotation about z.
+    """Start at the pose that is a constant of the machine, and that a caller may replace. Where the platform turns
+    about z alone, the start is the nearest rotation about z.
     """
-    position = START_POSITION[: len(mechanism.motion.position)]
-    if _is_free(mechanism):
-        return Start(finite(position), position, START_ROTATION, "the given start")
+    position = _position(mechanism, "start_")
+    lets, rotation = ((), START_ROTATION) if _is_free(mechanism) else _heading_of_start()
+    further, position_there, rotation_there = completed(mechanism, position, rotation)
+    return Start((*finite(position), *lets, *further), position_there, rotation_there, "the start")
+
+
+def _heading_of_start() -> tuple[tuple[Statement, ...], tuple[sp.Symbol, ...]]:
+    """The statements of the nearest rotation about z, and its cosine and sine."""
     along, across, size = (real(f"start_{word}") for word in ("along", "across", "length"))
     given = sp.Matrix(3, 3, START_ROTATION)
     determined = sp.Gt(size, FREE_ANGLE)
-    cos_start, sin_start = _START_HEADING
+    heading = (real("start_cos_heading"), real("start_sin_heading"))
     divisor = real("start_divisor")
     lets = (
         Let(along, given[0, 0] + given[1, 1], "nearest rotation about Z"),
@@ -106,10 +113,10 @@ def at_given(mechanism: Mechanism) -> Start:
         Let(size, Root(along**2 + across**2)),
         Require(determined, Status.BAD_INPUT, reason=about_machine(Why.OPPOSITE)),
         Let(divisor, Select(determined, size, sp.Integer(1))),
-        Let(cos_start, along / divisor),
-        Let(sin_start, across / divisor),
+        Let(heading[0], along / divisor),
+        Let(heading[1], across / divisor),
     )
-    return Start((*finite(position), *lets), position, _START_HEADING, "the given start")
+    return lets, heading
 
 
 def _is_free(mechanism: Mechanism) -> bool:
@@ -117,19 +124,19 @@ def _is_free(mechanism: Mechanism) -> bool:
     return mechanism.motion.turning is Turning.FULL
 
 
-def _start_arguments(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
-    """The pose at which the shared program starts: position, then the rotation or cosine and sine of the heading."""
-    rotation = START_ROTATION if _is_free(mechanism) else _START_HEADING
-    return (*START_POSITION[: len(mechanism.motion.position)], *rotation)
+def _arguments(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """The pose at which the shared program begins: position, then the rotation or cosine and sine of the heading."""
+    rotation = _BEGIN_ROTATION if _is_free(mechanism) else _BEGIN_HEADING
+    return (*_position(mechanism, "begin_"), *rotation)
 
 
-def _start_rotation(mechanism: Mechanism) -> sp.Matrix:
-    return sp.Matrix(3, 3, START_ROTATION) if _is_free(mechanism) else about_z(*_START_HEADING)
+def _begin_rotation(mechanism: Mechanism) -> sp.Matrix:
+    return sp.Matrix(3, 3, _BEGIN_ROTATION) if _is_free(mechanism) else about_z(*_BEGIN_HEADING)
 
 
-def _position(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
-    """The part of the position that the iteration finds."""
-    return tuple(map(real, mechanism.motion.position))
+def _position(mechanism: Mechanism, before: str = "") -> tuple[sp.Symbol, ...]:
+    """The part of the position that the iteration finds. before: what stands before each name."""
+    return tuple(real(f"{before}{c}") for c in mechanism.motion.position)
 
 
 def _rotation_names(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
@@ -137,16 +144,42 @@ def _rotation_names(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
     return ROTATION_ENTRIES if _is_free(mechanism) else (cosine(HEADING), sine(HEADING))
 
 
-def found_from(mechanism: Mechanism, start: Start, search: Program) -> Forward:
+def found_from(mechanism: Mechanism, start: Start) -> Forward:
     """The pose of the platform at its axis values, and the rows of A there, from the iteration that
     all programs share.
     """
-    axes = tuple((j.axis, j.axis) for j in mechanism.joints)
-    begin = zip(_start_arguments(mechanism), (*start.position, *start.rotation), strict=True)
-    outputs = tuple(real(o.name) for o in search.outputs)
-    call = Call(search, (*axes, *begin), outputs, f"pose of the platform, by Newton's method from {start.name}")
     lets = (*joint_lets(mechanism), *_bases(mechanism)[0])
-    return Forward((*start.statements, *lets, call), position_of(mechanism), tuple(rotation_of(mechanism)))
+    pose = (Let(name, _found(name)) for name in (*_position(mechanism), *_rotation_names(mechanism)))
+    statements = (*start.statements, *lets, _call(mechanism, start), *pose)
+    return Forward(statements, position_of(mechanism), tuple(rotation_of(mechanism)))
+
+
+def _call(mechanism: Mechanism, start: Start) -> Call:
+    """The call of the iteration that all programs share."""
+    search = search_program(mechanism)
+    axes = tuple((j.axis, j.axis) for j in mechanism.joints)
+    begin = zip(_arguments(mechanism), (*start.position, *start.rotation), strict=True)
+    outputs = tuple(real(o.name) for o in search.outputs)
+    return Call(search, (*axes, *begin), outputs, f"pose of the platform, by Newton's method from {start.name}")
+
+
+def found_again(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """The check of a solved inverse that forward kinematics finds the pose again, as a controller does that asks for
+    the pose at power-up: from the home pose, given the axis values alone.
+    """
+    reason, asked = about_machine(Why.NOT_FOUND_AGAIN), flag(CHECK_FORWARD)
+    pose = (*_position(mechanism), *_rotation_names(mechanism))
+    call = replace(_call(mechanism, at_home(mechanism)), names=tuple(map(_found, pose)))
+    position = (sp.Le(sp.Abs(_found(c) - c), PLANE * SCALE) for c in _position(mechanism))
+    rotation = (sp.Le(sp.Abs(_found(r) - r), PLANE) for r in _rotation_names(mechanism))
+    is_same = sp.And(*position, *rotation)
+    call = replace(call, asked=asked, refusal=(Status.UNREACHABLE, reason))
+    return (call, Require(sp.Or(sp.Not(asked), is_same), Status.UNREACHABLE, reason=reason))
+
+
+def _found(name: sp.Symbol) -> sp.Symbol:
+    """The name of a part of the pose as the iteration finds it."""
+    return real(f"found_{name.name}")
 
 
 def search_program(mechanism: Mechanism) -> Program:
@@ -155,7 +188,7 @@ def search_program(mechanism: Mechanism) -> Program:
     """
     found = (*_position(mechanism), *_rotation_names(mechanism))
     entries = [e for e in rows(mechanism) if isinstance(e, sp.Symbol)]
-    outputs = [Output(n.name, n) for n in (*found, DETERMINANT, *entries)]
+    outputs = [*(Output(_found(n).name, n) for n in found), *(Output(n.name, n) for n in (DETERMINANT, *entries))]
     joints = {j.symbol for j in mechanism.joints}
     positive = [sp.Gt(v, 0) for v in mechanism.positive if v.free_symbols <= joints]
     mirror = Require(sp.And(*positive), Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_MIRROR))
@@ -180,7 +213,7 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
     loop = Iterate(
         state=(*pose, fitted),
         start=(
-            *START_POSITION[: len(mechanism.motion.position)],
+            *_position(mechanism, "begin_"),
             *[sp.Integer(0)] * len(angles(mechanism)),
             sp.false,
         ),
@@ -196,7 +229,7 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
         note="Newton's method: every pass improves the pose until all legs fit",
         reason=about_machine(Why.NOT_CONVERGED),
     )
-    start = _start_rotation(mechanism)
+    start = _begin_rotation(mechanism)
     arms = (let for leg in legs_of(mechanism) for let in turned(start, point_of(leg), names("start_arm", leg)))
     return (
         *with_note(arms, "joints of the platform, seen from its origin, in the orientation of the start"),
@@ -211,9 +244,10 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 def _orientation(mechanism: Mechanism) -> Iterator[Let]:
     """The rotation that was found: the rotation from the start, times the rotation of the start."""
-    rotation = _turn(mechanism) * _start_rotation(mechanism)
+    rotation = _turn(mechanism) * _begin_rotation(mechanism)
     entries = rotation if _is_free(mechanism) else rotation[:2, 0]
-    yield from (Let(n, v) for n, v in zip(_rotation_names(mechanism), entries, strict=True))
+    for name, entry in zip(_rotation_names(mechanism), entries, strict=True):
+        yield from (Let(_found(name), entry), Let(name, _found(name)))
 
 
 def _mirrors(mechanism: Mechanism) -> tuple[Statement, ...]:
@@ -222,7 +256,10 @@ def _mirrors(mechanism: Mechanism) -> tuple[Statement, ...]:
     values = [with_fixed_names(mechanism, v) for v in mechanism.positive if not v.free_symbols <= joints]
     lets, named = named_trigonometry(mechanism, values) if values else ((), [])
     reason = about_machine(Why.OTHER_MIRROR)
-    return (*fixed_lets(mechanism), *lets, *(Require(sp.Ge(v, 0), Status.IMPOSSIBLE, reason=reason) for v in named))
+    lengths = {*_position(mechanism), *(j.symbol for j in mechanism.joints if not j.is_angle)}
+    least = (-PLANE * (SCALE if v.free_symbols & lengths else 1) for v in values)  # both meet where it is zero
+    checks = (sp.Ge(v, low) for v, low in zip(named, least, strict=True))
+    return (*fixed_lets(mechanism), *lets, *(Require(c, Status.IMPOSSIBLE, reason=reason) for c in checks))
 
 
 def _turn(mechanism: Mechanism) -> sp.Matrix:

@@ -8,7 +8,7 @@ the sign of the determinant there is a constant of the machine.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -20,9 +20,9 @@ from derive.equations.closures.fixed_names import all_angles, fixed_lets, fixed_
 from derive.equations.problem import Equation, Problem, StepDeterminant
 from derive.ir.passes import renamed
 from derive.ir.primitives import Select
-from derive.ir.program import Let, Output, Require, Statement, rewritten
+from derive.ir.program import Let, Output, Require, Statement, binds, rewritten
 from derive.ir.reason import Why, about_machine
-from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, SCALE, cosine, real, sine
+from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.plate.legs import NORMAL, moments, names, rotation_of, spins
 from derive.solver.solve import Derivation, Unsolved, solve
 
@@ -184,3 +184,18 @@ def spelled(statements: Iterable[Statement], table: Mapping[sp.Symbol, sp.Symbol
     return tuple(
         renamed(rewritten(s, lambda e: e.xreplace(dict(table))), lambda n: table.get(n, n)) for s in statements
     )
+
+
+def completed(
+    mechanism: Mechanism, position: Sequence[sp.Symbol], rotation: Sequence[sp.Symbol]
+) -> tuple[tuple[Statement, ...], tuple[sp.Symbol, ...], tuple[sp.Symbol, ...]]:
+    """The statements that give a pose the passive coordinates that belong to its commanded ones, and the pose: a caller
+    may know what it has commanded alone.
+    """
+    places = tuple(real(c) for c in mechanism.motion.position)
+    turns = ROTATION_ENTRIES if len(rotation) == len(ROTATION_ENTRIES) else (cosine(HEADING), sine(HEADING))
+    table = dict(zip((*places, *turns), (*position, *rotation), strict=True))
+    table |= dict(zip(_COMMANDED, rotation, strict=False)) if "twist" in mechanism.passive else {}
+    own = [s for s in passive_statements(mechanism) if not isinstance(s, Require)]
+    table |= {name: real(f"completed_{name.name}") for s in own for name in binds(s)}
+    return spelled(own, table), tuple(table[c] for c in places), tuple(table[r] for r in turns)

@@ -6,7 +6,7 @@ inverse computes it from the spans of the legs, and divides by their lengths at 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
@@ -25,6 +25,7 @@ from derive.ir.symbols import (
     MIN_TYPE2_MARGIN,
     ROTATION_ENTRIES,
     SCALE,
+    START_ROTATION,
     cosine,
     real,
     sine,
@@ -267,7 +268,15 @@ def machine_constants(mechanism: Mechanism) -> tuple[Output, ...]:
     words = home_angles(mechanism)
     rotation = HOME_ROTATION if len(words) > 1 else tuple(real(f"{w}_{words[0]}") for w in ("cos", "sin"))
     own = (Output(n.name, n) for n in (*rotation, RADIUS, SCALE, ASSEMBLY_SIGN))
-    return (*own, *mode_constants(mechanism), *cone_constants(mechanism))
+    return (*own, *_start(mechanism), *mode_constants(mechanism), *cone_constants(mechanism))
+
+
+def _start(mechanism: Mechanism) -> Iterator[Output]:
+    """The pose at which forward kinematics starts: home. It is data of the machine, so that a caller can give another
+    start.
+    """
+    yield from (Output(f"start_{c}", v) for c, v in zip(mechanism.motion.position, mechanism.home, strict=False))
+    yield from (Output(s.name, v) for s, v in zip(START_ROTATION, home_rotation(mechanism), strict=True))
 
 
 def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[Statement, ...]:

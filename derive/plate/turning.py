@@ -23,7 +23,7 @@ from derive.ir.program import Let, Output, Require, Statement, Status, rewritten
 from derive.ir.reason import about_parameters
 from derive.ir.symbols import HEADING, POSITION, ROTATION_ENTRIES, SCALE, Flag, cosine, is_count, real, sine
 from derive.plate.legs import angles, by_angles, is_driven, position_of, rotation_of
-from derive.plate.newton import at_given, at_home, found_from, search_program
+from derive.plate.newton import at_given, found_from
 from derive.plate.passive import mode_constants, modes_at_home
 from derive.plate.plate import platform_size, pose_at_home
 
@@ -39,14 +39,9 @@ class NoPoseAtHome(DescriptionError):
     """No pose near the home pose of a loop is possible."""
 
 
-def forward_from_home(mechanism: Mechanism) -> Forward:
-    """The pose at axis values, by iteration from the home pose."""
-    return found_from(mechanism, at_home(mechanism), search_program(mechanism))
-
-
-def forward_from_given(mechanism: Mechanism) -> Forward:
-    """The pose at axis values, by iteration from a given pose."""
-    return found_from(mechanism, at_given(mechanism), search_program(mechanism))
+def forward_from_start(mechanism: Mechanism) -> Forward:
+    """The pose at axis values, by iteration from the start: the home pose, unless a caller gives another one."""
+    return found_from(mechanism, at_given(mechanism))
 
 
 def given_pose(mechanism: Mechanism) -> Forward:
@@ -96,7 +91,7 @@ def samples_near_home(
     told = [Output(SCALE.name, SCALE), *mode_constants(mechanism)]
     machine = {**machine, **run(normalise("size", known, told), machine)[0]}
     rng = np.random.default_rng(seed)
-    poses = _poses(mechanism, machine, rng)
+    poses = poses_around_home(mechanism, machine, rng, (_AROUND, _TURNED), _SAMPLES)
     axes = [Let(let.name, let.value) for j in mechanism.joints for let in axis_lets(j)]
     own = {s.name for s in derivation if isinstance(s, Let)}
     statements = (*derivation, *(let for let in axes if let.name not in own))
@@ -116,19 +111,23 @@ def samples_near_home(
     return {**machine, **columns, **{j.reference.name: columns[j.axis.name] for j in mechanism.joints}}
 
 
-def _poses(mechanism: Mechanism, machine: Samples, rng: np.random.Generator) -> Samples:
-    """Poses around home, by the names that programs read."""
+def poses_around_home(
+    mechanism: Mechanism, machine: Samples, rng: np.random.Generator, within: tuple[float, float], count: int
+) -> Samples:
+    """Poses around home, by the names that programs read. within: the largest distance from home, in characteristic
+    lengths and radians.
+    """
     width, reach = len(mechanism.motion.position), float(machine[SCALE.name])
     home = [float(evaluate(v, machine)) for v in mechanism.home]
-    sizes = np.array([_AROUND * reach if k < width else _TURNED for k in range(len(home))])
-    drawn = np.array(home) + sizes * rng.uniform(-1.0, 1.0, (_SAMPLES, len(home)))
-    values: Samples = {c.name: np.zeros(_SAMPLES) for c in POSITION}
+    sizes = np.array([within[0] * reach if k < width else within[1] for k in range(len(home))])
+    drawn = np.array(home) + sizes * rng.uniform(-1.0, 1.0, (count, len(home)))
+    values: Samples = {c.name: np.zeros(count) for c in POSITION}
     values |= {c: drawn[:, k] for k, c in enumerate(mechanism.motion.position)}
     turns = dict(zip(angles(mechanism), drawn[:, width:].T, strict=True))
     named = {f"{w}_{a}": f(v) for a, v in turns.items() for w, f in (("cos", np.cos), ("sin", np.sin))}
     matrix = by_angles(angles(mechanism))
     for name, entry in zip(ROTATION_ENTRIES, matrix, strict=True):
-        values[name.name] = np.broadcast_to(evaluate(entry, named), (_SAMPLES,))
+        values[name.name] = np.broadcast_to(evaluate(entry, named), (count,))
     if len(turns) == 1:
         values |= {cosine(HEADING).name: values["r11"], sine(HEADING).name: values["r21"]}
     return values

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.equations.rotation_repair import rotation_program
-from derive.ir.program import Iterate, Require, Status, shared
+from derive.ir.program import Call, Iterate, Require, Statement, Status, shared
 from derive.ir.reason import Kind, OtherTurn, Reason, Subject, Unit
 from derive.kinematics.kinematics import Kinematics
 
@@ -62,6 +62,10 @@ class Reasons:
         """The reason of a loop that does not end."""
         return self.text(_given(loop))
 
+    def call(self, call: Call) -> tuple[Status, str] | None:
+        """The status and the reason of a caller where a shared program refuses; None where it passes on the status."""
+        return None if call.refusal is None else (call.refusal[0], self.text(call.refusal[1]))
+
     def text(self, reason: Reason) -> str:
         """A reason in words, with its unit."""
         return _with_unit(reason.why.of(self.name(reason.subject)), reason.unit)
@@ -100,9 +104,15 @@ def rotation_texts() -> tuple[str, ...]:
 def reasons_of(kinematics: Kinematics) -> Reasons:
     """The reasons of a mechanism."""
     programs = (kinematics.setup, kinematics.branch, kinematics.limits)
-    if any(p.requires() for p in shared(programs)):
+    without = (replace(p, body=tuple(s for s in p.body if not _explains(s))) for p in programs)
+    if any(p.requires() for p in shared(without)):
         raise TypeError(f"{kinematics.mechanism.name}: the inverse calls a program that gives no reasons")
     return Reasons({j.symbol.name: j.name for j in kinematics.mechanism.joints})
+
+
+def _explains(statement: Statement) -> bool:
+    """Whether a statement is a call that gives its own reason."""
+    return isinstance(statement, Call) and statement.refusal is not None
 
 
 def texts(kinematics: Kinematics) -> tuple[str, ...]:
@@ -118,6 +128,8 @@ def _texts(statements: Iterable[object], reasons: Reasons) -> Iterator[str]:
                 yield from (check.reason, *(why for _, why in check.turns))
         elif isinstance(statement, Iterate):
             yield reasons.loop(statement)
+        elif isinstance(statement, Call) and (found := reasons.call(statement)):
+            yield found[1]
 
 
 def workspace(kinematics: Kinematics) -> tuple[str, ...]:

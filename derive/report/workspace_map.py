@@ -132,7 +132,8 @@ def _solved(
     told = [m.name for m in kinematics.margins if m.length is None]
     if not told:
         return solution, good, np.where(good, 1.0, np.nan)
-    margins, at = run(kinematics.singularity, named)
+    there = {f"start_{n}": values[n] for n in FRAME} if kinematics.starts else {}
+    margins, at = run(kinematics.singularity, named | there)
     least = np.min(np.abs(np.stack([np.broadcast_to(margins[n], (count,)) for n in told])), axis=0)
     has_margin = good & np.asarray(np.broadcast_to(at == Status.OK, (count,)), dtype=bool)
     return solution, good, np.where(has_margin, least, np.nan)

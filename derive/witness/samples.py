@@ -17,7 +17,7 @@ from derive.description.mechanism import Joint, Mechanism, Parameter, Role
 from derive.geometry.frames import Motion
 from derive.ir.interpret import Array, evaluate, run
 from derive.ir.program import Program, Require, Status
-from derive.ir.symbols import MIN_TYPE2_MARGIN, SCALE
+from derive.ir.symbols import CHECK_FORWARD, MIN_TYPE2_MARGIN, SCALE
 from derive.kinematics.kinematics import Kinematics
 from derive.witness.closure import LEAST_MARGIN, POSE, Closure
 from derive.witness.disagreement import Disagreement, NoPose
@@ -201,6 +201,8 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
         values[parameter.name] = drawn
     if MIN_TYPE2_MARGIN in values:  # every regular solution counts
         values[MIN_TYPE2_MARGIN] = np.full(count, LEAST_MARGIN)
+    if CHECK_FORWARD in values:  # also one that forward kinematics does not find from home
+        values[CHECK_FORWARD] = np.full(count, False)
     values.setdefault("", np.zeros(count))  # a machine without parameters still has rows
     constants, status = run(kin.setup, values)
     if status[0] != Status.OK:

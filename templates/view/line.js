@@ -30,7 +30,7 @@ function sampleAt(machine, from, to, bytes, near, at) {
   const frame = between(from, to, at);
   const answer = machine.inverse(frame, bytes, near);
   if (answer.status) return { at, frame, axes: null, words: inWords(answer), isSingular: false };
-  const { status, isSingular } = machine.singularity(answer.axes);
+  const { status, isSingular } = machine.singularity(answer.axes, frame);
   return { at, frame, axes: answer.axes, words: "", isSingular: Boolean(status) || isSingular };
 }
 

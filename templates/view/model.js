@@ -165,7 +165,7 @@ export class Model {
     const scene = this.machine.scene(axes, found.frame);
     const limited = this.machine.limited(axes);
     this.pose = {
-      ...found, axes, scene, limited, singularity: this.machine.singularity(axes),
+      ...found, axes, scene, limited, singularity: this.machine.singularity(axes, found.frame),
       beyond: limited.status ? limited : limited.beyond,
     };
     this.target = wanted;
@@ -174,7 +174,7 @@ export class Model {
 
   /** Where a search for the frame begins: at the last pose, which is nearby. */
   #near() {
-    return this.description.startsForward && this.pose ? this.pose.frame : undefined;
+    return this.pose?.frame;
   }
 
   #tell(what) {

@@ -59,7 +59,7 @@ function worthOf(machine, axes) {
   const found = machine.forward(axes);
   if (found.status) return null;
   if (machine.inverse(found.frame, openTurns(machine, found.configuration), axes).status) return null;
-  const { status, margins } = machine.singularity(axes);
+  const { status, margins } = machine.singularity(axes, found.frame);
   if (status) return null;
   return Math.min(1, ...Object.values(margins).map(Math.abs));
 }

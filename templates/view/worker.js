@@ -33,6 +33,6 @@ function valueAt(machine, { cells, corners, rotation, what, bytes, reference }, 
   const found = machine.inverse(frame, open, reference);
   if (found.status) return -1;
   if (what === "reach") return 1;
-  const { status, margins } = machine.singularity(found.axes);
+  const { status, margins } = machine.singularity(found.axes, frame);
   return status ? 0 : Math.abs(margins[what]);
 }

@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 extern const softkin_mechanism *const tested;
 
@@ -149,11 +150,30 @@ static void forward(const void *machine) {
   free(configuration);
 }
 
+/* The machine, or one whose forward kinematics starts at the frame that follows in the stream. */
+static void *started(const void *machine, softkin_status *status, softkin_refusal *why) {
+  softkin_frame start;
+  void *moved = array(1, tested->machine_size);
+  memcpy(moved, machine, tested->machine_size);
+  *status = SOFTKIN_OK;
+  if (number() != 0.0) {
+    frame_of(&start);
+    *status = softkin_start_at(tested, machine, &start, moved, why);
+  }
+  return moved;
+}
+
 static void singularity(const void *machine) {
   double *axes = numbers(tested->axis_count), *margins = empty(tested->margin_count);
   bool is_singular = false;
   softkin_refusal why;
-  if (succeeds(softkin_singularity(tested, machine, axes, margins, &is_singular, &why), &why)) {
+  softkin_status status;
+  void *moved = started(machine, &status, &why);
+  if (status == SOFTKIN_OK) {
+    status = softkin_singularity(tested, moved, axes, margins, &is_singular, &why);
+  }
+  free(moved);
+  if (succeeds(status, &why)) {
     tell(is_singular);
     tell_all(margins, tested->margin_count);
   } else {
@@ -167,7 +187,13 @@ static void jacobian(const void *machine) {
   const int size = tested->row_count*tested->axis_count;
   double *axes = numbers(tested->axis_count), *rows = empty(size);
   softkin_refusal why;
-  if (succeeds(softkin_jacobian(tested, machine, axes, rows, &why), &why)) {
+  softkin_status status;
+  void *moved = started(machine, &status, &why);
+  if (status == SOFTKIN_OK) {
+    status = softkin_jacobian(tested, moved, axes, rows, &why);
+  }
+  free(moved);
+  if (succeeds(status, &why)) {
     tell_all(rows, size);
   } else {
     untouched(rows, size);

@@ -146,7 +146,7 @@ def _call(known: Description, call: Call) -> bytes:
     numbers = [float(_CALLS.index(name) + 1)]
     if name in ("forward", "singularity", "jacobian", "limits"):
         numbers += given[0]
-        numbers += (_optional(_frame(given[1]) if len(given) > 1 else None)) if name == "forward" else []
+        numbers += [] if name == "limits" else _optional(_frame(given[1]) if len(given) > 1 else None)
     else:
         numbers += _frame(given[0])
         for one in given[1:]:

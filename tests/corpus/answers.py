@@ -64,9 +64,9 @@ def plain(value: Any) -> Any:
     return [plain(part) for part in value]
 
 
-def smallest_margin(one: Robot, axes: Iterable[float]) -> float:
+def smallest_margin(one: Robot, axes: Iterable[float], **start: Any) -> float:
     """The smallest margin in size at axis values, to three digits; 1 where there is none, 0 where one is no number."""
-    found = [abs(margin) for margin in one.made.singularity(axes).margins.values()]
+    found = [abs(margin) for margin in one.made.singularity(axes, **start).margins.values()]
     return float(f"{min(found, default=1.0):.3g}") if all(map(isfinite, found)) else 0.0
 
 
@@ -81,12 +81,13 @@ def _forward(one: Robot, question: Question) -> Answer:
     def found() -> Answer:
         start = {"start": question["start"]} if "start" in question else {}
         frame, configuration = one.made.forward(axes, **start)
-        singularity = one.made.singularity(axes)
-        more = {"jacobian": one.made.jacobian(axes)} if question.get("jacobian") else {}
+        singularity = one.made.singularity(axes, **start)
+        turned = _same(one.made.orientation(axes, **start), frame.rotation)
+        more = {"jacobian": one.made.jacobian(axes, **start)} if question.get("jacobian") else {}
         return {
             "position": frame.position, "rotation": frame.rotation, "configuration": configuration,
             "margins": dict(singularity.margins), "singular": singularity.is_singular,
-            "margin": smallest_margin(one, axes), "turned": _same(one.made.orientation(axes), frame.rotation), **more,
+            "margin": smallest_margin(one, axes, **start), "turned": turned, **more,
         }  # fmt: skip
 
     return _caught(found)

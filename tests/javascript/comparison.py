@@ -33,12 +33,17 @@ def calls_of(question: Answer) -> list[Call]:
     if question["call"] == "forward":
         start = [_frame(question["start"])] if "start" in question else []
         axes = question["axes"]
-        return [["forward", axes, *start], ["singularity", axes], ["jacobian", axes]]
+        return [[call, axes, *start] for call in ("forward", "singularity", "jacobian")]
     if question["call"] == "inverse":
         frame, reference = _frame(question["frame"]), question["reference"]
         named = [["inverse", frame, given, reference] for given in question["configurations"]]
         return [["inverseAll", frame, reference], *named]
     return []
+
+
+def _of_axes(question: Answer) -> list[Any]:
+    """The arguments of a call that takes axes, and the start where the question has one."""
+    return [question[key] for key in ("axes", "start") if key in question]
 
 
 def _frame(frame: Sequence[Any]) -> Answer:
@@ -67,7 +72,7 @@ class Comparison:
         before = len(self.found)
         if question["call"] == "forward":
             self._forward(question, next(answers))
-            self._singularity(question["axes"], next(answers))
+            self._singularity(question, next(answers))
             self._jacobian(question, next(answers))
         elif question["call"] == "inverse":
             self._slots(question, next(answers))
@@ -77,8 +82,7 @@ class Comparison:
 
     def _forward(self, question: Answer, answer: Answer) -> None:
         axes = question["axes"]
-        start = [question["start"]] if "start" in question else []
-        expected = self._asked("forward", axes, *start)
+        expected = self._asked("forward", *_of_axes(question))
         if not self._same_status("forward", expected, answer):
             return
         frame, configuration = expected
@@ -90,8 +94,9 @@ class Comparison:
         if margin > ROUNDED:
             self._equal("configuration", list(configuration), answer["configuration"])
 
-    def _singularity(self, axes: Any, answer: Answer) -> None:
-        expected = self._asked("singularity", axes)
+    def _singularity(self, question: Answer, answer: Answer) -> None:
+        axes = question["axes"]
+        expected = self._asked("singularity", *_of_axes(question))
         if isinstance(expected, softkin.KinematicsError):
             self._same_status("singularity", expected, answer)
             return
@@ -108,7 +113,7 @@ class Comparison:
     def _jacobian(self, question: Answer, answer: Answer) -> None:
         """A singular pose is found with an error over the margin, and the Jacobian divides by that again."""
         axes = question["axes"]
-        expected = self._asked("jacobian", axes)
+        expected = self._asked("jacobian", *_of_axes(question))
         is_refused = isinstance(expected, softkin.KinematicsError)
         if not is_refused and answer["status"] == 4 and self._margin(axes) < ROUNDED:
             return  # rounding decides whether a pose next to the singularity is one

@@ -158,6 +158,13 @@ class Controller:
         status = self._call("Jacobian", {"J": found}, a=values.axes(self.library, axes))
         return self._answer(status, lambda: tuple(tuple(found[6 * i : 6 * i + 6]) for i in range(6)))
 
+    def jacobian_from(self, axes: Numbers, position: Numbers, rows: Iterable[Numbers]) -> Answer:
+        """JacobianFrom: all six rows of six."""
+        found = [values.MEANINGLESS] * 36
+        start = values.frame(self.library, position, rows)
+        status = self._call("JacobianFrom", {"J": found}, a=values.axes(self.library, axes), f=start)
+        return self._answer(status, lambda: tuple(tuple(found[6 * i : 6 * i + 6]) for i in range(6)))
+
     def is_singular(self, axes: Numbers) -> bool:
         """IsSingularity."""
         found: bool = self.block.call("IsSingularity", a=values.axes(self.library, axes))

@@ -47,12 +47,16 @@ def function_name(program: Program) -> str:
 
 def read_by(program: Program) -> set[str]:
     """The names that a program itself reads, without those that only its called programs read."""
+    return names_in(program) - {s.name for s in program.bound()}
+
+
+def names_in(program: Program) -> set[str]:
+    """The names that stand in the expressions of a program."""
     values = [e for s in program.body for e in (*expressions(s), *reason_expressions(s))] + [
         o.value for o in program.outputs
     ]
     given = {g.name for s in program.body if isinstance(s, FindRoot) for p in (s.trial, s.finish) for g in s.given(p)}
-    found = {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
-    return found - {s.name for s in program.bound()}
+    return {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
 
 
 def rotation_function() -> Function:
@@ -68,7 +72,6 @@ def functions(kin: Kinematics) -> list[Function]:
     joints = kin.mechanism.joints
     axes = _places("axes", [j.axis.name for j in joints])
     frame = {name: f"frame->{place}" for name, place in FRAME}
-    start = {f"start_{name}": f"start->{place}" for name, place in FRAME}
     turns = _places("turns", [j.turn.name for j in kin.period_joints])
     reference = _places("reference", [j.reference.name for j in joints])
     choice = _places("signs", [branch_sign(b.name).name for b in kin.branches]) | turns | reference
@@ -88,10 +91,6 @@ def functions(kin: Kinematics) -> list[Function]:
         Function("The Jacobian by rows, per radian.", kin.jacobian, f"{given_axes}, double *rows", axes,
                  tuple(_places("rows", entries).items()), "jacobian"),
     ]  # fmt: skip
-    if kin.forward_from is not None:
-        text = "Position, rotation and margins, found from a given start."
-        parameters = f"{given_axes}, const softkin_frame *start, softkin_frame *frame, double *margins"
-        found.append(Function(text, kin.forward_from, parameters, axes | start, placed, "forward_from"))
     return [*found, *_further(kin, axes, frame | choice, turns | reference)]
 
 

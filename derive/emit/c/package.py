@@ -13,7 +13,7 @@ from derive.emit.braces import harmless
 from derive.emit.c.description import counts, in_words, inputs, tables
 from derive.emit.c.every_branch import MOST_SLOTS, constants_of_branches, every_branch_lines
 from derive.emit.c.every_branch import NAME as EVERY_BRANCH
-from derive.emit.c.functions import Function, arguments_of, functions, read_by, rotation_function
+from derive.emit.c.functions import FRAME, Function, arguments_of, functions, read_by, rotation_function
 from derive.emit.c.lanes import constants_of_lanes
 from derive.emit.c.layout import comment, laid_out, page
 from derive.emit.c.printer import C, list_of, member, number, text, type_of
@@ -190,7 +190,7 @@ def _known(kin: Kinematics, module: str) -> dict[str, Any]:
         "summary": text(kin.mechanism.summary),
         "source": text(kin.mechanism.source),
         "reads_rotation": kin.reads_rotation,
-        "starts_forward": kin.forward_from is not None,
+        "starts_forward": kin.starts,
         "is_searched": kin.search_given is not None,
         "needs_reference": _needed(kin),
     }
@@ -244,6 +244,8 @@ def _further(kin: Kinematics, module: str, stored: dict[str, str]) -> dict[str, 
     found = {}
     if lines := every_branch_lines(kin, f"{module}_machine", stored, reasons_of(kin)):
         found["every_branch"] = (EVERY_BRANCH, lines)
+    if kin.starts:
+        found |= _starts(f"{module}_machine", stored)
     if kin.search_given is not None:
         found["every_root"] = ("find_every_root", _every_root(kin, module, stored))
     if any(joint.is_geared for joint in kin.period_joints):
@@ -254,6 +256,25 @@ def _further(kin: Kinematics, module: str, stored: dict[str, str]) -> dict[str, 
         lines = function_of(summary, "static void find_turn_sizes(const void *machine, double *sizes)", inner)
         found["turn_sizes"] = ("find_turn_sizes", lines)
     return found
+
+
+def _starts(machine: str, stored: dict[str, str]) -> dict[str, tuple[str, list[str]]]:
+    """The functions of a machine whose forward kinematics starts where a caller says."""
+    given = "const void *machine, {}const softkin_frame *start, {}"
+    places = {f"start_{name}": f"start->{place}" for name, place in FRAME}
+    written = [f"{text} = {places[name]};" for name, text in stored.items() if name in places]
+    head = f"static void start_at({given.format('', 'void *moved')})"
+    moved = [f"{machine} *k = moved;", f"*k = *(const {machine} *)machine;", *written]
+    results = "softkin_frame *frame, double *margins, softkin_refusal *why"
+    begun = f"static softkin_status find_forward_from({given.format('const double *axes, ', results)})"
+    inner = [
+        f"{machine} moved;", "start_at(machine, start, &moved);",
+        "return find_forward(&moved, axes, frame, margins, why);",
+    ]  # fmt: skip
+    return {
+        "start_at": ("start_at", function_of("The machine with another start of forward kinematics.", head, moved)),
+        "forward_from": ("find_forward_from", function_of("Forward kinematics from a given start.", begun, inner)),
+    }
 
 
 def _every_root(kin: Kinematics, module: str, stored: dict[str, str]) -> list[str]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import sympy as sp
 
 from derive.emit.braces import block, indented
-from derive.emit.c.functions import Function, function_name, read_by
+from derive.emit.c.functions import Function, function_name, names_in, read_by
 from derive.emit.c.layout import comment, commented
 from derive.emit.c.printer import C, list_of, names_of, spelled, type_of
 from derive.emit.c.refusal import Refusals
@@ -27,7 +27,8 @@ _PLACES = {name.name: f"place->{name.name}" for name in PLACE}
 def function_lines(function: Function, machine: str, constants: Mapping[str, str], reasons: Reasons) -> list[str]:
     """The function. machine: the type of the struct of the machine; constants: the spelling of its members."""
     program, read = function.program, read_by(function.program)
-    body = Body(C({name: text for name, text in constants.items() if name not in function.given}), reasons)
+    printer = C({name: text for name, text in constants.items() if name not in function.given})
+    body = Body(printer, reasons, names_in(program))
     types = {s.name: type_of(s) for s in program.inputs}
     own = [(name, place) for name, place in function.given.items() if name in read]
     head = taken(own, types)
@@ -77,6 +78,8 @@ class Body:
 
     printer: C
     reasons: Reasons
+    read: Collection[str] | None = None
+    """The names that are read; None where that is not known."""
     declared: set[sp.Symbol] = field(default_factory=set)
     """The names that are declared before the choice that gives them."""
     numbered: dict[str, int] = field(default_factory=dict)
@@ -109,7 +112,9 @@ class Body:
         call = f"softkin_solve(&{array}[0][0], {size}, {columns});"
         target = "" if system.determinant is None else f"{word}{spelled(system.determinant.name)} = "
         found = [
-            f"{name} = {array}[{i // columns}][{size + i % columns}]" for i, name in enumerate(names_of(system.names))
+            f"{spelled(name.name)} = {array}[{i // columns}][{size + i % columns}]"
+            for i, name in enumerate(system.names)
+            if self.read is None or name.name in self.read
         ]
         if declares:
             writes = [f"const double {', '.join(found)};"] if found else []
@@ -179,13 +184,16 @@ class Body:
         status = self.array("status")
         names = {name.name: name for name in call.names}
         own = [(o.name, f"{array}[{i}]") for i, o in enumerate(call.program.outputs) if o.name in names]
-        head = f"const softkin_status {status} = {function_name(call.program)}(k, {arguments}, {array}, why);"
+        why = "why" if call.refusal is None else "NULL"
+        value = f"{function_name(call.program)}(k, {arguments}, {array}, {why})"
+        is_always = call.asked is sp.true
+        value = value if is_always else f"{self.printer.print(call.asked)} ? {value} : SOFTKIN_OK"
         return [
             *comment(call.note),
             f"const double {arguments}[] = {list_of(given or ['0.0'])};",
-            f"double {array}[{len(call.program.outputs)}];",
-            head,
-            *block(f"if ({status} != SOFTKIN_OK)", [f"return {status};"]),
+            f"double {array}[{len(call.program.outputs)}]{'' if is_always else ' = {0.0}'};",
+            f"const softkin_status {status} = {value};",
+            *block(f"if ({status} != SOFTKIN_OK)", [self.refusals.of_call(call, status)]),
             *taken(own, {name: type_of(symbol) for name, symbol in names.items()}),
         ]
 

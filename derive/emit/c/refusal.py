@@ -11,7 +11,7 @@ from derive.emit.braces import block, indented
 from derive.emit.c.layout import comment
 from derive.emit.c.printer import C, status, text
 from derive.emit.conditions import parts_of, sized
-from derive.ir.program import Iterate, Require, Status
+from derive.ir.program import Call, Iterate, Require, Status
 from derive.ir.reason import OtherTurn, Unit
 from derive.report.reasons import Check, Reasons
 
@@ -35,6 +35,11 @@ class Refusals:
     def of_loop(self, loop: Iterate) -> str:
         """The line that refuses where a loop is never left: a reason without an amount."""
         return f"return {refused(loop.otherwise, '' if loop.reason is None else self.reasons.loop(loop))};"
+
+    def of_call(self, call: Call, outcome: str) -> str:
+        """The line that refuses where a shared program does."""
+        own = self.reasons.call(call)
+        return f"return {outcome};" if own is None else f"return {refused(*own)};"
 
     def condition(self, conditions: Iterable[sp.Basic]) -> str:
         """Conditions that must all hold, as one."""

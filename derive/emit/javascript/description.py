@@ -50,7 +50,7 @@ def description(kin: Kinematics, module: str) -> dict[str, Any]:
         "task": {"position": mechanism.task.position, "turning": mechanism.task.turning.value},
         "freedom": kin.freedom.value,
         "readsRotation": kin.reads_rotation,
-        "startsForward": kin.forward_from is not None,
+        "startsForward": kin.starts,
         "axes": [_axis(joint, joint.name in held) for joint in mechanism.joints],
         "parameters": [_parameter(p, names[p.name]) for p in kin.parameters],
         "settings": {"checkLimits": names[CHECK_LIMITS], "warningDistance": names[WARNING_DISTANCE]},

@@ -18,10 +18,6 @@ Shape = str | tuple["Shape", ...]
 """Names, nested as the arrays of arguments and results are."""
 POSITION: tuple[Shape, ...] = ("x", "y", "z")
 ROTATION: tuple[Shape, ...] = tuple(tuple(f"r{row}{column}" for column in "123") for row in "123")
-_START: tuple[tuple[str, tuple[Shape, ...]], ...] = (
-    ("startPosition", tuple(f"start_{c}" for c in "xyz")),
-    ("startRotation", tuple(tuple(f"start_r{row}{column}" for column in "123") for row in "123")),
-)
 
 
 @dataclass(frozen=True)
@@ -90,9 +86,6 @@ def functions(kin: Kinematics, parts: Parts | None) -> list[Function]:
     if parts is not None:
         text = "What is drawn: amounts and points, as `parts` of the description counts them."
         found.append(Function(text, parts.program, (*axes, *pose), parts.names, "parts"))
-    if kin.forward_from is not None:
-        text = "Position, rotation and margins, found from a given start."
-        found.append(Function(text, kin.forward_from, (*axes, *_START), placed, "forwardFrom"))
     if kin.limited:
         quantities = tuple(value_of(quantity) for quantity in kin.limited)
         program = normalise("quantities", kin.limits.lets(), [Output(q.name, q) for q in quantities])

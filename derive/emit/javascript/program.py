@@ -148,11 +148,14 @@ class _Body:
         values = dict(call.given)
         given = [PRINTER.value(name, values[name]) for name in call.program.inputs if name in values]
         found = self._found()
-        head = f"const {found} = {function_name(call.program.name)}(k, {list_of(given)});"
+        value = f"{function_name(call.program.name)}(k, {list_of(given)})"
+        if call.asked is not sp.true:
+            value = f"{PRINTER.print(call.asked)} ? {value} : {list_of(['0'] * len(call.program.outputs))}"
         wanted = {name.name for name in call.names}
         taken = _trimmed([spelled(o.name) if o.name in wanted else "" for o in call.program.outputs])
         tail = [f"const {list_of(taken)} = {found};"] if taken else []
-        return [*comment(call.note), head, f"if ({found} instanceof Refusal) return {found};", *tail]
+        refused = self.refusals.of_call(call, found)
+        return [*comment(call.note), f"const {found} = {value};", f"if ({found} instanceof Refusal) {refused}", *tail]
 
     def _search(self, search: FindRoot) -> list[str]:
         return [*comment(search.note), f"const {list_of(names_of(search.names))} = {looked_for(search)};"]

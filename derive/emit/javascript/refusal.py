@@ -11,7 +11,7 @@ from derive.emit.braces import block, indented
 from derive.emit.conditions import parts_of, sized
 from derive.emit.javascript.layout import comment
 from derive.emit.javascript.printer import PRINTER, status, text
-from derive.ir.program import Iterate, Require
+from derive.ir.program import Call, Iterate, Require
 from derive.ir.reason import OtherTurn
 from derive.report.reasons import Check, Reasons
 
@@ -35,6 +35,11 @@ class Refusals:
         """The line that refuses where a loop is never left: a reason without an amount."""
         reason = "" if loop.reason is None else f", {text(self.reasons.loop(loop))}"
         return f"return refuse({status(loop.otherwise)}{reason});"
+
+    def of_call(self, call: Call, found: str) -> str:
+        """The line that refuses where a shared program does."""
+        own = self.reasons.call(call)
+        return f"return {found};" if own is None else f"return refuse({status(own[0])}, {text(own[1])});"
 
     def _check(self, check: Check) -> list[str]:
         given = [status(check.status), text(check.reason)]

@@ -128,7 +128,7 @@ def _known(kin: Kinematics, words: Words, module: str) -> dict[str, Any]:
         "joints": len(kin.mechanism.joints),
         "branches": len(kin.branches),
         "is_searched": any(searches(program) for program in kin.shared),
-        "starts_forward": kin.forward_from is not None,
+        "starts_forward": kin.starts,
         "parameters": [
             {"pin": text(f"softkin.{pins[p.name]}"), "is_flag": "true" if p.role is Role.FLAG else "false"}
             for p in kin.parameters
@@ -153,7 +153,7 @@ def _of_letters(kin: Kinematics, words: Words) -> dict[str, Any]:
         "turn_factors": list_of(_turn_factors(kin)) if words.orientation is Orientation.COUNTED else "",
         "carrier": words.carrier,
         "flange": _flange(kin),
-        "begins_near": kin.forward_from is not None or near,
+        "begins_near": kin.starts or near,
     }
 
 

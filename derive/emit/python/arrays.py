@@ -23,6 +23,7 @@ from derive.emit.python.program import (
 )
 from derive.ir.primitives import NearestPeriod
 from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve, Statement, reads
+from derive.ir.symbols import START_POSITION, START_ROTATION
 from derive.ir.tree import If, Item, grouped
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.scheduling import scheduled
@@ -62,7 +63,8 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
     if not method.is_shared:
         lines.append(f"status = passed({', '.join(a.name for a in method.arguments)})")
     program = without_conversions(method.program)
-    alike = fixed(program.body, {s for statement in program.body for s in reads(statement) if s.name in constants})
+    read = {s for statement in program.body for s in reads(statement) if s.name in constants}
+    alike = fixed(program.body, read - {*START_POSITION, *START_ROTATION})
 
     def bound(item: Item) -> list[str]:
         if isinstance(item, If):

@@ -16,14 +16,26 @@ GIVEN, FOUND = "given", "found"
 
 def scalar_lines(call: Call, printer: ScalarPrinter, refused: str = f"return {FOUND}") -> list[str]:
     """The lines that call the program, pass on its refusal, and unpack its values."""
-    head = [f"{FOUND} = self._{call.program.name}({_values(call, printer)})"]
-    return [*_note(call), *head, f"if isinstance({FOUND}, Status):", f"    {refused}", *_taken(call, FOUND)]
+    head = f"{FOUND} = self._{call.program.name}({_values(call, printer)}){_unless_asked(call, printer)}"
+    return [*_note(call), head, f"if isinstance({FOUND}, Status):", f"    {refused}", *_taken(call, FOUND)]
 
 
 def array_lines(call: Call, printer: ScalarPrinter) -> list[str]:
     """The lines that call the program on arrays, where it writes the statuses of its refusals itself."""
-    head = [f"{FOUND} = self.{call.program.name}({_values(call, printer)}, status)"]
-    return [*_note(call), *head, *_taken(call, FOUND)]
+    inner = "status" if call.refusal is None else "refused"
+    found = f"self.{call.program.name}({_values(call, printer)}, {inner}){_unless_asked(call, printer)}"
+    head = [f"{FOUND} = {found}", *_taken(call, FOUND)]
+    if call.refusal is None:
+        return [*_note(call), *head]
+    refused = f"require(status, refused == status, Status.{call.refusal[0].name})"
+    return [*_note(call), "refused = status.copy()", *head, refused]
+
+
+def _unless_asked(call: Call, printer: ScalarPrinter) -> str:
+    """The zeros in place of the results where the call is not asked for."""
+    if call.asked is sp.true:
+        return ""
+    return f" if {printer.print(call.asked)} else (0.0,) * {len(call.program.outputs)}"
 
 
 def scalar_search(search: FindRoot, printer: ScalarPrinter) -> list[str]:

@@ -15,7 +15,7 @@ from derive.emit.python.methods import (
     branch,
     differential,
     end_point_shift,
-    forwards,
+    forward,
     limits,
     methods,
     projection,
@@ -55,7 +55,7 @@ def index(kin: Kinematics) -> dict[str, Any]:
 def modules(kin: Kinematics) -> dict[str, str]:
     """The files of a mechanism: path → text."""
     names = index(kin)
-    programs = (*shared(kin), *forwards(kin), branch(kin), limits(kin), *differential(kin))
+    programs = (*shared(kin), forward(kin), branch(kin), limits(kin), *differential(kin))
     arrays = [_untold(m) for m in (*programs, *projection(kin), *end_point_shift(kin))]
     lean = unrolled(kin) if is_unrolled(kin) else None
     contexts = {
@@ -157,7 +157,7 @@ def _array_programs(kin: Kinematics) -> str:
     """The base class of the programs on arrays, by the calls that the mechanism offers."""
     if kin.mechanism.is_orientation:
         return "OrientationPrograms"
-    return "Programs" if kin.forward_from is None else "StartedPrograms"
+    return "StartedPrograms" if kin.starts else "Programs"
 
 
 def _bases(kin: Kinematics) -> dict[str, str]:
@@ -165,7 +165,7 @@ def _bases(kin: Kinematics) -> dict[str, str]:
     found = {"_offset": "OffsetKinematics"} if kin.offset_branch is not None else {}
     found |= {"_orientation": "OrientationKinematics"} if kin.mechanism.is_orientation else {}
     found |= {"_search": "SearchedInverse"} if kin.mechanism.search is not None else {}
-    found |= {"_start": "IterativeForward"} if kin.forward_from is not None else {}
+    found |= {"_start": "IterativeForward"} if kin.starts else {}
     found |= {"_twist": "TwistChoice"} if kin.chooses_twist else {}
     return found or {"_core": "Mechanism"}
 

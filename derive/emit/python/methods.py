@@ -31,7 +31,7 @@ def methods(kin: Kinematics) -> list[Method]:
     found = [
         *shared(kin),
         *every_root(kin),
-        *forwards(kin),
+        forward(kin),
         Method("orientation", "The rotation of the frame.", kin.orientation, (axes,), "Rotation", ROTATION),
         branch(kin),
         limits(kin),
@@ -92,21 +92,6 @@ def forward(kin: Kinematics) -> Method:
     result = (POSITION, ROTATION, _branch_margins(kin))
     text = "Position, rotation and the signed margin of every branch."
     return Method("forward", text, kin.forward, (_axes(kin),), "Pose", result)
-
-
-def forwards(kin: Kinematics) -> list[Method]:
-    """Forward kinematics and, where it iterates, forward kinematics from a given start."""
-    if kin.forward_from is None:
-        return [forward(kin)]
-    start = (
-        Argument("start_position", "Vector", tuple(f"start_{c}" for c in "xyz")),
-        Argument(
-            "start_rotation", "Rotation", tuple(tuple(f"start_r{row}{column}" for column in "123") for row in "123")
-        ),
-    )
-    text = "Position, rotation and the signed margin of every branch, found from a given start."
-    result = (POSITION, ROTATION, _branch_margins(kin))
-    return [forward(kin), Method("forward_from", text, kin.forward_from, (_axes(kin), *start), "Pose", result)]
 
 
 def branch(kin: Kinematics) -> Method:

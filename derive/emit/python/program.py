@@ -99,7 +99,7 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
             lines += [*scalar_head(item, printer), *step_lines(item, printer)]
             lines += scalar_end(item, conjunction([item.done]), refusals.of_loop(item), printer)
         elif isinstance(item, Call):
-            lines += python_calls.scalar_lines(item, printer, refusals.of_call())
+            lines += python_calls.scalar_lines(item, printer, refusals.of_call(item))
         elif isinstance(item, FindRoot):
             lines += python_calls.scalar_search(item, printer)
         else:

@@ -13,7 +13,7 @@ from derive.emit.conditions import parts_of, sized
 from derive.emit.python.calls import FOUND
 from derive.emit.python.layout import note_lines, quoted
 from derive.emit.python.printer import ScalarPrinter
-from derive.ir.program import Iterate, Require, Status
+from derive.ir.program import Call, Iterate, Require, Status
 from derive.ir.reason import OtherTurn, Reason, Why
 from derive.report.reasons import Check, Reasons
 
@@ -39,9 +39,9 @@ class Refusals:
         """The line that refuses where a loop is never left."""
         return f"return {self.answer(loop.otherwise)}"
 
-    def of_call(self) -> str:
-        """The expression with which a caller passes on the refusal of a shared program."""
-        return f"return {FOUND}"
+    def of_call(self, call: Call) -> str:
+        """The line with which a caller refuses where a shared program does: by passing it on, or with its own."""
+        return f"return {FOUND if call.refusal is None else self.answer(call.refusal[0])}"
 
 
 @dataclass(frozen=True)
@@ -60,9 +60,10 @@ class Explained(Refusals):
         """The line that refuses where a loop is never left: a reason without an amount."""
         return self._refused(loop.otherwise, self.reasons.loop(loop))
 
-    def of_call(self) -> str:
-        """A shared program refuses without a reason."""
-        return f'return Diagnosis({FOUND}, "", 0.0)'
+    def of_call(self, call: Call) -> str:
+        """The line with which a caller refuses where a shared program does, which gives no reason itself."""
+        own = self.reasons.call(call)
+        return f'return Diagnosis({FOUND}, "", 0.0)' if own is None else self._refused(*own)
 
     def _lines(self, check: Check) -> Iterator[str]:
         yield _unless(check.conditions)

@@ -13,7 +13,8 @@ from derive.emit.st.contract import Contract, Parameter, Signature
 from derive.emit.st.layout import with_gathered
 from derive.emit.st.projection import about_z, followed
 
-_OWN = ("InitializeReason", "Jacobian", "Margins", "AxisVelocities", "Diagnose")
+_OF_AXES = ("Jacobian", "Margins", "AxisVelocities")
+_OWN = ("InitializeReason", *_OF_AXES, *(f"{name}From" for name in _OF_AXES), "Diagnose")
 _OF_INTERFACES = (
     "Initialize",
     "AxesToCartesian",
@@ -52,6 +53,7 @@ BASE_VARIABLES = (
     "warningDistance",
     "tie",
     "axes",
+    "home",
 )
 """The instance variables of the base block."""
 PRIVATE = ("FindAxes", "Configure")
@@ -145,7 +147,7 @@ def _configure(contract: Contract) -> Signature:
 
 
 def _template(signature: Signature, contract: Contract) -> str:
-    return "Supplied" if signature.name in contract.supplied else signature.name
+    return "Supplied" if signature.name in contract.supplied else signature.name.removesuffix("From")
 
 
 def _method(

@@ -16,6 +16,7 @@ from derive.emit.st.program import Printed
 from derive.ir.constants import TIE
 from derive.ir.passes import needed_for
 from derive.ir.program import Program
+from derive.ir.symbols import START_POSITION
 from derive.ir.types import type_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
@@ -194,11 +195,18 @@ def _fields(kinematics: Kinematics) -> tuple[tuple[str, str], ...]:
 @kept_by_identity(10)
 def stored_in_base(kinematics: Kinematics) -> dict[str, str]:
     """The constants that the base block holds, most of them in the structure of an axis, with the spelling of each."""
-    return {
+    of_axes = {
         f"{word}_{joint.key}": f"axes[{index}].{member}"
         for index, joint in enumerate(kinematics.mechanism.joints)
         for word, member in _OF_AXIS.items()
-    } | {TIE_OF_LENGTHS.name: "tie"}
+    }
+    return of_axes | {TIE_OF_LENGTHS.name: "tie"} | start_in("home")
+
+
+def start_in(structure: str) -> dict[str, str]:
+    """The start of forward kinematics in a structure, with the spelling of each of its numbers."""
+    position = {s.name: f"{structure}.v.d{c.upper()}" for s, c in zip(START_POSITION, "xyz", strict=True)}
+    return position | {f"start_r{r}{c}": f"{structure}.rot[{r}, {c}]" for r in (1, 2, 3) for c in (1, 2, 3)}
 
 
 def stored_as(kinematics: Kinematics, name: str) -> str:

@@ -12,7 +12,7 @@ import sympy as sp
 from derive.emit.conditions import is_size_test
 from derive.ir.passes import with_inputs
 from derive.ir.primitives import Select, ToReal
-from derive.ir.program import Let, Program, Require, Statement, rewritten
+from derive.ir.program import Let, Program, Require, Statement, Status, rewritten
 from derive.ir.symbols import flag, real
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Freedom, Kinematics
@@ -87,6 +87,15 @@ def without_axes(program: Program | None, kinematics: Kinematics) -> Program | N
         return None
     known = frozenset(joint.axis.name for joint in kinematics.mechanism.joints)
     return _without(program, known | _POINT)
+
+
+def from_home(program: Program | None, kinematics: Kinematics) -> Program | None:
+    """A program of axis values that begins at the home pose, without the checks of a start: Initialize does them."""
+    left = without_axes(program, kinematics)
+    if left is None or not kinematics.starts:
+        return left
+    body = (s for s in left.body if not (isinstance(s, Require) and s.otherwise is Status.BAD_INPUT))
+    return with_inputs(replace(left, body=tuple(body)))
 
 
 def _without(program: Program, known: frozenset[str]) -> Program:

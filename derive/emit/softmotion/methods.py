@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from jinja2 import Environment
 
 from derive.emit.softmotion.base import BASE_VARIABLES, INHERITED, PRIVATE, Method, inherited_texts, statements_of
-from derive.emit.softmotion.block import Block, constants, direct, setup_of, stored_as
-from derive.emit.softmotion.calls import branch_of, commanded, offset_branch_of, without_axes
+from derive.emit.softmotion.block import Block, constants, direct, setup_of, start_in, stored_as
+from derive.emit.softmotion.calls import branch_of, commanded, from_home, offset_branch_of, without_axes
 from derive.emit.softmotion.inputs import inputs
 from derive.emit.softmotion.layout import tidy
 from derive.emit.softmotion.refused import refused_texts
@@ -28,7 +28,7 @@ from derive.emit.st.refused_inputs import (
 from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st.shared import method_name, own_names, signature_of
 from derive.equations.windows import windows
-from derive.ir.program import FindRoot, Program, shared
+from derive.ir.program import Call, FindRoot, Program, shared
 from derive.ir.symbols import branch_sign
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
@@ -118,10 +118,10 @@ def _programs(kinematics: Kinematics) -> dict[str, Program | None]:
 
     return {
         "ReadInputs": setup_of(kinematics),
-        "FindPose": of_axes(kinematics.forward),
+        "FindPose": from_home(kinematics.forward, kinematics),
         "SolveBranch": branch_of(kinematics),
         "SolveOffsetBranch": offset_branch_of(kinematics),
-        "FindOrientation": of_axes(kinematics.orientation),
+        "FindOrientation": from_home(kinematics.orientation, kinematics),
         "TestLimits": kinematics.limits,
         "FindMargins": of_axes(kinematics.singularity),
         "FindImage": kinematics.image,
@@ -216,12 +216,16 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
         refused = OfInputs(signature, errors, error, refused_texts(kinematics), limits)
         text = chained(printed(conditions_first(without_limits(program, limits)), given, stored, taken, refused))
         return with_limits_of_machine(text, limits, [axis.name for axis in block.axes], given)
-    spelled = spelled_inputs(kinematics)
+    spelled = dict(spelled_inputs(kinematics))
+    if "start" in {p.name for p in signature.parameters}:
+        spelled |= start_in("start")
     if source.is_shared:
         own = own_names(program, spelled)
         return printed(program, spelled | own, {o.name: own[o.name] for o in program.outputs}, taken, refusal)
     is_branch = signature.name == "SolveBranch"
     stored = _coordinates(program) if signature.name == "FindPose" else {}
+    if is_branch and any(isinstance(s, Call) for s in program.body):  # a call takes the axes as a whole
+        stored = {j.axis.name: spelled[j.axis.name] for j in kinematics.mechanism.joints}
     return printed(program, _positions(signature) | spelled, stored, taken, refusal, is_branch=is_branch)
 
 

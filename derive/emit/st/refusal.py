@@ -11,7 +11,7 @@ from derive.emit.braces import indented
 from derive.emit.st.contract import Signature
 from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import INSIDE, WIDTH, conjunction, wrapped
-from derive.ir.program import Iterate, Require, Status
+from derive.ir.program import Call, Iterate, Require, Status
 from derive.ir.reason import OtherTurn
 from derive.report.reasons import Check, Reasons
 
@@ -37,6 +37,10 @@ class Refusal:
     def of_loop(self, loop: Iterate) -> tuple[str, ...]:
         """The lines that refuse where a loop is never left."""
         return self.of(loop.otherwise)
+
+    def of_call(self, call: Call, outcome: str) -> tuple[str, ...]:
+        """The lines that refuse where a shared program does: they pass on its error, or have their own."""
+        return self.answering(outcome) if call.refusal is None else self.of(call.refusal[0])
 
     def answering(self, error: str) -> tuple[str, ...]:
         """The lines that refuse with an error, given as an expression. A method that returns BOOL then answers
@@ -76,6 +80,11 @@ class Explained(Refusal):
     """All reasons of the block; the number of a reason is its position, counted from 1."""
     axes: Mapping[str, Tested] = field(default_factory=dict)
     """The axes whose limits one function tests, by the names of their values."""
+
+    def of_call(self, call: Call, outcome: str) -> tuple[str, ...]:
+        """The lines that refuse where a shared program does."""
+        own = self.reasons.call(call)
+        return self.answering(outcome) if own is None else self._because(own[1], own[0])
 
     def of_loop(self, loop: Iterate) -> tuple[str, ...]:
         """The lines that refuse where a loop is never left."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import sympy as sp
 
@@ -58,12 +59,19 @@ def own_names(program: Program, spelled: Mapping[str, str]) -> dict[str, str]:
 
 
 def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterator[str]:
-    """The lines that call the method, and pass on its refusal."""
+    """The lines that call the method where it is asked for, and refuse where it does; variables of a method are zero
+    before.
+    """
+    if call.asked is not sp.true:
+        yield f"IF {printer.print(call.asked)} THEN"
+        yield from indented(list(call_lines(replace(call, asked=sp.true), printer, refusal)))
+        yield "END_IF"
+        return
     arguments = list(dict.fromkeys(_argument(name, value, printer) for name, value in call.given))
     results = [f"{parameter_name(name.name)} => {printer.name(name)}" for name in call.names]
     yield from _packed(f"{OUTCOME} := {method_name(call.program)}(", arguments, results)
     yield f"IF {OUTCOME} <> {refusal.errors[Status.OK.name]} THEN"
-    yield from indented(refusal.answering(OUTCOME))
+    yield from indented(refusal.of_call(call, OUTCOME))
     yield "END_IF"
 
 

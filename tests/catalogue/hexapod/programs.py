@@ -37,8 +37,7 @@ def constants(machine: Machine) -> Mapping[str, Array]:
 
 def search_changed(change: Callable[[Statement], Statement | None]) -> Program:
     """Forward kinematics from a given start, with the statements of its search changed, or left out."""
-    program = kinematics().forward_from
-    assert program is not None
+    program = kinematics().forward
 
     def changed(search: Program) -> Program:
         return replace(search, body=tuple(new for s in search.body if (new := change(s)) is not None))

@@ -35,16 +35,17 @@ class Fault:
 WRONG = {
     "a moment the other way round": Fault(_SEARCH, "along3Z*arm3Y - along3Y*arm3Z", "along3Y*arm3Z - along3Z*arm3Y"),
     "a joint of another leg": Fault(_SEARCH, "arm4X + x - base4X", "arm4X + x - base5X"),
-    "an entry of the rotation": Fault(_SEARCH, "r23 := ", "r23 := 1.0E-9 + "),
-    "a rotation on the other side": Fault(_SEARCH, "startR12*turned11", "startR21*turned11"),
+    "an entry of the rotation": Fault(_SEARCH, "foundR23 := ", "foundR23 := 1.0E-9 + "),
+    "a rotation on the other side": Fault(_SEARCH, "beginR12*turned11", "beginR21*turned11"),
     "an offset": Fault(_SEARCH, "l5 := a.a4 - axes[4].offset", "l5 := a.a4"),
     "too few passes": Fault(_SEARCH, "FOR iteration := 1 TO 20 DO", "FOR iteration := 1 TO 3 DO"),
     "a tolerance": Fault(_SEARCH, "(fit) AND (fitted)", "(fit) OR (size < 0.05)"),
     "a pass that changes nothing": Fault(_SEARCH, "x := x + oneByStretch*xRate", "x := x"),
-    "an output that is never written": Fault(_SEARCH, "r31 := ", "startArm1X := "),
+    "an output that is never written": Fault(_SEARCH, "foundR31 := ", "startArm1X := "),
     "the other assembly mode": Fault(_SEARCH, "assemblySign*determinant > 0.0", "assemblySign*determinant < 0.0"),
-    "two outputs exchanged": Fault("PROTECTED FindPose", "x => x, y => y", "x => y, y => x"),
-    "another start": Fault("PROTECTED FindPose", "startX := homeX", "startX := homeX + 1.0E6"),
+    "two outputs exchanged": Fault("PROTECTED FindPose", "foundX => foundX, foundY => foundY",
+        "foundX => foundY, foundY => foundX"),
+    "another start": Fault("PROTECTED FindPose", "beginX := home.v.dX", "beginX := home.v.dX + 1.0E6"),
     "a refusal that is not handed on": Fault("PROTECTED FindPose", ":= outcome;",
         ":= Softkin_Names.NoError;"),
     "a column of the Jacobian": Fault(_JACOBIAN, "coefficients[2, 4] := moment2X", "coefficients[2, 4] := moment3X"),
@@ -78,7 +79,7 @@ def test_a_wrong_text_is_noticed(name: str) -> None:
 def test_a_memory_is_refused() -> None:
     """A search that keeps where it ended for the next call cannot even be compiled."""
     with pytest.raises(StError, match="only Initialize and AxisSettings may write"):
-        compiled_text(file_of(MECHANISM), text_with(Fault(_SEARCH, "x := x + oneByStretch*xRate;", "homeX := x;")))
+        compiled_text(file_of(MECHANISM), text_with(Fault(_SEARCH, "x := x + oneByStretch*xRate;", "home.v.dX := x;")))
 
 
 def in_reach(program: Program, machine: Machine) -> bool:
@@ -103,7 +104,7 @@ def _with_argument(name: str, value: float) -> Program:
 
 
 @pytest.mark.parametrize(
-    "program", [lambda: bounded(2), lambda: _with_argument("axis_l3", 700.0), lambda: _with_argument("start_r21", 0.7)]
+    "program", [lambda: bounded(2), lambda: _with_argument("axis_l3", 700.0), lambda: _with_argument("begin_r21", 0.7)]
 )
 def test_a_wrong_program_is_noticed(program: Callable[[], Program]) -> None:
     """The test of all poses fails for each wrong program, and passes for the right one."""

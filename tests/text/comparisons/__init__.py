@@ -26,6 +26,7 @@ COMPARISONS: dict[str, Comparison] = {
     "Jacobian": velocities.jacobian,
     "Margins": velocities.margins,
     "AxisVelocities": velocities.axis_velocities,
+    **{f"{name}From": velocities.at_the_frame(name) for name in ("Jacobian", "Margins", "AxisVelocities")},
     "InitializeReason": initialization.why_initialize,
     "Diagnose": poses.diagnose,
     "GetOrientationImage": orientations.image,

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import isnan, pi, prod
+
+from softkin import Frame
 
 from tests.text import values
 from tests.text.closeness import asked, assert_same
@@ -64,3 +67,23 @@ def margins(pair: SerialPair, sample: Sample) -> None:
         assert_same((status, tuple(found)), (OK, (*expected, *(0.0,) * (8 - len(expected)))), pair, sample)
     else:
         assert found == [values.MEANINGLESS] * 8 and all(map(isnan, expected))
+
+
+def at_the_frame(method: str) -> Callable[[SerialPair, Sample], None]:
+    """The method that takes the frame of the axes as well: a serial mechanism has one, and answers as without it."""
+    name, size = {"Jacobian": ("J", 36), "Margins": ("aMargins", 8), "AxisVelocities": ("aVelocities", 6)}[method]
+
+    def compare(pair: SerialPair, sample: Sample) -> None:
+        status, found = asked(lambda axes: pair.robot.forward(axes)[0], sample.axes)
+        frame = found if status == OK else Frame((0.0, 0.0, 0.0))
+        start = {"f": values.frame(pair.library, frame.position, frame.rotation)}
+        answers = []
+        for more in ({}, start):
+            written = [values.MEANINGLESS] * size
+            given = {name: written, "a": values.axes(pair.library, sample.axes)}
+            given |= {"aTwist": [4.0, -3.0, 2.0, 1.0, -1.5, 2.5]} if method == "AxisVelocities" else {}
+            called = method + ("From" if more else "")
+            answers.append((pair.controller.block.call_with_outputs(called, **given, **more), written))
+        assert repr(answers[0]) == repr(answers[1]), f"{pair} {sample}"
+
+    return compare

@@ -18,7 +18,8 @@ def test_the_interface_has_our_own_methods() -> None:
     assert {m.name: header(m) for m in interface.methods} == {
         name: (name, s.returns, *((p.scope, p.name, p.type) for p in s.parameters)) for name, s in CONTRACT.own.items()
     }
-    assert set(CONTRACT.own) == {"Diagnose", "Jacobian", "AxisVelocities", "Margins", "InitializeReason"}
+    of_axes = {"Jacobian", "AxisVelocities", "Margins"}
+    assert set(CONTRACT.own) == {"Diagnose", "InitializeReason", *of_axes, *(f"{name}From" for name in of_axes)}
 
 
 SCARA = "scara/Softkin_Scara2_Z.st"

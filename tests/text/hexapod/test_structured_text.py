@@ -18,6 +18,8 @@ from tests.catalogue.hexapod import test_refusals
 from tests.catalogue.hexapod.machines import NAMES, Array, Machine, machines, rotation
 from tests.catalogue.hexapod.programs import found_from, without_mode
 from tests.harness.library import Library
+from tests.machines.other_poses import platform
+from tests.text import values
 from tests.text.controller import BAD_INPUT, IMPOSSIBLE, NOT_INITIALIZED, OK, UNREACHABLE, Controller
 from tests.text.hexapod.blocks import controller, made
 from tests.text.statements import Statements
@@ -147,6 +149,7 @@ def test_every_statement_runs() -> None:
         check_axes()
         check_initialize(small)
         check_bounds()
+        check_other_poses()
         assert (
             controller("nominal").forward((1e6,) * 6)
             == controller("nominal").forward((-1.0,) * 6)
@@ -159,6 +162,19 @@ def test_every_statement_runs() -> None:
     assert not (
         left := [f"{n}: {lines[n - 1]}" for n in sorted(missing) if not lines[n - 1].startswith("FUNCTION_BLOCK")]
     ), left
+
+
+def check_other_poses() -> None:
+    """Poses that forward kinematics does not find again, and starts that are no numbers."""
+    one = platform(MECHANISM.name)
+    block = Controller(compiled(MECHANISM), MECHANISM)
+    assert block.initialise(one.robot.parameters) == OK
+    for lost in one.poses[0]:
+        assert block.inverse(lost.frame.position, lost.frame.rotation, (), lost.axes) == (UNREACHABLE, None)
+    nowhere = values.frame(block.library, (np.nan, 0.0, 0.0), np.eye(3).tolist())
+    at_home = values.axes(block.library, (650.0,) * 6)
+    for method, given in (("JacobianFrom", {"J": [0.0] * 36}), ("MarginsFrom", {"aMargins": [0.0] * 8})):
+        assert block.block.call(method, **given, a=at_home, f=nowhere) == BAD_INPUT
 
 
 def check_axes() -> None:

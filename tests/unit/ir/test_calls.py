@@ -12,7 +12,8 @@ from derive.ir.interpret import run
 from derive.ir.passes import hoist, normalise
 from derive.ir.primitives import Root
 from derive.ir.program import Call, Let, Output, Program, Require, Status, binds, reads, shared
-from derive.ir.symbols import real
+from derive.ir.reason import Why, about_machine
+from derive.ir.symbols import flag, real
 from derive.ir.verify import BrokenProgram, verify
 
 A, B, C, K, Q, W, X, Y = map(real, ("a", "b", "c", "k", "q", "w", "x", "y"))
@@ -35,6 +36,21 @@ def test_it_binds_what_the_shared_program_answers() -> None:
     outputs, status = run(caller(), values)
     assert list(status) == [Status.OK, Status.UNREACHABLE, Status.IMPOSSIBLE, Status.IMPOSSIBLE]
     assert outputs["x"][0] == 5.0 and outputs["y"][0] == 20.0
+
+
+def test_it_may_not_be_asked_and_may_refuse_in_its_own_way() -> None:
+    """Where the condition does not hold, nothing refuses, and the names are zero; else the caller's status counts."""
+    asked, reason = flag("asked"), about_machine(Why.NO_ROOT)
+    call = Call(hypotenuse(), ((A, C), (B, Q)), (X,), asked=asked, refusal=(Status.UNREACHABLE, reason))
+    program = verify(normalise("p", (call, Let(W, X + 1)), [Output("w", W)]))
+    assert asked in program.inputs
+    values = {"c": np.array([3.0, -3.0]), "q": np.array(4.0), "k": np.array(2.0)}
+    outputs, status = run(program, values | {"asked": np.array(True)})
+    assert list(status) == [Status.OK, Status.UNREACHABLE] and outputs["w"][0] == 6.0
+    outputs, status = run(program, values | {"asked": np.array(False)})
+    assert list(status) == [Status.OK, Status.OK] and list(outputs["w"]) == [1.0, 1.0]
+    outputs, status = run(program, {**values, "c": np.array([-3.0, -3.0]), "asked": np.array([True, False])})
+    assert list(status) == [Status.UNREACHABLE, Status.OK] and outputs["w"][1] == 1.0
 
 
 def test_the_names_inside_are_its_own() -> None:
