@@ -39,7 +39,6 @@ from derive.description.joints import Interval, Joint, Kind, arc, helical, linea
 from derive.description.kinds import expressions
 from derive.description.loops import ROTATION, Bound, Limited, Plane, Rod, X, Y, Z, bound, guide, limited, on_plate, rod
 from derive.geometry.frames import Chain
-from derive.geometry.half_turns import with_half_turns_last
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES
 
 TURN = 2 * sp.pi
@@ -169,6 +168,8 @@ class Mechanism:
     """One sentence that says what machine this is; where it is empty, the names of the axes take its place."""
     parameters: tuple[Parameter, ...] = ()
     chain: Chain | None = None
+    drawn: Chain | None = None
+    """The chain of the description, which is drawn; None: `chain` is that."""
     closure: tuple[sp.Expr, ...] = ()
     rods: tuple[Rod, ...] = ()
     """Closure equations that say that a rod is rigid."""
@@ -213,8 +214,6 @@ class Mechanism:
         for what in ("positive", "closure", "home"):
             object.__setattr__(self, what, expressions(what, getattr(self, what)))
         object.__setattr__(self, "heading", None if self.heading is None else sp.sympify(self.heading))
-        if self.chain is not None:
-            object.__setattr__(self, "chain", with_half_turns_last(self.chain))
         held = {joint.name for joint in self.held}  # a held joint keeps the turn of the reference: it needs no byte
         joints = (replace(j, multi_turn=False) if j.name in held else j for j in self.joints)
         object.__setattr__(self, "joints", tuple(joints))

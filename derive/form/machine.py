@@ -1,0 +1,21 @@
+"""The one form of a machine: the rules, in their order."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from derive.description.mechanism import Mechanism
+from derive.form.chain import with_normal_chain
+from derive.form.exact import with_right_angles
+from derive.form.gears import with_gears
+from derive.form.inner_names import with_inner_names
+from derive.form.numbers import with_named_numbers
+
+
+def in_form(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> Mechanism:
+    """The mechanism in its one form.
+
+    further: the symbols of parameters and joints whose names equalled a derived one in earlier attempts, and how often.
+    """
+    own = with_gears(with_right_angles(with_inner_names(mechanism, further)))
+    return with_named_numbers(with_normal_chain(own))
