@@ -2,7 +2,8 @@
 
 The chain is read as lines of its zero pose, and written from these again: turns about, and shifts along, x, y and z.
 Right angles between the frames are gone; another angle is left between two lines. A shift stands behind the turns
-about its own direction, and in front of the first of them if it is the first of the chain. Angles, lengths, their names and signs are those of the description.
+about its own direction, but in front of the first turns of the chain. Angles, lengths, their names and signs are those
+of the description.
 """
 
 from __future__ import annotations

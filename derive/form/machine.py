@@ -9,7 +9,9 @@ from derive.form.chain import with_normal_chain
 from derive.form.exact import with_right_angles
 from derive.form.gears import with_gears
 from derive.form.inner_names import with_inner_names
+from derive.form.loop_angles import with_named_loop_angles
 from derive.form.numbers import with_named_numbers
+from derive.form.rods import with_plain_rods
 
 
 def in_form(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> Mechanism:
@@ -18,4 +20,4 @@ def in_form(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> M
     further: the symbols of parameters and joints whose names equalled a derived one in earlier attempts, and how often.
     """
     own = with_gears(with_right_angles(with_inner_names(mechanism, further)))
-    return with_named_numbers(with_normal_chain(own))
+    return with_named_numbers(with_normal_chain(with_named_loop_angles(with_plain_rods(own))))

@@ -63,13 +63,17 @@ class NamedAngles:
                         yield sp.Add(nearest * _RIGHT, *parts)
 
 
+def of_degrees(degrees: sp.Expr) -> NamedAngle:
+    """An angle under the name that its degrees give it."""
+    return NamedAngle(real(f"angle_{_digits(degrees)}_deg"), degrees)
+
+
 def _of(number: sp.Expr) -> NamedAngle:
     """The angle that is left of a number without its right angles: 45° of 135°; a decimal in radians stays whole."""
     degrees = abs(in_radians(number)) * 180 / float(sp.pi)
     told = sp.Rational(round(degrees * _THOUSANDTHS), _THOUSANDTHS)
     if abs(degrees - float(told)) * float(sp.pi) / 180 < _SAME:
-        left = told % 90
-        return NamedAngle(real(f"angle_{_digits(left)}_deg"), left)
+        return of_degrees(told % 90)
     size = sp.Float(abs(in_radians(number)))
     return NamedAngle(real(f"angle_{_digits(size)}_rad"), size / DEGREE)
 

@@ -34,7 +34,7 @@ def with_named_numbers(mechanism: Mechanism) -> Mechanism:
     lengths = _Lengths(Names([p.name for p in mechanism.parameters]))
     named = (_named(f, n, angles, lengths) for f, n in zip(factors, numbers, strict=True))
     chain = Chain(tuple(replace(f, amount=amount) for f, amount in zip(factors, named, strict=True)))
-    fixed = (*lengths.found, *map(_fixed_angle, angles.named))
+    fixed = (*lengths.found, *map(fixed_angle, angles.named))
     return replace(mechanism, chain=chain, parameters=(*mechanism.parameters, *fixed))
 
 
@@ -67,14 +67,15 @@ class _Lengths:
         return known.symbol if number == size else -known.symbol
 
 
-def _fixed_angle(angle: NamedAngle) -> Parameter:
+def fixed_angle(angle: NamedAngle) -> Parameter:
+    """The parameter that holds a named angle; no user gives it."""
     return _fixed(angle.symbol.name, Role.ANGLE, angle.symbol, angle.degrees)
 
 
 def _fixed(name: str, role: Role, symbol: sp.Symbol, value: sp.Expr) -> Parameter:
     is_angle = role is Role.ANGLE
     unit, nominal = ("deg", in_radians(value * DEGREE) * 180 / float(sp.pi)) if is_angle else ("u", value)
-    meaning = f"{'angle' if is_angle else 'length'} that the chain states as a number{', in degrees' * is_angle}"
+    meaning = f"{'angle' if is_angle else 'length'} that the description states as a number{', in degrees' * is_angle}"
     return Parameter(symbol, name, role, meaning, unit, -1e9, 1e9, False, None, float(nominal), value)
 
 
