@@ -19,5 +19,6 @@ def in_form(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> M
 
     further: the symbols of parameters and joints whose names equalled a derived one in earlier attempts, and how often.
     """
-    own = with_gears(with_right_angles(with_inner_names(mechanism, further)))
-    return with_named_numbers(with_normal_chain(with_named_loop_angles(with_plain_rods(own))))
+    own = with_normal_chain(with_right_angles(with_inner_names(mechanism, further)))
+    geared = with_gears(own)  # a turn written in two parts is one by now
+    return with_named_numbers(with_named_loop_angles(with_plain_rods(geared)))

@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.description.mechanism import Mechanism
+from derive.description.mechanism import DescriptionError, Mechanism
+from derive.description.validate import validate
 from derive.form.chain import with_normal_chain
 from derive.form.machine import in_form
 from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
 from derive.geometry.frames import LETTERS
 from derive.ir.constants import DEGREE
+from derive.kinematics.build import build
 from tests.importing.kinematics import elementary
 from tests.mechanisms import catalogue
 from tests.unit.form.chains import A1, A2, A3, CHAINS, LINK, P1, SIX
@@ -61,11 +63,49 @@ def test_it_is_the_same_machine(name: str) -> None:
 def test_other_words_have_the_same_form(name: str) -> None:
     """Shifts exchanged and split, frames turned and turned back: nothing of it is left. The form is its own form."""
     mechanism = MACHINES[name]
-    form = with_normal_chain(mechanism)
-    assert in_words(with_normal_chain(form).chain) == in_words(form.chain)
-    for seed in range(SEEDS):
-        other = with_normal_chain(replace(mechanism, chain=reworded(mechanism.chain, seed)))
-        assert in_words(other.chain) == in_words(form.chain), f"seed {seed}"
+    form = in_form(mechanism)
+    again = replace(mechanism, chain=with_normal_chain(mechanism).chain)
+    others = [again, *(replace(mechanism, chain=reworded(mechanism.chain, seed)) for seed in range(SEEDS))]
+    for number, other in enumerate(others):
+        found = in_form(other)
+        assert in_words(found.chain) == in_words(form.chain), f"seed {number - 1}"
+        assert replace(found, drawn=None) == replace(form, drawn=None)
+
+
+ALIKE = (
+    "ball wrist, shoulder beside",
+    "three parallel",
+    "wrist with an offset along its second turn",
+    "wrist inclined by 60 degrees",
+    "Stanford, with named lengths",
+    "SCARA that hangs",
+    "palletizer",
+    "five axes, nutating head",
+    "arm on a rail",
+)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ALIKE)
+def test_other_words_derive_alike(name: str) -> None:
+    """The programs are the same, to the last operation."""
+    mechanism = CHAINS[name]
+    assert mechanism.chain is not None
+    other = replace(mechanism, chain=reworded(mechanism.chain, 41))
+    built, again = (build(validate(m)) for m in (mechanism, other))
+    assert again.programs == built.programs
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_refusal_is_the_same_refusal(seed: int) -> None:
+    """A flange that leans, of a machine that turns it about z."""
+    leaning = replace(CHAINS["SCARA"], chain=CHAINS["SCARA"].chain * Rx(sp.pi / 2))  # type: ignore[operator]
+    sentences = []
+    for chain in (leaning.chain, reworded(leaning.chain, seed)):  # type: ignore[arg-type]
+        with pytest.raises(DescriptionError) as problem:
+            build(validate(replace(leaning, chain=chain)))
+        sentences.append(str(problem.value))
+    assert sentences[0] == sentences[1] and "its rotation is not one turn about z" in sentences[0]
 
 
 def formed(chain: Chain, *, turning: Mechanism = CHAINS["SCARA"]) -> str:
