@@ -2,13 +2,12 @@
 
 It may import `ir`, `algebra` and `geometry`. Mechanism files import it as `derive.mechanism` and its neighbours.
 
+amounts: the amounts of turns and shifts in a chain, and which of them are refused
 branches: branches and assembly modes: two solutions that the sign of an indicator tells apart
 catalogue: the mechanism files of a folder, loaded and checked
-chains/: the amounts of turns and shifts in a chain, and its numbers and gears
 dimensions: the parameters of a machine by their roles, and conditions between them
 errors: the error of a description that cannot be right, and text of files as a terminal may print it
 fields: the kinds of values that the fields of a mechanism hold
-inner_names: the names that the inputs of a machine have inside a derivation
 joints: how joints move, what their values mean, and their ranges
 kinds: the message where a part of a description has the wrong kind
 loops: the parts of a closed loop: rods, planes that guide points, bounds and limits of quantities
@@ -17,5 +16,6 @@ places: the line of a description that is wrong
 quantity: joints and parameters as symbols in equations
 reach: conditions that arms can reach a common point
 remedies: what to do about a refusal whose own sentence does not say it
+right_angles: right angles of a chain, however they are written
 validate: checks that refuse a wrong description before anything is derived
 """

@@ -168,6 +168,8 @@ class Mechanism:
     """One sentence that says what machine this is; where it is empty, the names of the axes take its place."""
     parameters: tuple[Parameter, ...] = ()
     chain: Chain | None = None
+    drawn: Chain | None = None
+    """The chain of the description, which is drawn; None: `chain` is that."""
     closure: tuple[sp.Expr, ...] = ()
     rods: tuple[Rod, ...] = ()
     """Closure equations that say that a rod is rigid."""

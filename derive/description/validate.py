@@ -10,7 +10,7 @@ from keyword import iskeyword
 import sympy as sp
 
 from derive.algebra.angle_sums import terms_of
-from derive.description.chains.amounts import wrong_amounts
+from derive.description.amounts import wrong_amounts
 from derive.description.kinds import number, pair
 from derive.description.mechanism import (
     ROTATION,

@@ -24,9 +24,10 @@ def chain_scene(mechanism: Mechanism, values: Values, tool: Frame) -> Scene:
 
     Raises `DescriptionError` where the chain does not end at the tool that forward kinematics computed.
     """
-    assert mechanism.chain is not None
+    chain = mechanism.drawn or mechanism.chain
+    assert chain is not None
     walker = _Walker(mechanism, values)
-    for factor in mechanism.chain.factors:
+    for factor in chain.factors:
         walker.pass_over(factor)
     walker.finish_body(None)
     apart = float(np.linalg.norm(walker.position - np.array(tool.position)))
@@ -142,10 +143,9 @@ class _Walker:
                 self.hidden += [plain(label)] if label.free_symbols else []
                 continue
             self.segments.append(Segment(point(at), point(at + shift), Body.LINK))
-            if label.free_symbols:
-                label = -label if label.could_extract_minus_sign() else label
-                negative = float(evaluate(label, self.values)) < 0
-                self.dimensions.append(Dimension(plain(label), point(at), point(at + shift), negative))
+            label = -label if label.could_extract_minus_sign() else label
+            negative = float(evaluate(label, self.values)) < 0
+            self.dimensions.append(Dimension(plain(label), point(at), point(at + shift), negative))
             at = at + shift
         self._shifts, self._start = [], self.position
 

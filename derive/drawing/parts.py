@@ -71,9 +71,10 @@ class _Values:
 
 
 def _chain(mechanism: Mechanism, values: _Values) -> dict[str, Any]:
-    assert mechanism.chain is not None
+    chain = mechanism.drawn or mechanism.chain
+    assert chain is not None
     factors = []
-    for factor in mechanism.chain.factors:
+    for factor in chain.factors:
         moving = [j for j in mechanism.joints if j.symbol in factor.amount.free_symbols]
         rate = sp.diff(factor.amount, moving[-1].symbol) if moving else sp.Integer(1)
         names, at = [j.name for j in moving], values.place((factor.amount, rate))

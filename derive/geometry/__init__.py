@@ -3,7 +3,6 @@
 It may import `ir`.
 
 frames: chains of elementary frames, and chains from tables of Denavit-Hartenberg parameters
-half_turns: fixed half turns of a chain that turns about z alone, moved to its end
 pose: the pose of a chain, with parallel rotations merged, and its screws
 vectors: vectors of expressions, for closed loops
 """

@@ -9,16 +9,14 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.description.chains.gears import with_gears
-from derive.description.chains.numbers import almost_right_angles, with_named_numbers
-from derive.description.inner_names import with_inner_names
 from derive.description.mechanism import DescriptionError, Mechanism, Turning
+from derive.description.right_angles import almost_right_angles
 from derive.equations.axes import finite
 from derive.equations.conditions import with_conditions
 from derive.equations.limits import limits_program
 from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import Conditioning
-from derive.geometry.half_turns import with_half_turns_last
+from derive.form.machine import in_form
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.program import Let, Output, Program, Statement
@@ -82,16 +80,10 @@ def build(mechanism: Mechanism) -> Kinematics:
 
 
 def prepared(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> Mechanism:
-    """The mechanism as it is derived: its inputs have unique names, its numbers have names, its gears are moved to the
-    joints, its rods are recognised, and their lengths are positive.
-    """
-    mechanism = with_gears(with_named_numbers(_with_half_turns_last(with_inner_names(mechanism, further))))
+    """The mechanism as it is derived: in its one form, with its rods recognised, whose lengths are positive."""
+    mechanism = in_form(mechanism, further)
     check_joints(mechanism)
     return with_positive_lengths(with_stated_rods(with_fixed_point(mechanism)))
-
-
-def _with_half_turns_last(mechanism: Mechanism) -> Mechanism:
-    return mechanism if mechanism.chain is None else replace(mechanism, chain=with_half_turns_last(mechanism.chain))
 
 
 def _built(mechanism: Mechanism) -> Kinematics:

@@ -8,7 +8,6 @@ from functools import cache
 import sympy as sp
 
 from derive.algebra.normal_form import polynomial
-from derive.description.chains.numbers import fixed_numbers
 from derive.description.mechanism import COORDINATE_NAMES_OF_A_PLANE, DescriptionError, Joint, Mechanism, Turning
 from derive.equations.axes import axis_lets, finite, frozen_lets, plain_angle, reference_lets, reference_value
 from derive.equations.closures.closure import FLANGE, Closure
@@ -25,6 +24,7 @@ from derive.equations.pitch.equations import with_refusal
 from derive.equations.pitch.heading import free_heading, free_value
 from derive.equations.problem import Problem
 from derive.equations.trigonometry import heading_at_joints
+from derive.form.numbers import fixed_numbers
 from derive.geometry.frames import Motion
 from derive.ir.constants import FREE_ANGLE, PLANE
 from derive.ir.passes import normalise

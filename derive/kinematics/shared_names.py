@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterable, Mapping
 
 import sympy as sp
 
-from derive.description.inner_names import in_given_names, inputs_named, joined, suspects, with_inner_names
 from derive.description.mechanism import DescriptionError, Mechanism
+from derive.form.inner_names import in_given_names, inputs_named, joined, suspects, with_inner_names
 from derive.ir.program import Call, Program, Statement, shared
 from derive.ir.symbols import cosine, sine
 from derive.ir.verify import BrokenProgram, RepeatedName

@@ -11,7 +11,7 @@ import softkin
 from softkin import KinematicsError, Status
 from sympy import Rational
 
-from derive.description.chains.gears import in_other_joints, with_gears
+from derive.form.gears import in_other_joints, with_gears
 from derive.frames import Rz, Tx, Tz
 from derive.kinematics.build import build
 from derive.witness import witness

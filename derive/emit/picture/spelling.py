@@ -25,7 +25,7 @@ def spelled(label: sp.Expr, names: Mapping[str, str]) -> str:
 def _product(term: sp.Expr, names: Mapping[str, str]) -> str:
     coefficient, rest = term.as_coeff_Mul()
     if rest == 1:
-        return str(coefficient)
+        return f"{float(coefficient):g}"
     factors = sorted(str(f) for f in sp.Mul.make_args(rest))
     return _over("·".join(names.get(f, f) for f in factors), coefficient)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -10,7 +11,9 @@ from random import Random
 
 import sympy as sp
 
+from derive.description.amounts import in_radians, number_in
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role, Turning
+from derive.description.right_angles import with_right_angles
 from derive.geometry.frames import Motion
 from derive.ir.program import Program
 from derive.ir.symbols import MIN_TYPE2_MARGIN, ROTATION_ENTRIES
@@ -23,6 +26,7 @@ from derive.witness.exact.values import ZERO, Angles, Fractional, NotAlgebraic, 
 TRIALS = 3
 _DRAWS = 4000
 """Draws, most of which end at the first number without a root."""
+_ROUNDING = 1e-14
 _LARGEST = 10**9
 """The largest multiple of which angles are drawn."""
 _TRIED = 4096
@@ -124,7 +128,9 @@ def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
     """
     if kin.mechanism.search is not None:
         return Exact(0, "its roots are searched along a joint")
-    rng, found, multiple = Random(20260), 0, 1
+    if _rounds_angles(kin.mechanism, described):
+        return Exact(0, "angles between its oblique axes are decimal numbers that the description does not hold")
+    described, rng, found, multiple = with_right_angles(described), Random(20260), 0, 1
     for _ in range(_DRAWS):
         try:
             trial = drawn(kin, described, rng, multiple)
@@ -145,6 +151,22 @@ def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
     return Exact(0, "too few random numbers have all the roots that it takes")
 
 
+def _rounds_angles(machine: Mechanism, described: Mechanism) -> bool:
+    """Whether the machine has a fixed angle that is none of the description, but for right angles: it was computed, and
+    has so many digits.
+    """
+    if described.chain is None:
+        return False
+    stated = [in_radians(number_in(f.amount)) for f in described.chain.factors if f.motion is Motion.TURN]
+    fixed = [math.radians(p.nominal) for p in machine.parameters if p.fixed is not None and p.role is Role.ANGLE]
+    return not all(any(_is_right(v + w) or _is_right(v - w) for w in stated) for v in fixed)
+
+
+def _is_right(angle: float) -> bool:
+    """Whether an angle in radians is a multiple of 90°."""
+    return abs(math.remainder(angle, math.pi / 2)) < _ROUNDING
+
+
 def drawn(kin: Kinematics, described: Mechanism, rng: Random, multiple: int) -> Trial:
     """A random machine with a random pose. multiple: that of an angle that every axis value is."""
     angles = Angles()
@@ -157,7 +179,9 @@ def drawn(kin: Kinematics, described: Mechanism, rng: Random, multiple: int) -> 
 
     inputs: Known = {p.name: ZERO if p.name in kin.limit_inputs else _parameter(p, rng, angle) for p in kin.parameters}
     named = {p.given_name: p.name for p in kin.mechanism.parameters}
-    own = {p.symbol.name: _as_number(inputs[named[p.given_name]]) for p in described.parameters}
+    numbers = {p.symbol.name: evaluated([p.fixed], {}, angles, degree)[0] for p in described.parameters if p.fixed}
+    given = [p for p in described.parameters if p.symbol.name not in numbers]
+    own = numbers | {p.symbol.name: _as_number(inputs[named[p.given_name]]) for p in given}
     axes = {j.axis.name: angle(j.axis.name) if j.in_degrees else Value(_any(rng)) for j in described.joints}
     trial = Trial(kin, described, angles, degree, inputs, own, axes, {})
     _know(trial)
@@ -206,7 +230,7 @@ def _parameter(parameter: Parameter, rng: Random, angle: Callable[[str], Value])
 
 def _any_pose(trial: Trial, rng: Random) -> dict[str, Value]:
     """A random pose of a platform, as far as it moves."""
-    if trial.described.passive:
+    if trial.kin.mechanism.passive:
         raise NotAlgebraic("the loop decides what the task does not command")
     pose = {c: Value(_any(rng)) if c in trial.described.task.position else ZERO for c in _POSE[:3]}
     columns = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]

@@ -20,6 +20,7 @@ from derive.description.mechanism import (
     Y,
     branch,
     distance,
+    flag,
     length,
     rotary,
 )
@@ -31,6 +32,7 @@ from tests.mechanisms import named
 from tests.unit.kinematics.inventions import A1, A2, A3, A4, ELBOW, L1, L2, L3, P1, P2, P3, invention, links
 
 FOLLOWED = Turning.ABOUT_Z
+FLANGE = flag("flange_down", "flange looks down")
 ARM = Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2)
 
 
@@ -95,7 +97,8 @@ REFUSED = {
     "a flip in the middle": (
         arm(
             joints=(A1, A2, A3),
-            chain=Rz(A1) * Tx(L1) * flip_x(1) * Rz(A2) * Tx(L2) * Rz(A3),
+            parameters=(L1, L2, FLANGE),
+            chain=Rz(A1) * Tx(L1) * flip_x(FLANGE) * Rz(A2) * Tx(L2) * Rz(A3),
             task=Task("xy", FOLLOWED),
         ),
         "a flip must stand at the end",

@@ -14,7 +14,8 @@ import sympy as sp
 
 from derive.description.mechanism import Mechanism, Parameter, Role, Task, branch, length, linear, rotary
 from derive.description.validate import validate
-from derive.frames import Chain, Rx, Rz, Tx, Ty, Tz
+from derive.form import machine as form
+from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
 from derive.geometry.frames import Motion
 from derive.kinematics import build as stages
 from derive.kinematics.build import build
@@ -23,6 +24,8 @@ from derive.witness import Disagreement, witness
 from tests.machines.guided import GUIDED
 from tests.machines.spherical_machines import SPHERICAL
 from tests.mechanisms import named
+from tests.unit.form.test_loops import MACHINES as LOOPS
+from tests.unit.form.test_loops import delta
 from tests.unit.plate.test_stated_rods import stated
 
 A1, A2, A3 = (rotary(f"A{k}", "turn") for k in (1, 2, 3))
@@ -89,7 +92,7 @@ def other_plane(mechanism: Mechanism) -> Mechanism:
 
 @dataclass(frozen=True)
 class Planted:
-    """A preparation, a machine that it prepares, and a fault in what it makes of it."""
+    """A preparation, by its name, a machine that it prepares, and a fault in what it makes of it."""
 
     preparation: str
     machine: Mechanism
@@ -119,7 +122,25 @@ PLANTED: Mapping[str, Planted] = {
         "with_gears", scara(Rz(A1 / 3) * Tx(250) * Rz(A2) * Tx(200) * Rz(A3) * Tz(Z)), turned_round
     ),
     "a half turn that turns one sign too few": Planted(
-        "_with_half_turns_last", scara(HANGING, REACH, FIRST), without_a_sign
+        "with_normal_chain", scara(HANGING, REACH, FIRST), without_a_sign
+    ),
+    "a frame turned the other way": Planted(
+        "with_normal_chain",
+        scara(Rz(A1) * Tx(REACH) * Rx(sp.pi / 2) * Ry(A2) * Tx(FIRST) * Ty(Z) * Ry(A3) * Rx(-sp.pi / 2), REACH, FIRST),
+        lambda m: in_chain(m, {A2.symbol: -A2.symbol}),
+    ),
+    "a right angle read as two": Planted(
+        "with_right_angles",
+        scara(Rz(A1 + 1.5708) * Tx(REACH) * Rz(A2) * Tx(FIRST) * Rz(A3) * Tz(Z), REACH, FIRST),
+        lambda m: in_chain(m, {sp.pi: 2 * sp.pi}),
+    ),
+    "250 degrees read as another angle": Planted(
+        "with_named_loop_angles", delta(0, 120, 250), lambda m: numbers(m, Role.ANGLE, lambda v: v + 1)
+    ),
+    "a pen on another extension": Planted(
+        "with_plain_rods",
+        LOOPS["the pen on an extension"],
+        lambda m: replace(m, rods=(m.rods[0], *other_rod(replace(m, rods=m.rods[1:])).rods)),
     ),
     "a rod read as another": Planted(
         "with_stated_rods", stated(named("Softkin_Planar_3RRR")), other_rod
@@ -137,9 +158,10 @@ PLANTED: Mapping[str, Planted] = {
 def test_a_fault_of_a_preparation_is_noticed(what: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """What is derived from the spoiled mechanism agrees with itself, and contradicts the description."""
     planted = PLANTED[what]
-    prepare = getattr(stages, planted.preparation)
+    place = form if hasattr(form, planted.preparation) else stages
+    prepare = getattr(place, planted.preparation)
     assert witness(build(planted.machine), planted.machine).poses
-    monkeypatch.setattr(stages, planted.preparation, lambda *given: planted.spoil(prepare(*given)))
+    monkeypatch.setattr(place, planted.preparation, lambda *given: planted.spoil(prepare(*given)))
     spoiled = build(planted.machine)
     assert witness(spoiled, spoiled.mechanism).poses, "the fault is one that only the description shows"
     with pytest.raises(Disagreement):

@@ -1,4 +1,4 @@
-"""The amounts of a chain: a message for every amount that no turn or shift can have, quoting its factor."""
+"""The amounts of a chain: their numbers, and a message, quoting the factor, for what no turn or shift can have."""
 
 from __future__ import annotations
 
@@ -6,13 +6,21 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from derive.description.chains.numbers import number_in
-from derive.description.chains.turns import in_radians
 from derive.description.mechanism import Mechanism, Role
 from derive.geometry.frames import LETTERS, Factor, Motion
 from derive.ir.constants import DEGREE
 
 _LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
+
+
+def number_in(amount: sp.Expr) -> sp.Expr:
+    """The sum of the terms of an amount that are numbers; an angle may be in degrees."""
+    return sp.Add(*[t for t in sp.Add.make_args(sp.expand(amount)) if not t.free_symbols - {DEGREE}])
+
+
+def in_radians(number: sp.Expr) -> float:
+    """The value of a number in which `DEGREE` may stand."""
+    return float(number.subs(DEGREE, sp.pi / 180))
 
 
 def written(factor: Factor) -> str:

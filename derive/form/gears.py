@@ -186,14 +186,17 @@ def in_other_joints(mechanism: Mechanism, table: Table) -> Mechanism:
     def rods(found: Iterable[Rod]) -> tuple[Rod, ...]:
         return tuple(replace(r, base=all_of(r.base), plate=all_of(r.plate), length=of(r.length)) for r in found)
 
-    chain = mechanism.chain
-    if chain is not None:
+    def chained(chain: Chain | None) -> Chain | None:
+        if chain is None:
+            return None
         moved = (_exact(of(f.amount)) if f.motion is Motion.TURN else sp.expand(of(f.amount)) for f in chain.factors)
-        chain = Chain(tuple(replace(f, amount=a) for f, a in zip(chain.factors, moved, strict=True)))
+        return Chain(tuple(replace(f, amount=a) for f, a in zip(chain.factors, moved, strict=True)))
+
     assembly, search = mechanism.assembly, mechanism.search
     return replace(
         mechanism,
-        chain=chain,
+        chain=chained(mechanism.chain),
+        drawn=chained(mechanism.drawn),
         closure=all_of(mechanism.closure),
         heading=None if mechanism.heading is None else of(mechanism.heading),
         rods=rods(mechanism.rods),

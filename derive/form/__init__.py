@@ -1,0 +1,18 @@
+"""The one form of a machine: two descriptions of the same machine have the same form, and derive alike.
+
+One rule a module; each is an identity, which its docstring states. It may import the folders from `ir` to
+`description`.
+
+chain: the chain, read as lines of its zero pose and written again
+exact: exact numbers for those of a chain
+gears: gears that stand in a chain, moved to the joints
+headings: the letter x, y or z along which every line of a chain lies, and the turns between their frames
+inner_names: the names that the inputs of a machine have inside a derivation
+lines: a chain as lines of its zero pose
+loop_angles: names for the angles of a closed loop that stand as numbers in sines and cosines
+machine: all rules, in their order
+named_angles: names for the angles of a chain that are no right angles
+numbers: names for the numbers of a chain
+points: the point of every turn on its own line, which the shifts lead to
+rods: rods of a closed loop that end at the commanded point itself
+"""

@@ -1,0 +1,138 @@
+"""A chain as lines of its zero pose: every turn moves the rest of the machine about its own line.
+
+Let M_k be the motions of the turns about their lines, in the frame of the base and at angles of zero, and T the pose of
+the tip there. The pose of the chain is M_1 M_2 ... M_n T: no frame of the description is left in it. An angle that a
+parameter states is a turn, too. Slides and lengths shift the lines behind them: the points of lines are sums of
+both, each along its own direction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from derive.description.amounts import in_radians, number_in
+from derive.form.exact import without_decimals
+from derive.geometry.frames import Factor, Motion
+
+Array = NDArray[np.float64]
+SAME = 1e-9
+"""Directions that differ by less than this are equal, and so are angles, and shares of lengths."""
+_NEARLY = 1e-12
+"""A share that differs less than this from a simple fraction is that fraction."""
+_SIMPLE = 1000
+_DIGITS = 13
+"""The decimal digits of a share, and of a sum of numbers relative to its terms, in oblique frames: further ones are
+rounding."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A turn about a line by an angle (radians) in which no number stands."""
+
+    amount: sp.Expr
+    direction: Array
+    point: Array
+    """3 x lengths of the arm: its coordinates as shares of these lengths."""
+
+
+@dataclass(frozen=True)
+class Arm:
+    """The lines of a chain, base first, and the pose of its tip at zero."""
+
+    lengths: tuple[sp.Expr, ...]
+    """What coordinates are sums of: slides, parameters, products of these, numbers that are more than zero."""
+    lines: tuple[Line, ...]
+    rotation: Array
+    position: Array
+    """3 x lengths."""
+
+    def amount(self, shares: Array) -> sp.Expr:
+        """The sum of shares of the lengths."""
+        known = [(_simple(share), length) for share, length in zip(shares, self.lengths, strict=True)]
+        total = sp.Add(*[share * length for share, length in known if length.is_number])
+        if not all(share.is_Integer for share, length in known if length.is_number):
+            terms = [
+                share * float(length) for share, length in zip(shares, self.lengths, strict=True) if length.is_number
+            ]
+            digits = _DIGITS - 1 - int(np.floor(np.log10(np.abs(terms).sum())))
+            total = sp.Rational(str(round(float(np.sum(terms)), digits)))
+        return sp.Add(total, *[share * length for share, length in known if not length.is_number])
+
+
+def _simple(share: float) -> sp.Expr:
+    """The share as a number without rounding."""
+    near = sp.Rational(share).limit_denominator(_SIMPLE)
+    return near if abs(share - float(near)) < _NEARLY else sp.Rational(f"{share:.{_DIGITS}g}")
+
+
+def arm_of(factors: Sequence[Factor]) -> Arm:
+    """The lines of a chain without flips. Turns about one line that follow each other are one, by their sum."""
+    shifts = [_parts(f.amount) if f.motion is Motion.SHIFT else {} for f in factors]
+    lengths = tuple(dict.fromkeys(length for parts in shifts for length in parts))
+    rotation, position = np.eye(3), np.zeros((3, len(lengths)))
+    lines: list[Line] = []
+    for factor, parts in zip(factors, shifts, strict=True):
+        direction = rotation[:, factor.axis].copy()
+        for length, share in parts.items():
+            position[:, lengths.index(length)] += direction * share
+        if factor.motion is Motion.TURN:
+            number = number_in(factor.amount)
+            _add(lines, Line(sp.expand(factor.amount) - number, direction, position.copy()), lengths)
+            rotation = rotation @ about(factor.axis, in_radians(number))
+    return Arm(lengths, tuple(lines), rotation, position)
+
+
+def _parts(amount: sp.Expr) -> dict[sp.Expr, float]:
+    """A length as a sum of others: their shares. A rational number is a length of its own."""
+    found: dict[sp.Expr, float] = {}
+    for term in sp.Add.make_args(sp.expand(amount)):
+        factors = sp.Mul.make_args(without_decimals(term))
+        numbers = [f for f in factors if f.is_number and f.as_base_exp()[0] != sp.pi]  # a turn's length keeps its pi
+        share, rest = sp.Mul(*numbers), sp.Mul(*[f for f in factors if f not in numbers])
+        if rest == 1 and share.is_Rational:
+            share, rest = sp.sign(share), abs(share)
+        found[rest] = found.get(rest, 0.0) + float(share)
+    return {length: share for length, share in found.items() if share != 0.0}
+
+
+def _add(lines: list[Line], line: Line, lengths: Sequence[sp.Expr]) -> None:
+    """Add a turn, or its angle to the last turn if both are about one line; no turn stands for a sum of zero.
+
+    A turn by -a is one by a about the opposite direction.
+    """
+    if lines and _is_same(lines[-1], line, lengths):
+        last = lines.pop()
+        sign = 1 if last.direction @ line.direction > 0 else -1
+        line = replace(last, amount=sp.expand(last.amount + sign * line.amount))
+    if line.amount.could_extract_minus_sign():
+        line = replace(line, amount=sp.expand(-line.amount), direction=-line.direction)
+    if line.amount != 0:
+        lines.append(line)
+
+
+def _is_same(one: Line, other: Line, lengths: Sequence[sp.Expr]) -> bool:
+    """Whether two lines are one, in either sense; numbers among their lengths are added up."""
+    numbers = np.array([float(a) if a.is_number else 0.0 for a in lengths])
+    across = np.cross(one.direction, (other.point - one.point).T)
+    added = numbers @ across / (numbers.sum() or 1.0)
+    apart = np.vstack([np.cross(one.direction, other.direction), across[numbers == 0.0], added])
+    return bool(np.all(np.abs(apart) < SAME))
+
+
+def about(axis: int, angle: float) -> Array:
+    """The matrix of a turn about x, y or z (0, 1, 2); exact at right angles."""
+    quarters = angle / (np.pi / 2)
+    if abs(quarters - round(quarters)) < _NEARLY:
+        cosine, sine = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[round(quarters) % 4]
+    else:
+        cosine, sine = float(np.cos(angle)), float(np.sin(angle))
+    matrix = np.eye(3)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    matrix[i, i] = matrix[j, j] = cosine
+    matrix[j, i], matrix[i, j] = sine, -sine
+    return matrix

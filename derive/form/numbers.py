@@ -1,0 +1,90 @@
+"""Names for the numbers in a chain: many descriptions state their dimensions as numbers, not as parameters.
+
+An angle that is no multiple of 90° and a length become fixed parameters. No user gives them, and the derivation treats
+them like those that users give: their sines and cosines are computed once, and no product holds a long decimal.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.description.amounts import in_radians, number_in
+from derive.description.dimensions import Parameter, Role
+from derive.description.mechanism import Mechanism
+from derive.form.exact import is_right, without_decimals
+from derive.form.named_angles import NamedAngle, NamedAngles
+from derive.geometry.frames import Chain, Factor, Motion
+from derive.ir.constants import DEGREE
+from derive.ir.names import Names
+from derive.ir.symbols import cosine, sine
+
+_AXES = "xyz"
+
+
+def with_named_numbers(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with every number of its chain under a name."""
+    if mechanism.chain is None:
+        return mechanism
+    factors = mechanism.chain.factors
+    numbers = [number_in(f.amount) for f in factors]
+    turns = zip(factors, numbers, strict=True)
+    angles = NamedAngles([n for f, n in turns if f.motion is Motion.TURN and not is_right(n)])
+    lengths = _Lengths(Names([p.name for p in mechanism.parameters]))
+    named = (_named(f, n, angles, lengths) for f, n in zip(factors, numbers, strict=True))
+    chain = Chain(tuple(replace(f, amount=amount) for f, amount in zip(factors, named, strict=True)))
+    fixed = (*lengths.found, *map(fixed_angle, angles.named))
+    return replace(mechanism, chain=chain, parameters=(*mechanism.parameters, *fixed))
+
+
+def _named(factor: Factor, number: sp.Expr, angles: NamedAngles, lengths: _Lengths) -> sp.Expr:
+    if factor.motion is Motion.FLIP or number == 0:
+        return without_decimals(factor.amount)
+    if factor.motion is Motion.SHIFT:
+        named = lengths.named(number, factor.axis)
+    else:
+        named = number if is_right(number) else angles.written(number)
+    return without_decimals(sp.expand(factor.amount) - number) + named
+
+
+class _Lengths:
+    """The lengths of a chain, found by their absolute values."""
+
+    def __init__(self, names: Names) -> None:
+        self.found: list[Parameter] = []
+        self._names = names
+
+    def named(self, number: sp.Expr, axis: int) -> sp.Expr:
+        """A number as the length with its absolute value, or as the negative of that length."""
+        size = sp.Abs(number)
+        known = next((p for p in self.found if p.fixed == size), None)
+        if known is None:
+            along = [p for p in self.found if p.name.startswith(f"shift_{_AXES[axis]}")]
+            name = self._names.fresh(f"shift_{_AXES[axis]}_{len(along) + 1}").name
+            known = _fixed(name, Role.LENGTH, sp.Symbol(name, positive=True), size)
+            self.found.append(known)
+        return known.symbol if number == size else -known.symbol
+
+
+def fixed_angle(angle: NamedAngle) -> Parameter:
+    """The parameter that holds a named angle; no user gives it."""
+    return _fixed(angle.symbol.name, Role.ANGLE, angle.symbol, angle.degrees)
+
+
+def _fixed(name: str, role: Role, symbol: sp.Symbol, value: sp.Expr) -> Parameter:
+    is_angle = role is Role.ANGLE
+    unit, nominal = ("deg", in_radians(value * DEGREE) * 180 / float(sp.pi)) if is_angle else ("u", value)
+    meaning = f"{'angle' if is_angle else 'length'} that the description states as a number{', in degrees' * is_angle}"
+    return Parameter(symbol, name, role, meaning, unit, -1e9, 1e9, False, None, float(nominal), value)
+
+
+def fixed_numbers(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
+    """The values of the names of numbers of the chain, and of the sines and cosines of such angles."""
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for p in (p for p in mechanism.parameters if p.fixed is not None):
+        found[p.symbol] = sp.Float(p.nominal)
+        if p.role is Role.ANGLE:
+            radians = sp.Float(p.nominal) * sp.pi / 180
+            found |= {sine(p.symbol): sp.sin(radians).evalf(), cosine(p.symbol): sp.cos(radians).evalf()}
+    return found

@@ -1,0 +1,167 @@
+"""The one form of a chain: it is the same machine, and other words for it have the same form."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from derive.description.mechanism import DescriptionError, Mechanism
+from derive.description.validate import validate
+from derive.form.chain import with_normal_chain
+from derive.form.machine import in_form
+from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
+from derive.geometry.frames import LETTERS
+from derive.ir.constants import DEGREE
+from derive.kinematics.build import build
+from tests.importing.kinematics import elementary
+from tests.mechanisms import catalogue
+from tests.unit.form.chains import A1, A2, A3, CHAINS, LINK, P1, SIX
+from tests.unit.form.rewording import reworded
+
+pytestmark = pytest.mark.quick
+MACHINES = {**CHAINS, **{m.name: m for _, m in catalogue() if m.chain is not None}}
+SEEDS = 6
+
+
+def in_words(chain: Chain | None) -> str:
+    """A chain as a description writes it."""
+    assert chain is not None
+    return " * ".join(f"{LETTERS[f.motion]}{'xyz'[f.axis]}({f.amount})" for f in chain.factors)
+
+
+def frame(chain: Chain | None, values: dict[sp.Symbol, float]) -> np.ndarray:
+    """The frame at the end of a chain (4 x 4)."""
+    assert chain is not None
+    found = np.eye(4)
+    for factor in chain.factors:
+        amount = float(factor.amount.xreplace(values | {DEGREE: np.pi / 180.0}))
+        found = found @ elementary(factor.motion, factor.axis, amount)
+    return found
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_it_is_the_same_machine(name: str) -> None:
+    """At joint values and parameters at random, with its numbers in place of their names: the same pose."""
+    mechanism = MACHINES[name]
+    form, rng = in_form(mechanism), np.random.default_rng(8)
+    given = {p.symbol: p.nominal * rng.uniform(0.9, 1.1) for p in form.parameters if p.fixed is None}
+    fixed = {p.symbol: p.nominal for p in form.parameters if p.fixed is not None}
+    joints = {j.symbol: rng.uniform(-3.0, 3.0) for j in mechanism.joints}
+    for seed in range(3):
+        stated, words = (
+            frame(reworded(mechanism.chain, seed), given | joints),
+            frame(form.chain, given | fixed | joints),
+        )
+        assert np.abs(stated[:3, :3] - words[:3, :3]).max() < 1e-12
+        assert np.abs(stated[:3, 3] - words[:3, 3]).max() < 1e-11 * (1.0 + np.abs(stated[:3, 3]).max())
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_other_words_have_the_same_form(name: str) -> None:
+    """Shifts exchanged and split, frames turned and turned back: nothing of it is left. The form is its own form."""
+    mechanism = MACHINES[name]
+    form = in_form(mechanism)
+    again = replace(mechanism, chain=with_normal_chain(mechanism).chain)
+    others = [again, *(replace(mechanism, chain=reworded(mechanism.chain, seed)) for seed in range(SEEDS))]
+    for number, other in enumerate(others):
+        found = in_form(other)
+        assert in_words(found.chain) == in_words(form.chain), f"seed {number - 1}"
+        assert replace(found, drawn=None) == replace(form, drawn=None)
+
+
+ALIKE = (
+    "ball wrist, shoulder beside",
+    "three parallel",
+    "wrist with an offset along its second turn",
+    "wrist inclined by 60 degrees",
+    "Stanford, with named lengths",
+    "SCARA that hangs",
+    "palletizer",
+    "five axes, nutating head",
+    "arm on a rail",
+)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ALIKE)
+def test_other_words_derive_alike(name: str) -> None:
+    """The programs are the same, to the last operation."""
+    mechanism = CHAINS[name]
+    assert mechanism.chain is not None
+    other = replace(mechanism, chain=reworded(mechanism.chain, 41))
+    built, again = (build(validate(m)) for m in (mechanism, other))
+    assert again.programs == built.programs
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_refusal_is_the_same_refusal(seed: int) -> None:
+    """A flange that leans, of a machine that turns it about z."""
+    leaning = replace(CHAINS["SCARA"], chain=CHAINS["SCARA"].chain * Rx(sp.pi / 2))  # type: ignore[operator]
+    sentences = []
+    for chain in (leaning.chain, reworded(leaning.chain, seed)):  # type: ignore[arg-type]
+        with pytest.raises(DescriptionError) as problem:
+            build(validate(replace(leaning, chain=chain)))
+        sentences.append(str(problem.value))
+    assert sentences[0] == sentences[1] and "its rotation is not one turn about z" in sentences[0]
+
+
+def formed(chain: Chain, *, turning: Mechanism = CHAINS["SCARA"]) -> str:
+    """The form of the chain of a machine, in words."""
+    return in_words(with_normal_chain(replace(turning, joints=(*SIX, P1), chain=chain)).chain)
+
+
+FORMS = {
+    "a shift stands behind the turns about its direction": (
+        CHAINS["ball wrist"],
+        Rz(A1) * Tx(540) * Ty(-150) * Ry(-A2) * Rx(A3),
+        "Rz(a1) * Tx(540) * Ry(-a2) * Ty(-150) * Rx(a3)",
+    ),
+    "a right angle stands at the end": (
+        CHAINS["ball wrist"],
+        Rz(A1) * Rx(sp.pi / 2) * Rz(A2 + sp.pi / 2) * Tx(LINK) * Rz(A3),
+        "Rz(a1) * Ry(-a2) * Tz(link) * Ry(-a3) * Rz(pi/2) * Ry(-pi/2)",
+    ),
+    "an arm that hangs ends in a flip": (CHAINS["SCARA"], Rx(sp.pi) * Rz(A1) * Tx(3), "Rz(-a1) * Tx(3) * flip_x(1)"),
+    "a flip in front is half a turn": (CHAINS["SCARA"], Rz(A1) * Ry(sp.pi) * Tz(P1), "Rz(a1) * Tz(-p1) * flip_y(1)"),
+    "turns about one line are one": (
+        CHAINS["ball wrist"],
+        Rz(A1) * Tz(7) * Rz(A2) * Tx(1) * Ry(A3) * Ry(-A3),
+        "Rz(a1 + a2) * Tx(1) * Tz(7)",
+    ),
+    "turns that a slide parts are two": (CHAINS["SCARA"], Rz(A1) * Tx(P1) * Rz(A2), "Rz(a1) * Tx(p1) * Rz(a2)"),
+    "an oblique link keeps its length": (
+        CHAINS["SCARA"],
+        Rz(A1 + 1.57) * Tx(35) * Rz(A2),
+        "Rz(a1 + 1.57) * Tx(35) * Rz(a2)",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", FORMS)
+def test_forms(kind: str) -> None:
+    """What the form looks like."""
+    machine, chain, words = FORMS[kind]
+    assert formed(chain, turning=machine) == words
+
+
+def test_a_machine_that_differs_has_another_form() -> None:
+    """What is not the same machine: the order of turns, the sense of a joint, a length, the pose of the tip."""
+    chain = Rz(A1) * Tx(300) * Ry(A2) * Tz(200) * Ry(A3) * Tx(100)
+    others = (
+        Rz(A1) * Tx(300) * Ry(A3) * Tz(200) * Ry(A2) * Tx(100),
+        Rz(A1) * Tx(300) * Ry(-A2) * Tz(200) * Ry(A3) * Tx(100),
+        Rz(A1) * Tx(300) * Ry(A2) * Tz(200.001) * Ry(A3) * Tx(100),
+        Rz(A1) * Tx(300) * Ry(A2 + 1e-6) * Tz(200) * Ry(A3) * Tx(100),
+        chain * Rx(sp.pi / 2),
+        chain * Ty(1e-3),
+    )
+    ball = CHAINS["ball wrist"]
+    assert all(formed(other, turning=ball) != formed(chain, turning=ball) for other in others)
+
+
+def test_lengths_of_a_right_angled_machine_stay_exact() -> None:
+    """0.1 and 0.2 are 3/10; half of a joint is half of it."""
+    assert formed(Tx(0.1) * Ty(P1 / 2) * Tx(0.2) * Rz(A1)) == "Tx(3/10) * Ty(p1/2) * Rz(a1)"
