@@ -184,12 +184,17 @@ def _require(condition: Array, otherwise: Status, status: NDArray[np.object_]) -
 
 
 def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> None:
-    """Run a shared program with its arguments and constants; a row that it refuses gets its status."""
-    inner = {s.name: known[s.name] for s in call.constants}
-    inner |= {name.name: evaluate(value, known) for name, value in call.given}
-    _execute(call.program.body, inner, status)
+    """Run a shared program in rows where it is wanted and nothing has refused; a row that it refuses has its status."""
+    wanted = _broadcast(evaluate(call.wanted, known), status.shape) & (status == Status.OK)
+    rows, own = (wanted, status[wanted]) if call.is_rare else (..., status)
+    given = {s.name: known[s.name] for s in call.constants} | {n.name: evaluate(v, known) for n, v in call.given}
+    inner = {name: _broadcast(value, status.shape)[rows] for name, value in given.items()}
+    _execute(call.program.body if own.size else (), inner, own)
+    status[rows] = own
     outputs = {o.name: o.value for o in call.program.outputs}
-    known.update({name.name: evaluate(outputs[name.name], inner) for name in call.names})
+    for name in call.names:
+        known[name.name] = np.zeros(status.shape, dtype=bool if is_condition(name) else float)
+        known[name.name][rows] = evaluate(outputs[name.name], inner) if own.size else 0.0
 
 
 def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]) -> None:

@@ -20,7 +20,7 @@ import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from derive.ir.reason import Reason
-from derive.ir.symbols import PLACE, names_in
+from derive.ir.symbols import PLACE, is_decided, names_in
 
 
 class Status(Enum):
@@ -122,7 +122,8 @@ class Call:
     """Run a program that several programs share, and bind names of its outputs; where it refuses, so does the caller.
 
     given: the values of the arguments. The other inputs of the shared program are constants of the machine, which are
-    inputs of the caller, too.
+    inputs of the caller, too. Where `wanted` does not hold the program is not run, and the names are bound to false
+    and zeros.
     """
 
     program: Program
@@ -130,6 +131,12 @@ class Call:
     names: tuple[sp.Symbol, ...]
     """The outputs that the caller reads; all others are dropped."""
     note: str = ""
+    wanted: Boolean = sp.true
+
+    @property
+    def is_rare(self) -> bool:
+        """Whether the program is run under a condition."""
+        return not is_decided(self.wanted)
 
     @property
     def arguments(self) -> tuple[sp.Expr, ...]:
@@ -245,7 +252,7 @@ def expressions(statement: Statement) -> Iterator[sp.Basic]:
     elif isinstance(statement, Solve):
         yield from (*statement.matrix, *statement.right)
     elif isinstance(statement, Call):
-        yield from (value for _, value in statement.given)
+        yield from (statement.wanted, *(value for _, value in statement.given))
     elif isinstance(statement, FindRoot):
         yield from (statement.start, statement.wanted)
     else:
@@ -298,7 +305,8 @@ def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> S
             statement, matrix=tuple(map(change, statement.matrix)), right=tuple(map(change, statement.right))
         )
     if isinstance(statement, Call):
-        return replace(statement, given=tuple((name, change(value)) for name, value in statement.given))
+        given = tuple((name, change(value)) for name, value in statement.given)
+        return replace(statement, given=given, wanted=change(statement.wanted))
     if isinstance(statement, FindRoot):
         return replace(statement, start=change(statement.start), wanted=change(statement.wanted))
     return replace(

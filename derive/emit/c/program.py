@@ -179,13 +179,17 @@ class Body:
         status = self.array("status")
         names = {name.name: name for name in call.names}
         own = [(o.name, f"{array}[{i}]") for i, o in enumerate(call.program.outputs) if o.name in names]
-        head = f"const softkin_status {status} = {function_name(call.program)}(k, {arguments}, {array}, why);"
+        lines = [
+            f"const double {arguments}[] = {list_of(given or ['0.0'])};",
+            f"const softkin_status {status} = {function_name(call.program)}(k, {arguments}, {array}, why);",
+            *block(f"if ({status} != SOFTKIN_OK)", [f"return {status};"]),
+        ]
+        if call.is_rare:
+            lines = block(f"if ({self.refusals.condition([call.wanted])})", lines)
         return [
             *comment(call.note),
-            f"const double {arguments}[] = {list_of(given or ['0.0'])};",
-            f"double {array}[{len(call.program.outputs)}];",
-            head,
-            *block(f"if ({status} != SOFTKIN_OK)", [f"return {status};"]),
+            f"double {array}[{len(call.program.outputs)}]{' = {0.0}' if call.is_rare else ''};",
+            *lines,
             *taken(own, {name: type_of(symbol) for name, symbol in names.items()}),
         ]
 

@@ -25,7 +25,7 @@ from derive.ir.program import (
     expressions,
     reason_expressions,
 )
-from derive.ir.symbols import PLACE, symbols_of
+from derive.ir.symbols import PLACE, is_condition, symbols_of
 from derive.ir.tree import If, Item, grouped
 from derive.lowering.decided import decided
 from derive.lowering.scheduling import structured
@@ -148,7 +148,11 @@ class _Body:
         values = dict(call.given)
         given = [PRINTER.value(name, values[name]) for name in call.program.inputs if name in values]
         found = self._found()
-        head = f"const {found} = {function_name(call.program.name)}(k, {list_of(given)});"
+        value = f"{function_name(call.program.name)}(k, {list_of(given)})"
+        if call.is_rare:
+            nothing = list_of("false" if is_condition(o.value) else "0.0" for o in call.program.outputs)
+            value = f"{condition_of([call.wanted])} ? {value} : {nothing}"
+        head = f"const {found} = {value};"
         wanted = {name.name for name in call.names}
         taken = _trimmed([spelled(o.name) if o.name in wanted else "" for o in call.program.outputs])
         tail = [f"const {list_of(taken)} = {found};"] if taken else []

@@ -17,6 +17,7 @@ from derive.emit.st.layout import indented, packed
 from derive.emit.st.names import capitalized, parameter_name, type_name
 from derive.emit.st.refusal import Refusal
 from derive.ir.program import Call, Program, Status
+from derive.ir.symbols import is_condition
 from derive.ir.types import type_of
 
 OUTCOME = "outcome"
@@ -60,10 +61,18 @@ def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterato
     """The lines that call the method, and pass on its refusal."""
     arguments = list(dict.fromkeys(_argument(name, value, printer) for name, value in call.given))
     results = [f"{parameter_name(name.name)} => {printer.name(name)}" for name in call.names]
-    yield from _packed(f"{OUTCOME} := {method_name(call.program)}(", arguments, results)
-    yield f"IF {OUTCOME} <> {refusal.errors[Status.OK.name]} THEN"
-    yield from indented(refusal.answering(OUTCOME))
-    yield "END_IF"
+    refused = [
+        f"IF {OUTCOME} <> {refusal.errors[Status.OK.name]} THEN",
+        *indented(refusal.answering(OUTCOME)),
+        "END_IF",
+    ]
+    lines = [*_packed(f"{OUTCOME} := {method_name(call.program)}(", arguments, results), *refused]
+    if not call.is_rare:
+        yield from lines
+        return
+    for name in call.names:  # where the method is not called
+        yield f"{printer.name(name)} := {'FALSE' if is_condition(name) else '0.0'};"
+    yield from (f"IF {printer.print(call.wanted)} THEN", *indented(lines), "END_IF")
 
 
 def _argument(name: sp.Symbol, value: sp.Expr, printer: StructuredText) -> str:
