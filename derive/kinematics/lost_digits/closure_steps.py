@@ -36,6 +36,7 @@ from derive.ir.primitives import NearestPeriod, Root, Select, ToReal, larger
 from derive.ir.program import Iterate, Let, Output, Program, Require, Solve, Statement, Status, rewritten
 from derive.ir.symbols import (
     COORDINATE_NAMES,
+    OFFSET,
     POSITION,
     ROTATION_ENTRIES,
     SCALE,
@@ -49,8 +50,8 @@ from derive.kinematics.differential import jacobian_entries, jacobian_rows
 from derive.kinematics.inverse import Inverse
 
 MET = flag("met")
-REACHED = "reached_"
-"""How the names of flags begin that are false where a refusal is put off."""
+LOST = "lost_digits_"
+"""How the names of flags begin that say that a value exceeds its bound, which lost digits may explain."""
 GOAL = {name: real(f"goal_{name.name}") for name in (*POSITION, *ROTATION_ENTRIES)}
 """The names of the commanded pose in this program."""
 _ROTATED = (Turning.NONE, Turning.ABOUT_Z, Turning.DIRECTION, Turning.FULL)
@@ -95,7 +96,7 @@ class Machine:
 def varying(machine: Machine, branch: Program) -> set[sp.Symbol]:
     """The inputs of a branch that are no constants of the machine, nor the pose."""
     joints = machine.mechanism.joints
-    own = {a.sigma for a in machine.assignments} | {s for j in joints for s in (j.reference, j.turn)}
+    own = {a.sigma for a in machine.assignments} | {s for j in joints for s in (j.reference, j.turn)} | {*OFFSET}
     return own & set(branch.inputs)
 
 
@@ -178,7 +179,7 @@ def _closed_form(mechanism: Mechanism, branch: Program) -> tuple[list[Let], dict
     found = [
         Let(names[let.name], let.value.xreplace(turned.get(let.name, {})).xreplace(names), let.note)
         for let in lets
-        if not let.name.name.startswith(REACHED)
+        if not let.name.name.startswith(LOST)
     ]
     starts = {j: o.value.xreplace(names) for j, o in zip(mechanism.joints, branch.outputs, strict=True)}
     return found, starts

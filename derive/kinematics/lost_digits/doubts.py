@@ -12,21 +12,24 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.ir.constants import DOUBTFUL
+from derive.ir.constants import BOUNDARY, DOUBTFUL
 from derive.ir.passes import depending_on, normalise
 from derive.ir.primitives import Select
 from derive.ir.program import Call, Let, Program, Require, Statement, Status, binds, reads
 from derive.ir.symbols import Flag, cosine, flag, names_in, real, sine
 from derive.kinematics.lost_digits.closure_steps import (
     GOAL,
+    LOST,
     MET,
-    REACHED,
     Machine,
     given_name,
     meet_program,
     started,
     varying,
 )
+
+_EXACTLY = {1 + BOUNDARY / 2: sp.Integer(1), BOUNDARY / 2: sp.Integer(0)}
+"""A bound without what it allows for rounding."""
 
 
 def with_doubts(machine: Machine, statements: Sequence[Statement]) -> tuple[Statement, ...]:
@@ -36,8 +39,10 @@ def with_doubts(machine: Machine, statements: Sequence[Statement]) -> tuple[Stat
         may_refuse = machine.has_steps and isinstance(s, Require) and s.otherwise is Status.UNREACHABLE
         doubts = _doubts(machine, statements, place) if may_refuse else []
         if isinstance(s, Require) and doubts:
-            reached = flag(f"{REACHED}{place}")
-            found += [Let(reached, s.condition), replace(s, condition=sp.Or(reached, *doubts))]
+            within, lost = flag(f"within_{place}"), flag(f"{LOST}{place}")
+            found.append(Let(within, s.condition.xreplace(_EXACTLY)))
+            found.append(Let(lost, sp.And(sp.Not(within), sp.Or(*doubts))))
+            found.append(replace(s, condition=sp.Or(s.condition, lost)))
         else:
             found.append(s)
     return tuple(found)
@@ -61,7 +66,7 @@ def _doubts(machine: Machine, statements: Sequence[Statement], place: int) -> li
 
 def meeting(machine: Machine, branch: Program) -> Program:
     """The program of a branch, with steps on the closure before a doubtful refusal; as it is where it has none."""
-    flags = [s.name for s in branch.lets() if isinstance(s.name, Flag) and s.name.name.startswith(REACHED)]
+    flags = [s.name for s in branch.lets() if isinstance(s.name, Flag) and s.name.name.startswith(LOST)]
     if not flags:
         return branch
     joints = machine.mechanism.joints
@@ -72,11 +77,11 @@ def meeting(machine: Machine, branch: Program) -> Program:
     arguments = tuple((n, given[n]) for n in meet.inputs if n in given)
     names = (MET, *(real(f"found_{j.key}") for j in joints))
     note = "digits were lost: the pose is met by steps on the closure"
-    call = Call(meet, arguments, names, note, sp.Or(*map(sp.Not, flags)))
+    call = Call(meet, arguments, names, note, sp.Or(*flags))
     refusals: list[Statement] = []
     for s in branch.requires():
         own_flags = [f for f in flags if f in names_in(s.condition)]
-        refusals += [replace(s, condition=sp.Or(MET, f)) for f in own_flags]
+        refusals += [replace(s, condition=s.condition.xreplace({f: MET})) for f in own_flags]
     outputs = [replace(o, value=Select(MET, name, o.value)) for o, name in zip(branch.outputs, names[1:], strict=True)]
     return normalise(branch.name, (*branch.body, call, *refusals), outputs)
 
@@ -93,9 +98,8 @@ def without_meeting(program: Program) -> Program:
     for s in program.body[: program.body.index(call)]:
         own = [f for f in flags if isinstance(s, Require) and f in names_in(s.condition)]
         if isinstance(s, Require) and own:
-            sure = sp.And(*(sp.Gt(*c.args) for c in s.condition.args if c != own[0]))
-            body.append(Require(sp.Or(own[0], sure), Status.OK, "digits may be lost"))
-            s = replace(s, condition=own[0])
+            body.append(Require(sp.Not(own[0]), Status.OK, "digits may be lost"))
+            s = replace(s, condition=s.condition.xreplace({own[0]: sp.false}))
         body.append(s)
     own_values = {o: o.value.args[2] for o in program.outputs if isinstance(o.value, Select)}
     return normalise(program.name, body, [replace(o, value=own_values.get(o, o.value)) for o in program.outputs])
