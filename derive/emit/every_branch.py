@@ -12,12 +12,12 @@ from derive.ir.program import Let, Program
 from derive.ir.symbols import Sign, branch_sign, symbols_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.lost_digits.doubts import without_meeting
 from derive.lowering.lower import lowered
 from derive.lowering.unrolling import is_straight
 from derive.optimize.angle_addition import with_added_angles
 from derive.optimize.rotation_identities import with_rotation_identities
 from derive.optimize.without_periods import specialised, turns_that_count, without_chosen_turns
-from derive.solver.corners.folds import far_from_folds
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,8 @@ class EveryBranch:
     """The program of all branches, and the bindings of its constants."""
 
     program: Program
-    """Its outputs are the axes of every slot on any turn, and the refusal of the slot; near a fold it has no answer."""
+    """Its outputs are the axes of every slot on any turn, and the refusal of the slot; where digits may be lost it has
+    no answer."""
     parts: tuple[Let, ...]
     counted: frozenset[sp.Symbol]
     """The axes whose turn is already chosen, because another axis moves with it."""
@@ -33,7 +34,7 @@ class EveryBranch:
 
 def can_be_unrolled(kin: Kinematics) -> bool:
     """Whether the inverse is a straight line for every branch."""
-    return is_straight(kin.branch) and is_straight(kin.limits)
+    return is_straight(without_meeting(kin.branch)) and is_straight(kin.limits)
 
 
 def is_unrolled(kin: Kinematics) -> bool:
@@ -41,14 +42,14 @@ def is_unrolled(kin: Kinematics) -> bool:
     return bool(kin.branches) and can_be_unrolled(kin)
 
 
-def has_folds(kin: Kinematics) -> bool:
-    """Whether the straight line has no answer near a fold."""
-    return can_be_unrolled(kin) and far_from_folds(kin.derived_branch) is not kin.derived_branch
+def has_doubts(kin: Kinematics) -> bool:
+    """Whether the straight line has no answer where digits may be lost."""
+    return can_be_unrolled(kin) and not is_straight(kin.branch)
 
 
-def away_from_folds(kin: Kinematics) -> Kinematics:
-    """The kinematics whose branch has no answer near a fold, and refuses without a reason."""
-    return replace(kin, branch=untold(far_from_folds(kin.derived_branch)))
+def without_doubts(kin: Kinematics) -> Kinematics:
+    """The kinematics whose branch has no answer where digits may be lost, and refuses without a reason."""
+    return replace(kin, branch=untold(without_meeting(kin.derived_branch)))
 
 
 def signs(kin: Kinematics) -> tuple[Sign, ...]:
@@ -74,7 +75,8 @@ def known_constants(kin: Kinematics) -> Sequence[Let]:
 
 @dataclass(frozen=True)
 class StraightLines:
-    """The inverse away from folds, for trusted input and axes on any turn: one program of all branches, one of one."""
+    """The inverse where no digits are lost, for trusted input and axes on any turn: one program of all branches, one of
+    one."""
 
     trusted: Program
     """One branch before it was lowered, and before the choice of its turns was removed."""
@@ -88,7 +90,7 @@ class StraightLines:
 @kept_by_identity(10)
 def straight_lines(kin: Kinematics) -> StraightLines:
     """Both programs, lowered together: C takes one of them, Python both."""
-    one = trusted(away_from_folds(kin))
+    one = trusted(without_doubts(kin))
     program = without_chosen_turns(one)
     (every, single), parts = lowered(
         [replace(program, name="branches"), replace(program, name="branch")],

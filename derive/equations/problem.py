@@ -29,13 +29,6 @@ class Column:
     """The statements that bind all three entries."""
     size: sp.Expr = sp.Integer(1)
     """The largest value of the entry: a length of the machine where the entry is multiplied by one."""
-    beside: sp.Expr = sp.Integer(0)
-    """The other value of a polar radius."""
-
-    @property
-    def terms(self) -> sp.Expr:
-        """The sum of the sizes of the terms of `others`, over the square of the largest value."""
-        return (self.others + 2 * self.beside**2) / self.size**2
 
 
 @dataclass(frozen=True)
@@ -51,8 +44,6 @@ class Equation:
     """Whether its terms are lengths; those of a rotation have no unit."""
     column: Column | None = None
     """The column of the entry of a rotation that it holds."""
-    is_radius: bool = False
-    """Whether it tells a polar radius: near its largest value it has lost the digits of the angle, as entries have."""
     apart: tuple[sp.Expr, ...] = ()
     """The two equations without the length that was eliminated between them: they hold where both its coefficients
     vanish, and this equation says nothing."""
@@ -79,31 +70,6 @@ class Legs:
 
 
 @dataclass(frozen=True)
-class Swing:
-    """The angle s between the solution of a cos u + b sin u = e and the direction (along, across) of (a, b).
-
-    cos s = e / h with h² = a² + b², and the sine is sigma times a root.
-    """
-
-    cos: sp.Symbol
-    sin: sp.Symbol
-    """The names of sine and cosine of s; where b is zero, those of u itself."""
-    along: sp.Expr
-    across: sp.Expr
-    is_coarse: bool = False
-    """Whether e is a polar radius, or an entry of a rotation that the other entries cannot replace near one: the root
-    may then round to zero where those entries are not zero."""
-    terms: sp.Expr | None = None
-    """Where they can replace it: the sum of the sizes of the terms of the squared sine, whose digits the root has."""
-
-    def renamed(self, names: Mapping[sp.Symbol, sp.Expr]) -> Swing:
-        """A copy with other names."""
-        cos_s, sin_s, along, across = (v.xreplace(names) for v in (self.cos, self.sin, self.along, self.across))
-        terms = None if self.terms is None else self.terms.xreplace(names)
-        return replace(self, cos=cos_s, sin=sin_s, along=along, across=across, terms=terms)
-
-
-@dataclass(frozen=True)
 class StepDeterminant:
     """The determinant of the equations of a two-root step by its unknowns (of one equation: its derivative), with its
     scale. Its sign is the branch.
@@ -114,18 +80,8 @@ class StepDeterminant:
     value: sp.Expr
     """At every solution sigma times a number that is not negative."""
     scale: sp.Expr
-    reach: tuple[sp.Expr, sp.Expr] | None = None
-    """(h, e) where the step has solutions for |e| <= h; earlier steps then move their angles to meet this."""
     legs: Legs | None = None
-    """The triangle whose root, near zero, magnifies the rounding error of its radicand."""
-    beside: tuple[sp.Expr, sp.Expr] | None = None
-    """(H, d) where the step has solutions for |d| <= H, both as small as the leg that it turns: see `other_leg`."""
-    swing: Swing | None = None
-    """Of a step that gives a cosine alone, whose sine is the root."""
-    arm: tuple[sp.Expr, sp.Expr, sp.Expr] | None = None
-    """(a, b, e) where the step solves a cos u + b sin u = e: the arm (a, b) has to be as long as e."""
-    factors: tuple[sp.Expr, sp.Expr] | None = None
-    """h - e and h + e with all their digits, where h is the length of the arm: neither may be negative."""
+    """The triangle of an arm that points at a point: later statements read its legs."""
 
     @property
     def sigma(self) -> sp.Symbol:
@@ -137,22 +93,8 @@ class StepDeterminant:
         return replace(
             self,
             value=self.value.xreplace(names),
-            reach=None if self.reach is None else (self.reach[0].xreplace(names), self.reach[1].xreplace(names)),
             legs=None if self.legs is None else self.legs.renamed(names),
-            swing=None if self.swing is None else self.swing.renamed(names),
-            arm=None if self.arm is None else _renamed_row(self.arm, names),
-            factors=None
-            if self.factors is None
-            else (self.factors[0].xreplace(names), self.factors[1].xreplace(names)),
-            beside=None if self.beside is None else (self.beside[0].xreplace(names), self.beside[1].xreplace(names)),
         )
-
-
-def _renamed_row(
-    row: tuple[sp.Expr, sp.Expr, sp.Expr], names: Mapping[sp.Symbol, sp.Expr]
-) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    a, b, e = (v.xreplace(names) for v in row)
-    return a, b, e
 
 
 def sign_of(step: sp.Symbol) -> sp.Symbol:

@@ -15,14 +15,8 @@ OUT_OF_REACH = sp.Float("1e-9")
 """A pose that exceeds a bound by more than this share is not reached by moving an angle that is known."""
 BOUNDARY = sp.Float("1e-12")
 """A normalised radicand negative by at most this is zero: the boundary belongs to the workspace."""
-FOLD = sp.Float("1e-6")
-"""A radicand below this share of the machine's squared length is near enough to zero for its root to multiply
-rounding."""
 ROUNDING = sp.Float("1e-12")
 """A motion of the pose smaller than this share of the machine is rounding."""
-INSIDE = sp.Float("1e-7")
-"""A nearly free angle that is moved to where a later step has a solution is moved this share inside the boundary of
-that step."""
 LARGEST = sp.Integer(10) ** 9
 """Inputs larger in size than this are refused."""
 ROTATION = sp.Float("1e-4")
@@ -67,6 +61,22 @@ many radians."""
 DAMPED = sp.Float("1e-12")
 """The square of the damping in damped least squares: an error that the joints reduce more slowly than the damping, in
 lengths of the machine, is left."""
+DOUBTFUL = sp.Float("1e-2")
+"""A step whose margin is at most this may have lost digits that a later step needs."""
+NEARLY_FREE = sp.Float("1e-6")
+"""Where lost digits may have refused a pose, an angle with a conditioning of this share or less is set free."""
+ATTEMPTS = 4
+"""The largest number of starts from which the closure is solved where digits are lost."""
+PASSES = 40
+"""The largest number of steps from each start: next to a double root every step leaves a third of the error."""
+TURNED = sp.Float("137.5")
+"""How far (degrees) free angles are turned from start to start: multiples of it are nowhere near each other."""
+LONGEST_STEP = sp.Rational(1, 2)
+"""The longest step towards a pose, in radians and lengths of the machine."""
+SHARE_OF_DAMPING = sp.Float("1e-3")
+"""The damping of such a step, as a share of the error: it lets the steps end fast where solutions are not isolated."""
+LEAST_DAMPING = sp.Float("1e-13")
+"""The least damping of such a step, so that the equations stay solvable."""
 IMPROVEMENTS = 6
 """The largest number of Newton steps that improve a root of a scan."""
 TIE = sp.Float("1e-6")

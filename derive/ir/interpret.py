@@ -184,17 +184,21 @@ def _require(condition: Array, otherwise: Status, status: NDArray[np.object_]) -
 
 
 def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> None:
-    """Run a shared program with its arguments and constants; a row that it refuses gets its status, or the call's."""
-    known.update({name.name: np.asarray(0.0) for name in call.names})
-    if not np.any(asked := evaluate(call.asked, known)):
-        return
-    inner = {s.name: known[s.name] for s in call.constants} | {n.name: evaluate(v, known) for n, v in call.given}
-    own = status.copy()
-    _execute(call.program.body, inner, own)
-    refused = (own != status) & asked
-    status[refused] = call.refusal[0] if call.refusal else own[refused]
-    values = {o.name: o.value for o in call.program.outputs}
-    known.update({n.name: np.where(asked, evaluate(values[n.name], inner), 0) for n in call.names})
+    """Run a shared program in rows where it is wanted and nothing has refused; a row that it refuses has its status, or
+    the call's.
+    """
+    wanted = _broadcast(evaluate(call.wanted, known), status.shape) & (status == Status.OK)
+    rows, own = (wanted, status[wanted]) if call.is_conditional else (..., status)
+    given = {s.name: known[s.name] for s in call.constants} | {n.name: evaluate(v, known) for n, v in call.given}
+    inner = {name: _broadcast(value, status.shape)[rows] for name, value in given.items()}
+    _execute(call.program.body if own.size else (), inner, own)
+    if call.refusal is not None:
+        own[own != Status.OK] = call.refusal[0]
+    status[rows] = own
+    outputs = {o.name: o.value for o in call.program.outputs}
+    for name in call.names:
+        known[name.name] = np.zeros(status.shape, dtype=bool if is_condition(name) else float)
+        known[name.name][rows] = evaluate(outputs[name.name], inner) if own.size else 0.0
 
 
 def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]) -> None:

@@ -20,7 +20,7 @@ import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from derive.ir.reason import Reason
-from derive.ir.symbols import PLACE, names_in
+from derive.ir.symbols import PLACE, is_decided, names_in
 
 
 class Status(Enum):
@@ -122,7 +122,8 @@ class Call:
     """Run a program that several programs share, and bind names of its outputs; where it refuses, so does the caller.
 
     given: the values of the arguments. The other inputs of the shared program are constants of the machine, which are
-    inputs of the caller, too. Where `asked` does not hold, nothing runs, and the names are bound to zeros.
+    inputs of the caller, too. Where `wanted` does not hold the program is not run, and the names are bound to false
+    and zeros.
     """
 
     program: Program
@@ -130,10 +131,19 @@ class Call:
     names: tuple[sp.Symbol, ...]
     """The outputs that the caller reads; all others are dropped."""
     note: str = ""
-    asked: Boolean = sp.true
-    """A condition on constants of the machine."""
+    wanted: Boolean = sp.true
     refusal: tuple[Status, Reason] | None = None
     """The status and the reason of the caller where the shared program refuses; None: the status of that program."""
+
+    @property
+    def is_conditional(self) -> bool:
+        """Whether the program is run under a condition."""
+        return not is_decided(self.wanted)
+
+    @property
+    def is_rare(self) -> bool:
+        """Whether few poses run the program: a call with a refusal of its own is a check that every pose passes."""
+        return self.is_conditional and self.refusal is None
 
     @property
     def arguments(self) -> tuple[sp.Expr, ...]:
@@ -249,8 +259,7 @@ def expressions(statement: Statement) -> Iterator[sp.Basic]:
     elif isinstance(statement, Solve):
         yield from (*statement.matrix, *statement.right)
     elif isinstance(statement, Call):
-        yield from (value for _, value in statement.given)
-        yield from () if statement.asked is sp.true else (statement.asked,)
+        yield from (statement.wanted, *(value for _, value in statement.given))
     elif isinstance(statement, FindRoot):
         yield from (statement.start, statement.wanted)
     else:
@@ -304,8 +313,7 @@ def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> S
         )
     if isinstance(statement, Call):
         given = tuple((name, change(value)) for name, value in statement.given)
-        asked = statement.asked if statement.asked is sp.true else change(statement.asked)
-        return replace(statement, given=given, asked=asked)
+        return replace(statement, given=given, wanted=change(statement.wanted))
     if isinstance(statement, FindRoot):
         return replace(statement, start=change(statement.start), wanted=change(statement.wanted))
     return replace(

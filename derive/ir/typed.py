@@ -58,7 +58,7 @@ def _wanted(statement: Statement) -> Iterator[tuple[sp.Basic, Type]]:
         yield from ((value, Type.REAL) for value in (*statement.matrix, *statement.right))
     elif isinstance(statement, Call):
         yield from ((value, type_of(name)) for name, value in statement.given)
-        yield statement.asked, Type.BOOL
+        yield statement.wanted, Type.BOOL
     elif isinstance(statement, FindRoot):
         yield from ((statement.start, Type.REAL), (statement.wanted, Type.BOOL))
 

@@ -13,6 +13,7 @@ forward: forward kinematics, and the values of the inverse derivation at given a
 home_share: how often forward kinematics that starts at home finds a pose again
 inverse: inverse kinematics of one branch, for a pose or for a point off the flange
 kinematics: the bundle that all later folders read: every program of a mechanism, and the meanings of its names
+lost_digits/: where a closed form has lost digits, steps on the closure meet the pose
 margins/: the singularity margins of a machine that is solved in closed form
 no_pose: the reason why a machine has no pose at its nominal dimensions
 number_of_joints: the refusal of more or fewer joints than commanded quantities

@@ -39,6 +39,8 @@ from derive.kinematics.forward import at_point, derivation_at_axes, forward_prog
 from derive.kinematics.home_share import with_share
 from derive.kinematics.inverse import Inverse, inverse_program, solve_offset, solve_pose
 from derive.kinematics.kinematics import Kinematics, Margin
+from derive.kinematics.lost_digits.closure_steps import Machine
+from derive.kinematics.lost_digits.doubts import meeting, with_doubts
 from derive.kinematics.margins.candidates import Factor, factor_of
 from derive.kinematics.margins.determinant import samples_anywhere, singularity_program
 from derive.kinematics.no_pose import near_home
@@ -105,7 +107,8 @@ def _built(mechanism: Mechanism) -> Kinematics:
     margins = margin_lets(mechanism, assignments)
     jacobian = jacobian_program(mechanism, forward)
     factors = _factors(mechanism, closed, inverse, assignments)
-    statements = with_branch_signs(inverse.derivation.statements, assignments)
+    machine = Machine(mechanism, inverse, assignments, at_axes)
+    statements = with_doubts(machine, with_branch_signs(inverse.derivation.statements, assignments))
     at_home = joints_at_home(mechanism, statements) if mechanism.is_platform else ()
     at_poses = _samples(mechanism, inverse, at_home, jacobian)
     singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian, at_poses)
@@ -115,7 +118,7 @@ def _built(mechanism: Mechanism) -> Kinematics:
     programs = [
         forward_program(mechanism, forward_only, margins),
         orientation_program(forward),
-        inverse_program("branch", mechanism, inverse, statements, last, again),
+        meeting(machine, inverse_program("branch", mechanism, inverse, statements, last, again)),
         limits_program(mechanism),
         singularity,
         jacobian,
@@ -216,11 +219,12 @@ def _offset_programs(mechanism: Mechanism, closed: Assembled, conditions: tuple[
         raise type(problem)(
             f"with offset_interface=False it could be built, but for a point off the flange {problem}"
         ) from None
-    statements = with_branch_signs(inverse.derivation.statements, assignments)
+    at_axes = derivation_at_axes(mechanism, inverse, at_point(forward))
+    machine = Machine(mechanism, inverse, assignments, at_axes, is_point=True)
+    statements = with_doubts(machine, with_branch_signs(inverse.derivation.statements, assignments))
+    last = _last(mechanism, closed, statements, offset=True)
     return [
-        inverse_program(
-            "offset_branch", mechanism, inverse, statements, _last(mechanism, closed, statements, offset=True)
-        ),
+        meeting(machine, inverse_program("offset_branch", mechanism, inverse, statements, last)),
         _offset_configuration(mechanism, inverse, forward, assignments),
     ]
 

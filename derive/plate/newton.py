@@ -173,7 +173,7 @@ def found_again(mechanism: Mechanism) -> tuple[Statement, ...]:
     position = (sp.Le(sp.Abs(_found(c) - c), PLANE * SCALE) for c in _position(mechanism))
     rotation = (sp.Le(sp.Abs(_found(r) - r), PLANE) for r in _rotation_names(mechanism))
     is_same = sp.And(*position, *rotation)
-    call = replace(call, asked=asked, refusal=(Status.UNREACHABLE, reason))
+    call = replace(call, wanted=asked, refusal=(Status.UNREACHABLE, reason))
     return (call, Require(sp.Or(sp.Not(asked), is_same), Status.UNREACHABLE, reason=reason))
 
 

@@ -14,7 +14,7 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import ToReal
-from derive.ir.program import Let, Program, Require, reason_expressions
+from derive.ir.program import Call, Let, Program, Require, reason_expressions
 from derive.ir.symbols import is_branch_sign, names_in
 from derive.ir.tree import If, Item, bound_in, expressions_in, given_to, read_in
 from derive.ir.types import Type, type_of
@@ -47,7 +47,7 @@ def stretches_of(program: Program) -> tuple[Stretch, ...]:
     """The stretches of a branch; one that is not shared where there is nothing to share."""
     items = structured(program)
     signs = tuple(s for s in program.inputs if is_branch_sign(s))
-    if len(items) < 2 or not signs or not all(isinstance(i, Let | Require | If) for i in items):
+    if len(items) < 2 or not signs or not all(isinstance(i, Let | Require | If) or _is_rare(i) for i in items):
         return (Stretch(items, signs, (), is_shared=False),)
     groups = _groups(items, signs)
     wanted = {s for o in program.outputs for s in names_in(o.value)}
@@ -55,11 +55,16 @@ def stretches_of(program: Program) -> tuple[Stretch, ...]:
     for supported, group in reversed(groups):
         is_shared = len(supported) < len(signs) and any(map(_computes, expressions_in(group)))
         kept = tuple(name for name in bound_in(group) if name in wanted) if is_shared else ()
-        if not all(type_of(name) in (Type.REAL, Type.ANGLE) for name in kept):
+        if not all(type_of(name) in (Type.REAL, Type.ANGLE, Type.BOOL) for name in kept):
             is_shared, kept = False, ()
         found.insert(0, Stretch(tuple(group), tuple(s for s in signs if s in supported), kept, is_shared))
         wanted |= read_in(group).union(*map(_told, group))
     return tuple(_with_room(found))
+
+
+def _is_rare(item: Item) -> bool:
+    """Whether a statement calls a program in rare cases alone; it is no part of what branches share."""
+    return isinstance(item, Call) and item.is_rare
 
 
 def _with_room(stretches: Iterable[Stretch]) -> Iterator[Stretch]:
@@ -105,7 +110,7 @@ def _told(item: Item) -> set[sp.Symbol]:
 def _must_stay(item: Item) -> bool:
     """Whether a statement refuses, or divides by what an earlier refusal may keep from zero."""
     powers = (power for e in expressions_in((item,)) for power in e.atoms(sp.Pow))
-    return isinstance(item, Require) or any(power.exp.is_negative and power.base != DEGREE for power in powers)
+    return isinstance(item, Require | Call) or any(power.exp.is_negative and power.base != DEGREE for power in powers)
 
 
 def _computes(expression: sp.Basic) -> bool:

@@ -200,7 +200,8 @@ def _item(item: Item, of_sides: _OfSides, repeats: Repeats | None = None) -> Cos
     if isinstance(item, If):
         sides = (_total(_item(inner, of_sides, repeats) for inner in side) for side in (item.holds, item.fails))
         return expression_cost(item.condition) + of_sides(*sides)
-    return _statement(item, repeats)
+    is_skipped = isinstance(item, Call) and item.is_rare and of_sides is _regular
+    return _NOTHING if is_skipped else _statement(item, repeats)
 
 
 def _statement(statement: Statement, repeats: Repeats | None = None) -> Cost:

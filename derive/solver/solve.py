@@ -14,11 +14,6 @@ from derive.equations.positions import positions, positions_and_distance, positi
 from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
 from derive.equations.rotations import rotations
 from derive.ir.program import Statement
-from derive.solver.corners.feasible_arc import within_reach
-from derive.solver.corners.folds import beyond_folds
-from derive.solver.corners.lost_arms import with_lost_arms_free
-from derive.solver.corners.short_arms import with_arms_long_enough
-from derive.solver.corners.within_legs import within_legs
 from derive.solver.derivation_record import DerivationRecord
 from derive.solver.eliminations import (
     differences,
@@ -29,6 +24,7 @@ from derive.solver.eliminations import (
     squares_of_three,
     squares_with_lengths,
 )
+from derive.solver.known_legs import with_known_legs
 from derive.solver.meeting_axes import circles_and_spheres
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from derive.solver.positive_steps import known_signs, where_roots_meet, with_known_signs
@@ -132,7 +128,7 @@ class Derivation:
     conditions: tuple[sp.Expr, ...] = ()
     """Values of parameters that must not vanish."""
     plain: tuple[Statement, ...] = ()
-    """The statements without `beyond_folds` and `within_reach`: the plain definitions of the names."""
+    """The statements of the steps alone: a mechanism may put others in front."""
     steps: tuple[Step, ...] = ()
     """The steps in their order, for a reader."""
 
@@ -180,14 +176,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
         problem = _without(problem, binding, record)
     if is_trial and not problem.turns:
         left = left_of_positions(problem, record)
-    statements = record.statements
-    if not is_trial:
-        held = within_legs(statements, record.determinants)
-        unfolded = beyond_folds(held, record.determinants, record.conditionings, problem.scale)
-        # In a loop the arm of a later step vanishes at a type 2 singularity, which its margin refuses: no pose is lost.
-        reaching = with_arms_long_enough(unfolded, record.determinants, problem.scale) if problem.links else unfolded
-        moved = within_reach(reaching, record.determinants, record.conditionings)
-        statements = with_lost_arms_free(moved, record.determinants)
+    statements = record.statements if is_trial else with_known_legs(record.statements, record.determinants)
     signs = known_signs(problem, record.determinants)
     return Derivation(
         with_known_signs(statements, signs),

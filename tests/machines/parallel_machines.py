@@ -1,4 +1,4 @@
-"""Arms with six axes, three of them parallel, whose links happen to be of one length."""
+"""Arms with six axes, three of them parallel: with links that happen to be of one length, and with the three last."""
 
 from __future__ import annotations
 
@@ -15,6 +15,11 @@ SHORT, LONG, WRIST, TOOL = (
     length(f"link_{k}", f"link {k}, in metres", nominal=v) for k, v in enumerate((0.2125, 0.5525, 0.85, 0.425), 1)
 )
 POSE = Task("xyz", Turning.FULL)
+LAST = "arm whose three parallel axes come last"
+D1, D2, D3, D4, D5, D6 = FURTHER = tuple(
+    length(f"link_{k}", f"link {k}, three parallel axes last", nominal=v)
+    for k, v in enumerate((310.0, 140.0, 120.0, 380.0, 350.0, 90.0), 1)
+)
 
 PARALLEL: Mapping[str, Mechanism] = {
     "arm whose first axes are parallel, with a height that tells a joint of the wrist": _machine(
@@ -43,6 +48,13 @@ PARALLEL: Mapping[str, Mechanism] = {
         JOINTS,
         Rz(A1) * Ry(A2) * Tz(LONG) * Ry(A3) * Tz(SHORT) * Ry(A4) * Tz(WRIST) * Rx(A5) * Ry(A6) * Ty(TOOL),
         (SHORT, LONG, WRIST, TOOL),
+        POSE,
+    ),
+    LAST: _machine(
+        "ParallelLast",
+        JOINTS,
+        Rz(A1) * Tz(D1) * Rx(A2) * Tx(D2) * Rz(A3) * Tz(D3) * Rx(A4) * Tz(D4) * Rx(A5) * Tz(D5) * Rx(A6) * Tz(D6),
+        FURTHER,
         POSE,
     ),
 }

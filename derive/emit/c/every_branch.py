@@ -11,7 +11,7 @@ from derive.emit.c.functions import FRAME, read_by
 from derive.emit.c.printer import C, status, type_of
 from derive.emit.c.program import Body, function_of, taken
 from derive.emit.c.refusal import Refusals
-from derive.emit.every_branch import EveryBranch, away_from_folds, every_branch, is_unrolled, signs
+from derive.emit.every_branch import EveryBranch, every_branch, is_unrolled, signs, without_doubts
 from derive.ir.program import Require, Status
 from derive.ir.symbols import REFUSAL, choices, suffixed, symbols_of
 from derive.kept import kept_by_identity
@@ -23,7 +23,7 @@ NAME = "find_every_branch"
 MOST_SLOTS = 16
 """With more branches a straight line is long, and no longer the fastest way."""
 _SUMMARY = (
-    "Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an answer."
+    "Every branch on its turns, of good input; false where digits may be lost: there a branch by itself has an answer."
 )
 _HEAD = (
     "const void *machine, const softkin_frame *frame, const double *reference, softkin_status *statuses, double *axes"
@@ -121,7 +121,7 @@ def _near(joint: Joint, printer: C) -> str:
 def _slots(kin: Kinematics, found: EveryBranch, opened: Sequence[Joint], printer: C) -> Iterator[str]:
     """The status and the axes of every slot."""
     values = {o.name: o.value for o in found.program.outputs}
-    own = signs(away_from_folds(kin))
+    own = signs(without_doubts(kin))
     for slot, choice in enumerate(choices(len(own))):
         refusal = values[suffixed(REFUSAL, own, choice)]
         text = status(Status.OK) if refusal == 0 else f"(softkin_status)({printer.whole(refusal)})"

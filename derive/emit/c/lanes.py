@@ -25,6 +25,7 @@ from derive.ir.program import Let, Program, Require
 from derive.ir.symbols import COORDINATE_NAMES, REFUSAL, ROTATION_ENTRIES, branch_sign, choices, suffixed, symbols_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.lost_digits.doubts import without_meeting
 from derive.lowering.lower import lowered
 from derive.optimize.regular import regular
 from derive.optimize.without_periods import specialised, without_chosen_turns
@@ -62,7 +63,7 @@ def in_lanes(kin: Kinematics) -> tuple[InLanes, ...]:
     """
     if not kin.mechanism.joints or any(joint.coupling != 0 or joint.is_geared for joint in kin.period_joints):
         return ()
-    one = specialised(kin.branch, {j.turn: sp.Integer(0) for j in kin.period_joints})
+    one = specialised(without_meeting(kin.branch), {j.turn: sp.Integer(0) for j in kin.period_joints})
     found = regular(without_chosen_turns(one), constants(kin))
     if found is None:
         return ()

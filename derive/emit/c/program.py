@@ -185,15 +185,17 @@ class Body:
         names = {name.name: name for name in call.names}
         own = [(o.name, f"{array}[{i}]") for i, o in enumerate(call.program.outputs) if o.name in names]
         why = "why" if call.refusal is None else "NULL"
-        value = f"{function_name(call.program)}(k, {arguments}, {array}, {why})"
-        is_always = call.asked is sp.true
-        value = value if is_always else f"{self.printer.print(call.asked)} ? {value} : SOFTKIN_OK"
+        lines = [
+            f"const double {arguments}[] = {list_of(given or ['0.0'])};",
+            f"const softkin_status {status} = {function_name(call.program)}(k, {arguments}, {array}, {why});",
+            *block(f"if ({status} != SOFTKIN_OK)", [self.refusals.of_call(call, status)]),
+        ]
+        if call.is_conditional:
+            lines = block(f"if ({self.refusals.condition([call.wanted])})", lines)
         return [
             *comment(call.note),
-            f"const double {arguments}[] = {list_of(given or ['0.0'])};",
-            f"double {array}[{len(call.program.outputs)}]{'' if is_always else ' = {0.0}'};",
-            f"const softkin_status {status} = {value};",
-            *block(f"if ({status} != SOFTKIN_OK)", [self.refusals.of_call(call, status)]),
+            f"double {array}[{len(call.program.outputs)}]{' = {0.0}' if call.is_conditional else ''};",
+            *lines,
             *taken(own, {name: type_of(symbol) for name, symbol in names.items()}),
         ]
 

@@ -25,7 +25,7 @@ from derive.ir.program import (
     expressions,
     reason_expressions,
 )
-from derive.ir.symbols import PLACE, symbols_of
+from derive.ir.symbols import PLACE, is_condition, symbols_of
 from derive.ir.tree import If, Item, grouped
 from derive.lowering.decided import decided
 from derive.lowering.scheduling import structured
@@ -149,8 +149,9 @@ class _Body:
         given = [PRINTER.value(name, values[name]) for name in call.program.inputs if name in values]
         found = self._found()
         value = f"{function_name(call.program.name)}(k, {list_of(given)})"
-        if call.asked is not sp.true:
-            value = f"{PRINTER.print(call.asked)} ? {value} : {list_of(['0'] * len(call.program.outputs))}"
+        if call.is_conditional:
+            nothing = list_of("false" if is_condition(o.value) else "0.0" for o in call.program.outputs)
+            value = f"{condition_of([call.wanted])} ? {value} : {nothing}"
         wanted = {name.name for name in call.names}
         taken = _trimmed([spelled(o.name) if o.name in wanted else "" for o in call.program.outputs])
         tail = [f"const {list_of(taken)} = {found};"] if taken else []

@@ -83,6 +83,7 @@ class Lines:
             names = ", ".join(self._spelling(n.name) for n in item.names)
             what = item.note or "a program that several methods share"
             note = f"{what}: {method_name(item.program)}, which gives {names}{', with' if given else ''}"
+            note = f"only where a pose would be refused: {note}" if item.is_rare else note
             yield Line("call", math=tuple(given), note=note)
         else:
             yield from self._search(item)

@@ -32,8 +32,8 @@ OF_A_SEARCH = 120_000
 """The number of values for one row of a root scan, whose trials are computed together: measured."""
 CALLED = frozenset((
     "DEGREE", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc",
-    "nearest_period", "opposite", "passed", "reasonable", "require", "root", "select", "settled", "sin", "solve",
-    "sqrt",
+    "nearest_period", "opposite", "passed", "reasonable", "require", "root", "run_where", "select", "settled", "sin",
+    "solve", "sqrt",
 ))  # fmt: skip
 """The functions that programs on arrays call."""
 TYPES = frozenset((

@@ -8,7 +8,7 @@ import sympy as sp
 from derive.emit.python.layout import note_lines, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.program import Call, FindRoot
-from derive.ir.symbols import PLACE
+from derive.ir.symbols import PLACE, is_condition
 
 GIVEN, FOUND = "given", "found"
 """The argument of a shared program, and its result: its values or, on plain numbers, the status of its refusal."""
@@ -16,26 +16,30 @@ GIVEN, FOUND = "given", "found"
 
 def scalar_lines(call: Call, printer: ScalarPrinter, refused: str = f"return {FOUND}") -> list[str]:
     """The lines that call the program, pass on its refusal, and unpack its values."""
-    head = f"{FOUND} = self._{call.program.name}({_values(call, printer)}){_unless_asked(call, printer)}"
-    return [*_note(call), head, f"if isinstance({FOUND}, Status):", f"    {refused}", *_taken(call, FOUND)]
+    head = [f"{FOUND} = self._{call.program.name}({_values(call, printer)})"]
+    lines = [*head, f"if isinstance({FOUND}, Status):", f"    {refused}", *_taken(call, FOUND)]
+    if call.is_conditional:
+        inside, nothing = ([f"    {line}" for line in part] for part in (lines, _taken(call, _nothing(call))))
+        lines = [f"if {printer.print(call.wanted)}:", *inside, "else:", *nothing]
+    return [*_note(call), *lines]
 
 
 def array_lines(call: Call, printer: ScalarPrinter) -> list[str]:
     """The lines that call the program on arrays, where it writes the statuses of its refusals itself."""
     inner = "status" if call.refusal is None else "refused"
-    found = f"self.{call.program.name}({_values(call, printer)}, {inner}){_unless_asked(call, printer)}"
-    head = [f"{FOUND} = {found}", *_taken(call, FOUND)]
+    head = f"{FOUND} = self.{call.program.name}({_values(call, printer)}, {inner})"
+    if call.is_conditional:
+        wanted, program = printer.print(call.wanted), f"self.{call.program.name}"
+        head = f"{FOUND} = run_where({wanted}, {program}, {_values(call, printer)}, {inner}, {_nothing(call)})"
     if call.refusal is None:
-        return [*_note(call), *head]
+        return [*_note(call), head, *_taken(call, FOUND)]
     refused = f"require(status, refused == status, Status.{call.refusal[0].name})"
-    return [*_note(call), "refused = status.copy()", *head, refused]
+    return [*_note(call), "refused = status.copy()", head, *_taken(call, FOUND), refused]
 
 
-def _unless_asked(call: Call, printer: ScalarPrinter) -> str:
-    """The zeros in place of the results where the call is not asked for."""
-    if call.asked is sp.true:
-        return ""
-    return f" if {printer.print(call.asked)} else (0.0,) * {len(call.program.outputs)}"
+def _nothing(call: Call) -> str:
+    """The results of a program that is not run."""
+    return tuple_of(["False" if is_condition(o.value) else "0.0" for o in call.program.outputs])
 
 
 def scalar_search(search: FindRoot, printer: ScalarPrinter) -> list[str]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from derive.emit import native
-from derive.emit.every_branch import can_be_unrolled, has_folds, is_unrolled
+from derive.emit.every_branch import can_be_unrolled, has_doubts, is_unrolled
 from derive.emit.python import entries, setup
 from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in, values_of_a_row
 from derive.emit.python.calls import every_root
@@ -98,7 +98,7 @@ def _class_context(kin: Kinematics, arrays: Sequence[Method], lean: Unrolled | N
             *(["period"] if entries.turn_sizes(kin) else []),
         ],
         "chooses_by_lengths": chooses_by_lengths(kin.mechanism),
-        "has_folds": has_folds(kin),
+        "has_doubts": has_doubts(kin),
         "margins": tuple(m.name for m in kin.margins),
         "every_root": _every_root(scalar),
         "methods": [

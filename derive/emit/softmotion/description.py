@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from textwrap import wrap
 
 from jinja2 import Environment
@@ -15,7 +15,7 @@ from derive.emit.softmotion.inputs import inputs
 from derive.emit.st.layout import WIDTH
 from derive.emit.st.names import respelled
 from derive.ir.constants import EXACT_ROTATION, FREE_ANGLE, ONE_TURN, ROTATION
-from derive.ir.program import Status, shared
+from derive.ir.program import Call, Status, shared
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.reference_cases import Called
 from derive.report.cost import Bound, Cost, Costs, costs_of
@@ -194,8 +194,9 @@ def _looped(kinematics: Kinematics, costs: Costs) -> Iterator[str]:
         (one_branch, Called.INVERSE, kinematics.branch, worst_inverse(kinematics)),
     )
     for method, called, program, worst in programs:
-        if not any(bound.program == p.name for bound in costs.bounds for p in (program, *shared([program]))):
-            continue
+        usual = replace(program, body=tuple(s for s in program.body if not (isinstance(s, Call) and s.is_rare)))
+        if not any(bound.program == p.name for bound in costs.bounds for p in (usual, *shared([usual]))):
+            continue  # a loop in a rare case counts as the cost of a singular pose
         calls = [c for c in named if c.called is called]
         found = ([c.operations for c in calls if (c.status is Status.OK) == ok] for ok in (True, False))
         solved, vain = (f"at most {max(numbers)}" if numbers else "not measured" for numbers in found)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 
 import sympy as sp
 
@@ -19,6 +18,7 @@ from derive.emit.st.layout import packed
 from derive.emit.st.names import capitalized, parameter_name, type_name
 from derive.emit.st.refusal import Refusal
 from derive.ir.program import Call, Program, Status
+from derive.ir.symbols import is_condition
 from derive.ir.types import type_of
 
 OUTCOME = "outcome"
@@ -59,20 +59,21 @@ def own_names(program: Program, spelled: Mapping[str, str]) -> dict[str, str]:
 
 
 def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterator[str]:
-    """The lines that call the method where it is asked for, and refuse where it does; variables of a method are zero
-    before.
-    """
-    if call.asked is not sp.true:
-        yield f"IF {printer.print(call.asked)} THEN"
-        yield from indented(list(call_lines(replace(call, asked=sp.true), printer, refusal)))
-        yield "END_IF"
-        return
+    """The lines that call the method where it is wanted, and refuse where it does."""
     arguments = list(dict.fromkeys(_argument(name, value, printer) for name, value in call.given))
     results = [f"{parameter_name(name.name)} => {printer.name(name)}" for name in call.names]
-    yield from _packed(f"{OUTCOME} := {method_name(call.program)}(", arguments, results)
-    yield f"IF {OUTCOME} <> {refusal.errors[Status.OK.name]} THEN"
-    yield from indented(refusal.of_call(call, OUTCOME))
-    yield "END_IF"
+    refused = [
+        f"IF {OUTCOME} <> {refusal.errors[Status.OK.name]} THEN",
+        *indented(refusal.of_call(call, OUTCOME)),
+        "END_IF",
+    ]
+    lines = [*_packed(f"{OUTCOME} := {method_name(call.program)}(", arguments, results), *refused]
+    if not call.is_conditional:
+        yield from lines
+        return
+    for name in call.names:  # where the method is not called
+        yield f"{printer.name(name)} := {'FALSE' if is_condition(name) else '0.0'};"
+    yield from (f"IF {printer.print(call.wanted)} THEN", *indented(lines), "END_IF")
 
 
 def _argument(name: sp.Symbol, value: sp.Expr, printer: StructuredText) -> str:

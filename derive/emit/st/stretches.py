@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
+import sympy as sp
+
 from derive.emit.braces import indented
 from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import INSIDE, WIDTH
 from derive.emit.st.refusal import Refusal
 from derive.ir.program import Program, Require
-from derive.ir.symbols import branch_with
+from derive.ir.symbols import branch_with, is_condition
 from derive.ir.tree import Item
 from derive.report.branch_stretches import Stretch, stretches_of
 
@@ -49,7 +51,7 @@ def _shared(
     known = f"{KNOWN}[{number}{f' + {SIDE}' if stretch.signs else ''}]"
     times = f"{len(stretch.kept)}*" if len(stretch.kept) > 1 else ""
     further = f" + {times}{SIDE}" if stretch.signs else ""
-    places = [(f"{KEPT}[{first + k}{further}]", printer.name(name)) for k, name in enumerate(stretch.kept)]
+    places = [(f"{KEPT}[{first + k}{further}]", name) for k, name in enumerate(stretch.kept)]
     words = " and ".join(branch_with(sign) for sign in stretch.signs)
     yield f"// Equal in all branches{f' with this {words}' if words else ''}, so computed once a call"
     if stretch.signs:
@@ -62,7 +64,7 @@ def _shared(
         yield "END_IF"
     if places:
         yield f"IF {known} = {SOLVED} THEN"
-        yield from indented([f"{name} := {kept};" for kept, name in places])
+        yield from indented([_taken(kept, name, printer) for kept, name in places])
         yield "ELSE"
     else:
         yield f"IF {known} <> {SOLVED} THEN"
@@ -70,6 +72,17 @@ def _shared(
         if line.strip() == "RETURN;":
             yield from indented([line.replace("RETURN;", f"{known} := {REFUSED};")])
         yield from indented([line])
-    yield from indented([f"{kept} := {name};" for kept, name in places])
+    yield from indented([_stored(kept, name, printer) for kept, name in places])
     yield from indented([f"{known} := {SOLVED};"])
     yield "END_IF"
+
+
+def _stored(place: str, name: sp.Symbol, printer: StructuredText) -> str:
+    """The statement that keeps a value; a flag is kept as a number."""
+    value = printer.name(name)
+    return f"{place} := SEL({value}, 0.0, 1.0);" if is_condition(name) else f"{place} := {value};"
+
+
+def _taken(place: str, name: sp.Symbol, printer: StructuredText) -> str:
+    """The statement that takes a kept value back."""
+    return f"{printer.name(name)} := {place}{' > 0.5' if is_condition(name) else ''};"

@@ -134,7 +134,6 @@ def _solve(
         radius - sigma * distance,
         is_length=along[0].is_length,
         column=column,
-        is_radius=column is None,
     )
     return Binding("polar", (angle,), (*naming.lets, *known), determinant, conditioning, (product,))
 
@@ -166,7 +165,7 @@ def _column(along: _Side, across: _Side, radius: sp.Expr) -> Column | None:
         if column is None or not size.is_positive or column.entry in size.free_symbols:
             continue
         if other.column is None:
-            return Column(radius, size**2 * column.others - beside**2, column.lets, size, beside)
+            return Column(radius, size**2 * column.others - beside**2, column.lets, size)
         others = sp.expand(size**2 * column.others - beside**2)
         if not others.free_symbols & beside.free_symbols:
             return Column(radius, others, column.lets, size)

@@ -99,6 +99,8 @@ class Run:
                 self.known[statement.name.name] = self.number(statement.value)
         elif isinstance(statement, Solve):
             self._solve(statement)
+        elif isinstance(statement, Call) and (statement.is_rare or not self.truth(statement.wanted)):
+            self.known |= {n.name: False if is_condition(n) else ZERO for n in statement.names}  # no regular pose asks
         elif isinstance(statement, Call):
             given: Known = {name.name: self.number(value) for name, value in statement.given}
             inner = Run(statement.program, given, self._angles, self._signs, self._degree, self._input_of)

@@ -41,7 +41,7 @@ def test_it_binds_what_the_shared_program_answers() -> None:
 def test_it_may_not_be_asked_and_may_refuse_in_its_own_way() -> None:
     """Where the condition does not hold, nothing refuses, and the names are zero; else the caller's status counts."""
     asked, reason = flag("asked"), about_machine(Why.NO_ROOT)
-    call = Call(hypotenuse(), ((A, C), (B, Q)), (X,), asked=asked, refusal=(Status.UNREACHABLE, reason))
+    call = Call(hypotenuse(), ((A, C), (B, Q)), (X,), wanted=asked, refusal=(Status.UNREACHABLE, reason))
     program = verify(normalise("p", (call, Let(W, X + 1)), [Output("w", W)]))
     assert asked in program.inputs
     values = {"c": np.array([3.0, -3.0]), "q": np.array(4.0), "k": np.array(2.0)}

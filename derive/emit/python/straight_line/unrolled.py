@@ -9,12 +9,12 @@ import sympy as sp
 
 from derive.emit.every_branch import (
     StraightLines,
-    away_from_folds,
     can_be_unrolled,
-    has_folds,
+    has_doubts,
     signs,
     straight_lines,
     trusted,
+    without_doubts,
 )
 from derive.emit.python.layout import assigned, repeated, tuple_of
 from derive.emit.python.methods import POSITION, ROTATION, branch
@@ -83,14 +83,14 @@ class Unrolled:
 
 def is_trusted(kin: Kinematics) -> bool:
     """Whether its one branch has a function for trusted input that always answers."""
-    return can_be_unrolled(kin) and not kin.branches and not has_folds(kin)
+    return can_be_unrolled(kin) and not kin.branches and not has_doubts(kin)
 
 
 def unrolled(kin: Kinematics) -> Unrolled:
-    """The functions on plain numbers. Near a fold they have no answer and return an empty tuple: there the branches are
-    solved one after the other.
+    """The functions on plain numbers. Where digits may be lost they have no answer and return an empty tuple: there the
+    branches are solved one after the other.
     """
-    lines_of, kin = straight_lines(kin), away_from_folds(kin)
+    lines_of, kin = straight_lines(kin), without_doubts(kin)
     methods, parts = _methods(kin, lines_of), lines_of.parts
     known = (*kin.setup.lets(), *parts)
     last = finish(kin, lines_of.trusted)
@@ -110,7 +110,7 @@ def unrolled(kin: Kinematics) -> Unrolled:
 
 
 def trusted_branch(kin: Kinematics) -> Function:
-    """The method for trusted input of a machine without branches and folds."""
+    """The method for trusted input of a machine without branches that never loses digits."""
     kin = replace(kin, branch=untold(kin.branch))
     method = _single(kin, without_chosen_turns(trusted(kin)))
     written = _Written.of(method, kin.setup.lets())
@@ -149,7 +149,7 @@ def _optional(kin: Kinematics) -> Argument:
 
 
 def _refusals(answer: Callable[[Status], str]) -> Refusals:
-    """Refusals that return the given answer, and an empty tuple near a fold."""
+    """Refusals that return the given answer, and an empty tuple where digits may be lost."""
     return Refusals(lambda status: "()" if status is Status.OK else answer(status))
 
 

@@ -90,5 +90,4 @@ def _beside(
         Let(sine(angle), Select(determined, sin_value, sin_free)),
     )
     legs = Legs(ahead, square, beside, distance, along, across)
-    factors = (distance - beside, distance + beside)
-    return Binding("lateral", (angle,), statements, replace(determinant, legs=legs, factors=factors), cosine_alone=True)
+    return Binding("lateral", (angle,), statements, replace(determinant, legs=legs), cosine_alone=True)

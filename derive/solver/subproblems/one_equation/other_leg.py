@@ -16,6 +16,7 @@ import sympy as sp
 
 from derive.algebra.normal_form import reduce_units, split_known
 from derive.equations.problem import Equation, Problem
+from derive.ir.constants import ROUNDING
 from derive.ir.primitives import Select
 from derive.ir.program import Let
 from derive.ir.symbols import cosine, real, sine
@@ -47,6 +48,12 @@ def with_leg(
     by_leg = (distance - beside) * (distance + beside) / larger.name
     smaller = Select(sp.Lt(distance, length), by_leg, length - Select(is_ahead, right, -right))
     return (Select(is_ahead, smaller, larger.name), Select(is_ahead, larger.name, smaller)), (larger,), lets
+
+
+def held_by_leg(leg: Leg, length: sp.Expr, scale: sp.Expr) -> sp.Basic:
+    """The condition that d is no longer than H, but for rounding, where H is shorter than h. length: h."""
+    distance, beside, _ = leg
+    return sp.Or(sp.Ge(distance, length), sp.Le(sp.Abs(beside), distance + ROUNDING * scale))
 
 
 def _of_pair(

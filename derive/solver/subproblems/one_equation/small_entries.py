@@ -27,28 +27,27 @@ Factors = tuple[sp.Expr, sp.Expr]
 
 def with_small_entries(
     problem: Problem, equation: Equation, factors: Factors, square: sp.Expr | None
-) -> tuple[Factors, tuple[Let, ...], sp.Expr | None]:
-    """The factors 1 - cosine and 1 + cosine, times a scale; the statements that bind the names in them; and the sum of
-    the sizes of the terms of the squared sine, None where these are not known. A factor that is a multiple of one less
-    an entry is computed from the other entries of its column.
+) -> tuple[Factors, tuple[Let, ...]]:
+    """The factors 1 - cosine and 1 + cosine, times a scale, and the statements that bind the names in them. A factor
+    that is a multiple of one less an entry is computed from the other entries of its column.
 
     square: the square of the arm with which the entry is compared, by sines and cosines alone; None where it has none.
     """
     column = equation.column
     if column is None:
-        return factors, (), None
+        return factors, ()
     less, more = (_by_others(problem, column, f) for f in factors)
     if (less, more) != factors:
-        return (less, more), column.lets, column.others
+        return (less, more), column.lets
     pair = _ends(column, factors)
     if pair is None:
-        return factors, (), None
+        return factors, ()
     is_whole = pair[0][0] == column.size
     missing = sp.Integer(0) if is_whole else None if square is None else _less_than_one(problem, square)
     if missing is None or (column.size != 1 and not is_whole):
-        return factors, (), None
+        return factors, ()
     less, more = (_with_arm(column, missing, *end) for end in pair)
-    return (less, more), column.lets, column.terms + missing
+    return (less, more), column.lets
 
 
 def _ends(column: Column, factors: Factors) -> tuple[Factors, Factors] | None:

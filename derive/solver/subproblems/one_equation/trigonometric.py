@@ -15,12 +15,11 @@ refused: u then has no arm to turn.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
-from derive.equations.problem import Binding, Equation, Problem, StepDeterminant, Swing, sign_of
+from derive.equations.problem import Binding, Equation, Problem, StepDeterminant, sign_of
 from derive.ir.constants import BOUNDARY, FREE_ANGLE
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let, Require, Statement, Status
@@ -29,7 +28,7 @@ from derive.solver.subproblems.direction import free_angle
 from derive.solver.subproblems.one_equation.amplitude import Amplitude, amplitude_of
 from derive.solver.subproblems.one_equation.apart import determined_apart
 from derive.solver.subproblems.one_equation.lateral import Row, aimed_at_point
-from derive.solver.subproblems.one_equation.other_leg import other_leg, with_leg
+from derive.solver.subproblems.one_equation.other_leg import held_by_leg, other_leg, with_leg
 from derive.solver.subproblems.one_equation.small_entries import with_small_entries
 from derive.solver.subproblems.one_equation.triangle import in_lengths
 from derive.solver.subproblems.shortfall import out_of_reach
@@ -41,23 +40,16 @@ def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator
     """Every angle that one equation determines up to a sign."""
     for equation, angle, row, is_aimed in _rows(problem, equations):
         if is_aimed:
-            yield _with_arm(aimed_at_point(problem, equation, angle, row), row)
+            yield aimed_at_point(problem, equation, angle, row)
         else:
-            yield _with_arm(_solve(problem, equation, angle, amplitude_of(problem, equation, angle, row)), row)
+            yield _solve(problem, equation, angle, amplitude_of(problem, equation, angle, row))
 
 
 def lateral(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
     """The angles of `trigonometric` that aim an arm at a commanded point; the others come from a cosine alone."""
     for equation, angle, row, is_aimed in _rows(problem, equations):
         if is_aimed:
-            yield _with_arm(aimed_at_point(problem, equation, angle, row), row)
-
-
-def _with_arm(binding: Binding, row: Row) -> Binding:
-    """The step with its equation, for steps before it that may have to turn its arm."""
-    if binding.determinant is None:
-        return binding
-    return replace(binding, determinant=replace(binding.determinant, arm=row))
+            yield aimed_at_point(problem, equation, angle, row)
 
 
 def _rows(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[tuple[Equation, sp.Symbol, Row, bool]]:
@@ -96,15 +88,14 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
     size = sp.Abs if amplitude.is_signed else sp.Add
     less, more = amplitude.factors or (in_lengths(length - right), in_lengths(length + right))
     told = (less, more)
-    (less, more), column, terms = with_small_entries(problem, equation, (less, more), amplitude.square)
-    is_fine = sp.Mul(less, more).has(Select)
-    larger, leg = tuple[Let, ...](), None
+    (less, more), column = with_small_entries(problem, equation, (less, more), amplitude.square)
+    uncounted = int(sp.count_ops([less, more]) - sp.count_ops(list(told)))
+    larger, leg, holds = tuple[Let, ...](), None, sp.true
     if amplitude.aimable is not None:  # joints change the arm, which may lie along the coordinate
         leg = other_leg(problem, equation, angle, amplitude.determinant, amplitude.naming.lets)
     if leg is not None:
         (less, more), larger, column = with_leg(angle, (length, right), leg)
-        terms = None
-    uncounted = 0 if terms is None else int(sp.count_ops([less, more]) - sp.count_ops(list(told)))
+        uncounted, holds = 0, held_by_leg(leg, length, problem.scale)
     scale: tuple[Let, ...] = (
         Let(twice, less_cos + plus_cos, "sum of both, twice the scale: cosine² + sine² is then 1"),
         Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
@@ -120,27 +111,12 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
         Let(less_cos, less, f"law of cosines for {angle.name} ({equation.label}): 1 - cosine, times a scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
         *scale,
-        *_cosine(angle, amplitude, cos_name, (plus_cos - less_cos) / below, told),
+        *_cosine(angle, amplitude, cos_name, (plus_cos - less_cos) / below, told, holds),
         Let(square, less_cos * plus_cos, "sine squared, times the squared scale"),
         Let(sin_name, 2 * sigma * Root(square) / size(below)),
         *(_turned(problem, equation, angle, amplitude, (cos_name, sin_name)) if turned else ()),
     ]
-    determinant = StepDeterminant(
-        angle,
-        amplitude.determinant,
-        amplitude.determinant_scale,
-        (length, right),
-        beside=None if leg is None else leg[:2],
-        factors=(less_cos, plus_cos),
-        swing=Swing(
-            cos_name,
-            sin_name,
-            amplitude.cos_unit,
-            amplitude.sin_unit,
-            is_coarse=equation.is_radius or (equation.column is not None and not is_fine),
-            terms=terms,
-        ),
-    )
+    determinant = StepDeterminant(angle, amplitude.determinant, amplitude.determinant_scale)
     return Binding(
         "trigonometric",
         (angle,),
@@ -153,10 +129,15 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
 
 
 def _cosine(
-    angle: sp.Symbol, amplitude: Amplitude, name: sp.Symbol, value: sp.Expr, factors: tuple[sp.Expr, sp.Expr]
+    angle: sp.Symbol,
+    amplitude: Amplitude,
+    name: sp.Symbol,
+    value: sp.Expr,
+    factors: tuple[sp.Expr, sp.Expr],
+    holds: sp.Basic,
 ) -> tuple[Statement, ...]:
     """The cosine of the swing, and the condition that it exists. Near the place where the arm vanishes, rounding of the
-    equation may move the cosine beyond one: there it is set to one.
+    equation may move the cosine beyond one: there it is set to one. holds: the condition that the other leg exists.
     """
     told = sp.Mul(*factors) if amplitude.told is None else amplitude.told
     known = (*amplitude.naming.lets, *(s for s in amplitude.guard if isinstance(s, Let)))
@@ -167,7 +148,7 @@ def _cosine(
     ratio, size = real(f"ratio_of_{angle.name}"), amplitude.determinant_scale
     near = sp.Le(sp.Abs(ratio), 1 + BOUNDARY / 2 * (1 + size / amplitude.length))
     vanishes = sp.Le(sp.Abs(amplitude.left), FREE_ANGLE * size)
-    is_met = sp.Or(sp.And(amplitude.aimable, near), sp.And(sp.Not(amplitude.aimable), vanishes))
+    is_met = sp.Or(sp.And(amplitude.aimable, near, holds), sp.And(sp.Not(amplitude.aimable), vanishes))
     within = Select(sp.Gt(ratio, 1), sp.Integer(1), Select(sp.Lt(ratio, -1), sp.Integer(-1), ratio))
     return Let(ratio, value), Require(is_met, Status.UNREACHABLE, reason=reason), Let(name, within)
 

@@ -1,0 +1,7 @@
+"""Where a closed form has lost digits, steps on the closure meet the pose.
+
+Like `kinematics`, it may import the folders from `ir` to `optimize`.
+
+closure_steps: the program that meets a pose by steps of damped least squares
+doubts: refusals that lost digits may explain, and the branch that then takes these steps
+"""

@@ -1,0 +1,105 @@
+"""Lost digits: a closed form may refuse a pose that the machine has; then steps on the closure meet it.
+
+A two-root step near its fold, and a step whose conditioning nearly vanishes, know their angle to a few digits. If a
+later step refuses there, this is not final: the branch calls the program of `closure_steps`. Where no earlier step is
+near its singularity the refusal is final, and the branch does nothing more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.ir.constants import BOUNDARY, DOUBTFUL
+from derive.ir.passes import depending_on, normalise
+from derive.ir.primitives import Select
+from derive.ir.program import Call, Let, Program, Require, Statement, Status, binds, reads
+from derive.ir.symbols import Flag, cosine, flag, names_in, real, sine
+from derive.kinematics.lost_digits.closure_steps import (
+    GOAL,
+    LOST,
+    MET,
+    Machine,
+    given_name,
+    meet_program,
+    started,
+    varying,
+)
+
+_EXACTLY = {1 + BOUNDARY / 2: sp.Integer(1), BOUNDARY / 2: sp.Integer(0)}
+"""A bound without what it allows for rounding."""
+
+
+def with_doubts(machine: Machine, statements: Sequence[Statement]) -> tuple[Statement, ...]:
+    """The derivation with every refusal put off that lost digits of earlier steps may explain."""
+    found: list[Statement] = []
+    for place, s in enumerate(statements):
+        may_refuse = machine.has_steps and isinstance(s, Require) and s.otherwise is Status.UNREACHABLE
+        doubts = _doubts(machine, statements, place) if may_refuse else []
+        if isinstance(s, Require) and doubts:
+            within, lost = flag(f"within_{place}"), flag(f"{LOST}{place}")
+            found.append(Let(within, s.condition.xreplace(_EXACTLY)))
+            found.append(Let(lost, sp.And(sp.Not(within), sp.Or(*doubts))))
+            found.append(replace(s, condition=sp.Or(s.condition, lost)))
+        else:
+            found.append(s)
+    return tuple(found)
+
+
+def _doubts(machine: Machine, statements: Sequence[Statement], place: int) -> list[sp.Basic]:
+    """The conditions under which an earlier step, on which a refusal depends, has lost digits of its angle."""
+    assignments, conditionings = machine.assignments, machine.inverse.derivation.conditionings
+    before, read = statements[:place], reads(statements[place])
+    unbound = {name for s in statements[place:] for name in binds(s)}
+    signs = {a.determinant.sigma: a.orientation * a.factor for a in assignments}
+    roots = [(a.factor, a.determinant, a.determinant.legs) for a in assignments]
+    steps = [({s}, (d.value if legs is None else legs.root).xreplace(signs), d.scale) for s, d, legs in roots]
+    steps += [({cosine(c.angle), sine(c.angle)}, c.value, c.scale) for c in conditionings]
+    return [
+        sp.Le(sp.Abs(value), DOUBTFUL * scale)
+        for names, value, scale in steps
+        if read & {*names, *depending_on(before, names)} and not names_in(value) & unbound
+    ]
+
+
+def meeting(machine: Machine, branch: Program) -> Program:
+    """The program of a branch, with steps on the closure before a doubtful refusal; as it is where it has none."""
+    flags = [s.name for s in branch.lets() if isinstance(s.name, Flag) and s.name.name.startswith(LOST)]
+    if not flags:
+        return branch
+    joints = machine.mechanism.joints
+    meet = meet_program(machine, branch)
+    own = {started(j): o.value for j, o in zip(joints, branch.outputs, strict=True)}
+    given = {goal: name for name, goal in GOAL.items()} | own
+    given |= {given_name(name): name for name in varying(machine, branch)}
+    arguments = tuple((n, given[n]) for n in meet.inputs if n in given)
+    names = (MET, *(real(f"found_{j.key}") for j in joints))
+    note = "digits were lost: the pose is met by steps on the closure"
+    call = Call(meet, arguments, names, note, sp.Or(*flags))
+    refusals: list[Statement] = []
+    for s in branch.requires():
+        own_flags = [f for f in flags if f in names_in(s.condition)]
+        refusals += [replace(s, condition=s.condition.xreplace({f: MET})) for f in own_flags]
+    outputs = [replace(o, value=Select(MET, name, o.value)) for o, name in zip(branch.outputs, names[1:], strict=True)]
+    return normalise(branch.name, (*branch.body, call, *refusals), outputs)
+
+
+def without_meeting(program: Program) -> Program:
+    """The program without steps on the closure: in place of a doubtful refusal it ends with the status OK and without
+    an answer.
+    """
+    call = next((s for s in program.body if isinstance(s, Call) and s.is_rare), None)
+    if call is None:
+        return program
+    flags = names_in(call.wanted)
+    body: list[Statement] = []
+    for s in program.body[: program.body.index(call)]:
+        own = [f for f in flags if isinstance(s, Require) and f in names_in(s.condition)]
+        if isinstance(s, Require) and own:
+            body.append(Require(sp.Not(own[0]), Status.OK, "digits may be lost"))
+            s = replace(s, condition=s.condition.xreplace({own[0]: sp.false}))
+        body.append(s)
+    own_values = {o: o.value.args[2] for o in program.outputs if isinstance(o.value, Select)}
+    return normalise(program.name, body, [replace(o, value=own_values.get(o, o.value)) for o in program.outputs])

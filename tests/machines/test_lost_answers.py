@@ -1,0 +1,122 @@
+"""Near several right angles at once no pose of a machine is refused on its branch, whatever the reference is.
+
+There several steps of a closed form lose digits at once: a root near zero has half of them, and a nearly free angle may
+have none. A later step would then refuse poses that the machine has: of the arm whose parallel axes come last, every
+twentieth.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import softkin
+from softkin import Frame, Status
+
+from derive.emit.c import package as in_c
+from derive.emit.javascript import package as in_javascript
+from tests.c.machine import ask as ask_c
+from tests.c.programs import compiled as compiled_c
+from tests.javascript.modules import written
+from tests.javascript.node import ask as ask_javascript
+from tests.machines.lost_answers import KINDS, REFERENCES, Sized, references, sized
+from tests.machines.made import Array, made
+from tests.machines.parallel_machines import LAST
+from tests.mechanisms import kinematics_of
+from tests.text.controller import OK
+
+WITHIN = 3e-11
+"""Of what is missed: an angle is free below 1e-11 of its scale, and two may be, each with a chord of 2."""
+EVERY = pytest.mark.parametrize("name", KINDS)
+
+
+def lost(machine: Sized, count: int, seed: int) -> list[tuple[str, str, list[float]]]:
+    """The poses that are refused, or met with an error that is more than rounding."""
+    rng = np.random.default_rng(seed)
+    axes = machine.axes(count, rng)
+    positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
+    found = []
+    for word in REFERENCES:
+        near = references(word, axes, rng)
+        answers, statuses = machine.robot.inverse_batch(positions, rotations, configurations, near)
+        answered = statuses == Status.OK
+        far = machine.missed(axes[answered], answers[answered]) > WITHIN
+        rows = [*np.flatnonzero(~answered), *np.flatnonzero(answered)[far]]
+        found += [(machine.label, word, axes[row].tolist()) for row in rows]
+    return found
+
+
+@EVERY
+def test_no_pose_is_lost(name: str) -> None:
+    """As a batch."""
+    assert [pose for machine in sized(KINDS[name]) for pose in lost(machine, 800, 31)] == []
+
+
+@pytest.mark.slow
+@EVERY
+def test_no_pose_of_many_is_lost(name: str) -> None:
+    """The same for many poses."""
+    assert [pose for machine in sized(KINDS[name]) for pose in lost(machine, 8000, 32)] == []
+
+
+@EVERY
+def test_no_pose_is_lost_one_by_one(name: str) -> None:
+    """On plain numbers: on the branch, and among all solutions."""
+    rng = np.random.default_rng(33)
+    for machine in sized(KINDS[name]):
+        for axes in machine.axes(60, rng).tolist():
+            frame, configuration = machine.robot.forward(axes)
+            for word in REFERENCES:
+                near = references(word, np.array([axes]), rng)[0].tolist()
+                answer = machine.robot.inverse(frame, configuration, near)
+                assert machine.missed(np.array([axes]), np.array([answer])).max() <= WITHIN
+                assert any(s.axes is not None for s in machine.robot.inverse_all(frame, near))
+
+
+def asked(count: int) -> tuple[Sized, list[tuple[list[float], Frame, tuple[int, ...], list[float]]]]:
+    """Poses of the arm whose parallel axes come last: axes, frame, configuration, reference."""
+    rng, machine = np.random.default_rng(34), next(sized(KINDS["three parallel axes last"]))
+    axes = machine.axes(count, rng)
+    near = [references(REFERENCES[k % 3], axes[k : k + 1], rng)[0].tolist() for k in range(len(axes))]
+    rows = [(row, *machine.robot.forward(row), r) for row, r in zip(axes.tolist(), near, strict=True)]
+    return machine, rows
+
+
+def is_met(machine: Sized, axes: list[float], answer: Array) -> bool:
+    return bool(machine.missed(np.array([axes]), np.array([answer])).max() <= WITHIN)
+
+
+def test_the_block_loses_no_pose() -> None:
+    """In executed Structured Text."""
+    machine, rows = asked(90)
+    controller = made(LAST).controller()
+    assert controller.initialise(machine.robot.parameters) == OK
+    for axes, frame, configuration, near in rows:
+        status, answer = controller.inverse(frame.position, frame.rotation, configuration, near)
+        assert status == OK, axes
+        assert is_met(machine, axes, answer[: len(axes)])
+
+
+@pytest.mark.parametrize("language", ["c", "javascript"])
+def test_other_languages_lose_no_pose(language: str) -> None:
+    machine, rows = asked(600)
+    poses = [{"position": list(f.position), "rotation": [list(r) for r in f.rotation]} for _, f, _, _ in rows]
+    calls = [["inverse", pose, list(row[2]), row[3]] for pose, row in zip(poses, rows, strict=True)]
+    sent = [{"parameters": dict(machine.robot.parameters), "calls": calls}]
+    kinematics = kinematics_of(made(LAST).mechanism)
+    if language == "c":
+        found = ask_c(compiled_c(in_c.part(kinematics)), sent)[0]["found"]
+    else:
+        found = ask_javascript(written(in_javascript.part(kinematics)), sent)["answers"][0]["found"]
+    for row, answer in zip(rows, found, strict=True):
+        assert answer["status"] == 0, row[0]
+        assert is_met(machine, row[0], answer["axes"])
+
+
+def test_what_the_machine_does_not_reach_stays_refused() -> None:
+    """Poses beyond the reach, next to where the branches meet and the wrist is free."""
+    for machine in sized(KINDS["three parallel axes first"]):
+        axes = machine.axes(100, np.random.default_rng(35))
+        positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
+        beyond = positions + np.array([0.0, 0.0, 2.5 * machine.reach])
+        statuses = machine.robot.inverse_batch(beyond, rotations, configurations, axes)[1]
+        assert (statuses == softkin.Status.UNREACHABLE).all()
