@@ -45,7 +45,6 @@ def with_joint(**changes: object) -> Mechanism:
 
 COSINE = Constraint(sp.Gt(real("nowhere"), 0), "a condition")
 SHORTER = Constraint(sp.Lt(L1.symbol, L2.symbol), "the first link is the shorter one")
-MOVED = replace(PLANAR.rods[0], plate=tuple(p + PLANAR.joints[0] for p in PLANAR.rods[0].plate))
 DESCRIPTIONS = {
     "no joints": (arm(joints=(), branches=()), "the mechanism has no joints"),
     "a joint in small letters": (
