@@ -116,14 +116,6 @@ def work_of(entries: Sequence[Entry], cache: Cache | None, foundation: str) -> W
     return Work(tuple(entries), keys, tuple(None if data is None else from_plain(data) for data in found))
 
 
-def derive_all(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES) -> Iterator[Built]:
-    """Every mechanism, in the order of the catalogue; raises `GenerationError` at the first that cannot be derived."""
-    for result in attempts(work, profile, wanted):
-        if isinstance(result, Failure):
-            raise result.error
-        yield result
-
-
 def attempts(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES) -> Iterator[Built | Failure]:
     """What came of every mechanism, in the order of the catalogue. wanted: the languages that are written of it."""
     if not work.missing:

@@ -66,11 +66,6 @@ class Parameter(Quantity):
         """Its name in the description."""
         return self.given or self.name
 
-    @property
-    def has_vendor_range(self) -> bool:
-        """Whether the upper end is given by the vendor, and is not the largest input that any parameter may have."""
-        return self.high < 1e9
-
 
 def _value_of(name: str) -> sp.Symbol:
     """The symbol of a value of either sign."""

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from derive.description.mechanism import Branch, Joint, Limited, Mechanism, Parameter
-from derive.ir.program import Call, Program, shared
+from derive.ir.program import Program, shared
 from derive.kinematics.reference_cases import SelfTest
 
 
@@ -174,11 +174,6 @@ class Kinematics:
     def shared(self) -> tuple[Program, ...]:
         """The programs that several programs call, each before its callers."""
         return shared(self.programs)
-
-    @property
-    def branch_calls(self) -> bool:
-        """Whether the inverse calls programs that others share."""
-        return any(isinstance(s, Call) for s in self.branch.body)
 
     @property
     def programs(self) -> tuple[Program, ...]:

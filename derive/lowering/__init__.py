@@ -2,7 +2,7 @@
 
 It may import the folders from `ir` to `solver`.
 
-coefficients: the coefficients of one value are added, and constants are multiplied into sums
+coefficients: the coefficients of one value in a sum are added
 cutting: a sum that takes many lines to write is a sum of shorter ones
 decided: a condition that a refusal has decided is not tested again
 draft: a program as values in the graph of `ir`, with their names and places; the readers of each value

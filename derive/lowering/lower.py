@@ -9,7 +9,7 @@ from derive.ir.graph import Node, reached
 from derive.ir.passes import calling
 from derive.ir.program import Let, Program
 from derive.ir.symbols import Sign
-from derive.lowering.coefficients import collected, distributed
+from derive.lowering.coefficients import collected
 from derive.lowering.cutting import cut
 from derive.lowering.draft import Draft, Effect, Reader, changed, values_of
 from derive.lowering.factoring import Dividing, Factoring
@@ -68,7 +68,7 @@ def _shorter(draft: Draft, gathering: Gathering) -> Draft:
     draft = changed(draft, gathering)
     draft = changed(draft, Factoring(graph, draft.names, constant))
     draft = changed(draft, gathering)
-    draft = distributed(collected(draft, graph, constant), graph, constant)
+    draft = collected(draft, graph, constant)
     draft = opened(draft, graph, constant)
     return changed(draft, Sharing(graph, _nodes(draft), constant))
 

@@ -24,11 +24,6 @@ def shared_texts() -> Mapping[str, str]:
     return {path.name: path.read_text(encoding="utf-8") for path in sorted((FOLDER / SHARED).glob("*.st"))}
 
 
-def unit_paths() -> list[Path]:
-    """The files of all units."""
-    return [path for path in sorted(FOLDER.glob("*/*.st")) if path.parent.name not in NO_UNITS]
-
-
 def file_of(mechanism: Mechanism) -> str:
     """The file of a mechanism's unit."""
     return f"{mechanism.block_name}.st"

@@ -19,7 +19,6 @@ Array = NDArray[np.float64]
 POSES = 2
 TURNS = range(-2, 3)
 NUMBERS = (-3, -2, -1, 1, 2, 3)
-WEIGHTS = (None, "weights")
 TIE = 1e-6
 
 

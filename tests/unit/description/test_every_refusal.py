@@ -21,22 +21,11 @@ from derive.kinematics.kinematics import Kinematics
 from derive.mechanism import assembly, distance, length, linear
 from derive.witness import Disagreement, witness
 from derive.witness.terms import term
-from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, invention
+from tests.unit.kinematics.inventions import A1, A2, L1, L2
+from tests.unit.kinematics.inventions import planar_arm as arm
 
 PLANAR, HEXAPOD = (load(MECHANISMS / f"{n}.py") for n in ("softkin_planar_3rrr", "kin_hexapod"))
 SCISSOR = load(MECHANISMS / "kin_p2x_type2.py")
-ARM = {
-    "parameters": (L1, L2),
-    "joints": (A1, A2),
-    "chain": Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2),
-    "task": Task("xy"),
-    "branches": (ELBOW,),
-}
-
-
-def arm(**changes: object) -> Mechanism:
-    """The arm with two links in a plane, changed."""
-    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **{**ARM, **changes}).mechanism
 
 
 def with_joint(**changes: object) -> Mechanism:
@@ -45,7 +34,6 @@ def with_joint(**changes: object) -> Mechanism:
 
 COSINE = Constraint(sp.Gt(real("nowhere"), 0), "a condition")
 SHORTER = Constraint(sp.Lt(L1.symbol, L2.symbol), "the first link is the shorter one")
-MOVED = replace(PLANAR.rods[0], plate=tuple(p + PLANAR.joints[0] for p in PLANAR.rods[0].plate))
 DESCRIPTIONS = {
     "no joints": (arm(joints=(), branches=()), "the mechanism has no joints"),
     "a joint in small letters": (

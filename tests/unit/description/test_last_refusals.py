@@ -16,26 +16,14 @@ from derive.kinematics.build import build
 from derive.kinematics.no_pose import why_no_pose
 from derive.mechanism import length, linear, rotary
 from derive.vectors import vector
-from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, invention
+from tests.unit.kinematics.inventions import A1, L1
+from tests.unit.kinematics.inventions import planar_arm as described
 
 S1, S2, S3 = (linear(name, "slide") for name in ("S1", "S2", "S3"))
 RADIUS = linear("R", "radius", domain=(0.0, 50.0))
 ROD, WIDE = length("rod_length", "rod", nominal=120.0), length("base", "base", nominal=1800.0)
 TURNED = rotary("C", "turn")
 P = vector(X, Y)
-
-
-def described(**changes: object) -> Mechanism:
-    """The arm with two links in a plane, changed."""
-    stated = {
-        "parameters": (L1, L2),
-        "joints": (A1, A2),
-        "chain": Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2),
-        "task": Task("xy"),
-        "branches": (ELBOW,),
-        "offset_interface": False,
-    }
-    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **{**stated, **changes}).mechanism
 
 
 def loop(**stated: object) -> Mechanism:

@@ -30,6 +30,7 @@ from derive.kinematics.build import build
 from derive.solver.solve import Unsolved
 from tests.mechanisms import named
 from tests.unit.kinematics.inventions import A1, A2, A3, A4, ELBOW, L1, L2, L3, P1, P2, P3, invention, links
+from tests.unit.kinematics.inventions import planar_arm as arm
 
 FOLLOWED = Turning.ABOUT_Z
 FLANGE = flag("flange_down", "flange looks down")
@@ -38,12 +39,6 @@ ARM = Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2)
 
 def described(**description: object) -> Mechanism:
     return invention(lambda p, q: (p["x"], p["x"], p["x"]), **description).mechanism
-
-
-def arm(**changes: object) -> Mechanism:
-    """The arm with two links in a plane, changed."""
-    sound = {"parameters": (L1, L2), "joints": (A1, A2), "chain": ARM, "task": Task("xy"), "branches": (ELBOW,)}
-    return described(**{**sound, **changes})
 
 
 def with_parameter(name: str, kind: Callable[..., Parameter] = length) -> Mechanism:

@@ -62,6 +62,19 @@ def invention(hand: Hand, **description: object) -> Invention:
     return Invention(Mechanism(**{**details, **description}), hand)  # type: ignore[arg-type]
 
 
+def planar_arm(**changes: object) -> Mechanism:
+    """The arm with two links in a plane, changed; nobody compares it with forward kinematics by hand."""
+    stated = {
+        "parameters": (L1, L2),
+        "joints": (A1, A2),
+        "chain": Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2),
+        "task": Task("xy"),
+        "branches": (ELBOW,),
+        "offset_interface": False,
+    }
+    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **{**stated, **changes}).mechanism
+
+
 def e(angle: Array) -> Array:
     """The unit vector of an angle, as a complex number."""
     return np.exp(1j * angle)

@@ -13,11 +13,10 @@ import sympy as sp
 from sympy import cos
 
 from derive.description.catalogue import MECHANISMS, load
-from derive.description.mechanism import DescriptionError, Mechanism, Task, X, Y
+from derive.description.mechanism import DescriptionError, Mechanism, X, Y
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
 from derive.faults import GenerationError
-from derive.frames import Rz, Tx
 from derive.ir.primitives import Atan2
 from derive.ir.program import Output
 from derive.ir.symbols import real
@@ -29,22 +28,13 @@ from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.scan import derivations, margins
 from derive.live import _refuse_another_runtime
 from derive.report import self_test
-from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, invention
+from tests.unit.kinematics.inventions import A1, L1, L2, planar_arm
 
 SEARCHED = MECHANISMS / "kin_ac6_rzryryrxryrz_j6offset.py"
 
 
 def arm(**changes: object) -> Mechanism:
-    """The arm with two links in a plane."""
-    stated = {
-        "parameters": (L1, L2),
-        "joints": (A1, A2),
-        "chain": Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2),
-        "task": Task("xy"),
-        "branches": (ELBOW,),
-        "offset_interface": False,
-    }
-    return validate(invention(lambda p, q: (p["x"], p["x"], p["x"]), **{**stated, **changes}).mechanism)
+    return validate(planar_arm(**changes))
 
 
 @pytest.fixture(scope="module")
