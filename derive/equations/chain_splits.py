@@ -117,9 +117,21 @@ def _behind_the_wrist(
     chain: Chain, point: sp.Matrix, commanded: Commanded, unknowns: Unknowns
 ) -> tuple[tuple[Factor, ...], Target]:
     """The chain up to the wrist centre: the point that the commanded pose determines and the fewest joints move."""
-    factors = chain.factors if len(commanded.columns) == 3 else _with_shifts_in_front(chain.factors, commanded.columns)
+    wordings = [chain.factors]
+    if len(commanded.columns) < 3:
+        wordings.append(_with_shifts_in_front(chain.factors, commanded.columns))
+    for factors in wordings:
+        best, target = _cut(factors, point, commanded, unknowns)
+        if best != factors:
+            return best, target
+    return chain.factors, Target(tuple(point))
+
+
+def _cut(
+    factors: tuple[Factor, ...], point: sp.Matrix, commanded: Commanded, unknowns: Unknowns
+) -> tuple[tuple[Factor, ...], Target]:
     best, target = factors, Target(tuple(point))
-    fewest = len(_movers(chain, unknowns))
+    fewest = len(_movers(Chain(factors), unknowns))
     for cut in reversed([i for i, f in enumerate(factors) if f.motion is Motion.TURN]):
         rest = pose_of(Chain(factors[cut:]))
         seen = [unknowns.form(v) for v in -(rest.rotation.T * rest.position)]

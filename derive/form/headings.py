@@ -14,7 +14,7 @@ from itertools import permutations
 import numpy as np
 import sympy as sp
 
-from derive.form.lines import SAME, Array, about
+from derive.form.lines import SAME, Array, about, by_kind
 
 Turns = tuple[tuple[int, float], ...]
 """Fixed turns one after the other: coordinate axis and angle."""
@@ -26,16 +26,16 @@ def along_link(link: Array, lengths: Sequence[sp.Expr], letter: int) -> Turns:
 
     link: 3 x lengths. A link in numbers is oblique if its length has fewer digits than its coordinates.
     """
-    across = link[[(letter + 1) % 3, (letter + 2) % 3]]
-    numbers = np.array([float(a) if a.is_number else 0.0 for a in lengths])
-    ways = [v for v in across[:, numbers == 0.0].T if np.any(np.abs(v) > SAME)]
-    added = across @ numbers
-    if np.any(np.abs(added) > SAME * (numbers.sum() or 1.0)):
-        if not ways and _digits(float(np.hypot(*added))) >= max(map(_digits, added)):
-            return ()
-        ways.append(added / np.hypot(*added))
-    if not ways or any(abs(v @ (ways[0][1], -ways[0][0])) > SAME for v in ways):
+    across, kinds = by_kind(link[[(letter + 1) % 3, (letter + 2) % 3]], lengths)
+    sizes = np.hypot(*across)
+    is_there = sizes > SAME * max(1.0, sizes.max(initial=0.0))
+    ways = (across[:, is_there] / sizes[is_there]).T
+    if len(ways) == 0 or any(abs(v @ (ways[0][1], -ways[0][0])) > SAME for v in ways):
         return ()
+    if len(ways) == 1 and kinds[int(np.argmax(is_there))] == 1:
+        numbers = across[:, is_there][:, 0]
+        if _digits(float(np.hypot(*numbers))) >= max(map(_digits, numbers)):
+            return ()
     angle = _wrapped(float(np.arctan2(ways[0][1], ways[0][0])), np.pi / 2)
     turned = min((angle, angle - np.copysign(np.pi / 2, angle)), key=lambda a: min(_digits(a), _digits(np.degrees(a))))
     return ((letter, turned),) if abs(angle) > SAME else ()

@@ -25,9 +25,8 @@ SAME = 1e-9
 _NEARLY = 1e-12
 """A share that differs less than this from a simple fraction is that fraction."""
 _SIMPLE = 1000
-_DIGITS = 13
-"""The decimal digits of a share, and of a sum of numbers relative to its terms, in oblique frames: further ones are
-rounding."""
+_DIGITS = 12
+"""The decimal digits of a sum in oblique frames, relative to its terms: further ones are rounding."""
 
 
 @dataclass(frozen=True)
@@ -52,22 +51,39 @@ class Arm:
     """3 x lengths."""
 
     def amount(self, shares: Array) -> sp.Expr:
-        """The sum of shares of the lengths."""
-        known = [(_simple(share), length) for share, length in zip(shares, self.lengths, strict=True)]
-        total = sp.Add(*[share * length for share, length in known if length.is_number])
-        if not all(share.is_Integer for share, length in known if length.is_number):
-            terms = [
-                share * float(length) for share, length in zip(shares, self.lengths, strict=True) if length.is_number
-            ]
-            digits = _DIGITS - 1 - int(np.floor(np.log10(np.abs(terms).sum())))
-            total = sp.Rational(str(round(float(np.sum(terms)), digits)))
-        return sp.Add(total, *[share * length for share, length in known if not length.is_number])
+        """The sum of shares of the lengths: exact, if each is taken whole."""
+        total = sp.Integer(0)
+        for kind in _kinds(self.lengths):
+            own = [(s, a / kind) for s, a in zip(shares, self.lengths, strict=True) if _kind(a) == kind]
+            value = sp.Add(*[round(s) * a for s, a in own])
+            if any(abs(s - round(s)) > _NEARLY for s, _ in own):
+                terms = [s * float(a) for s, a in own]
+                value = _without_rounding(float(np.sum(terms)), float(np.abs(terms).sum()))
+            total += value * kind
+        return sp.expand(total)
 
 
-def _simple(share: float) -> sp.Expr:
-    """The share as a number without rounding."""
-    near = sp.Rational(share).limit_denominator(_SIMPLE)
-    return near if abs(share - float(near)) < _NEARLY else sp.Rational(f"{share:.{_DIGITS}g}")
+def _kind(length: sp.Expr) -> sp.Expr:
+    """The length without the number in front of it; 1 for a number."""
+    return length.as_coeff_Mul()[1]
+
+
+def _kinds(lengths: Sequence[sp.Expr]) -> list[sp.Expr]:
+    return list(dict.fromkeys(map(_kind, lengths)))
+
+
+def by_kind(shares: Array, lengths: Sequence[sp.Expr]) -> tuple[Array, list[sp.Expr]]:
+    """Shares (entries x lengths) of the kinds of lengths, and these: what multiplies a slide, a parameter or 1."""
+    kinds = _kinds(lengths)
+    sizes = [[float(a / kind) if _kind(a) == kind else 0.0 for kind in kinds] for a in lengths]
+    return shares @ np.array(sizes).reshape(len(lengths), len(kinds)), kinds
+
+
+def _without_rounding(value: float, size: float) -> sp.Expr:
+    near = sp.Rational(value).limit_denominator(_SIMPLE)
+    if abs(value - float(near)) < _NEARLY * size:
+        return near
+    return sp.Rational(str(round(value, _DIGITS - int(np.floor(np.log10(size))))))
 
 
 def arm_of(factors: Sequence[Factor]) -> Arm:
@@ -88,16 +104,16 @@ def arm_of(factors: Sequence[Factor]) -> Arm:
 
 
 def _parts(amount: sp.Expr) -> dict[sp.Expr, float]:
-    """A length as a sum of others: their shares. A rational number is a length of its own."""
+    """A length as a sum of others: their shares. A term with a rational number in front is a length of its own."""
     found: dict[sp.Expr, float] = {}
-    for term in sp.Add.make_args(sp.expand(amount)):
-        factors = sp.Mul.make_args(without_decimals(term))
-        numbers = [f for f in factors if f.is_number and f.as_base_exp()[0] != sp.pi]  # a turn's length keeps its pi
-        share, rest = sp.Mul(*numbers), sp.Mul(*[f for f in factors if f not in numbers])
-        if rest == 1 and share.is_Rational:
-            share, rest = sp.sign(share), abs(share)
-        found[rest] = found.get(rest, 0.0) + float(share)
-    return {length: share for length, share in found.items() if share != 0.0}
+    for term in sp.Add.make_args(sp.expand(without_decimals(amount))):
+        factors = sp.Mul.make_args(term)
+        odd = [f for f in factors if f.is_number and not f.is_Rational and f.as_base_exp()[0] != sp.pi]  # cos(0.3)
+        length = sp.Mul(*[f for f in factors if f not in odd])
+        sign = -1.0 if length.could_extract_minus_sign() else 1.0
+        length *= int(sign)
+        found[length] = found.get(length, 0.0) + sign * float(sp.Mul(*odd))
+    return {length: share for length, share in found.items() if length != 0}
 
 
 def _add(lines: list[Line], line: Line, lengths: Sequence[sp.Expr]) -> None:
@@ -117,11 +133,10 @@ def _add(lines: list[Line], line: Line, lengths: Sequence[sp.Expr]) -> None:
 
 def _is_same(one: Line, other: Line, lengths: Sequence[sp.Expr]) -> bool:
     """Whether two lines are one, in either sense; numbers among their lengths are added up."""
-    numbers = np.array([float(a) if a.is_number else 0.0 for a in lengths])
-    across = np.cross(one.direction, (other.point - one.point).T)
-    added = numbers @ across / (numbers.sum() or 1.0)
-    apart = np.vstack([np.cross(one.direction, other.direction), across[numbers == 0.0], added])
-    return bool(np.all(np.abs(apart) < SAME))
+    across, _ = by_kind(np.cross(one.direction, (other.point - one.point).T).T, lengths)
+    size = max(1.0, float(np.abs(by_kind(np.abs(other.point), lengths)[0]).max(initial=0.0)))
+    turned = np.cross(one.direction, other.direction)
+    return bool(np.all(np.abs(turned) < SAME) and np.all(np.abs(across) < SAME * size))
 
 
 def about(axis: int, angle: float) -> Array:

@@ -162,6 +162,16 @@ def test_a_machine_that_differs_has_another_form() -> None:
     assert all(formed(other, turning=ball) != formed(chain, turning=ball) for other in others)
 
 
-def test_lengths_of_a_right_angled_machine_stay_exact() -> None:
-    """0.1 and 0.2 are 3/10; half of a joint is half of it."""
-    assert formed(Tx(0.1) * Ty(P1 / 2) * Tx(0.2) * Rz(A1)) == "Tx(3/10) * Ty(p1/2) * Rz(a1)"
+EXACT = {
+    "decimals add up": (Tx(0.1) * Ty(P1 / 2) * Tx(0.2) * Rz(A1), "Tx(3/10) * Ty(p1/2) * Rz(a1)"),
+    "a spindle": (Tx(P1 / 3000) * Rz(sp.pi / 2) * Tx(P1 / 7000) * Rz(A1), "Tx(p1/3000) * Ty(p1/7000) * Rz(a1 + pi/2)"),
+    "a pitch": (Rz(A1) * Tz(-A1 * LINK / (2 * sp.pi)), "Rz(a1) * Tz(-a1*link/(2*pi))"),
+    "a drive in decimals": (Tx(0.123456789012345 * P1) * Rz(A1), "Tx(24691357802469*p1/200000000000000) * Rz(a1)"),
+}
+
+
+@pytest.mark.parametrize("kind", EXACT)
+def test_lengths_of_a_right_angled_machine_stay_exact(kind: str) -> None:
+    """Whatever their digits: no length is rounded, or becomes a decimal."""
+    chain, words = EXACT[kind]
+    assert formed(chain) == words
