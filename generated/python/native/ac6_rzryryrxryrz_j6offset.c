@@ -437,20 +437,21 @@ static softkin_status find_finish_root(const void *machine, const double *given,
   double q6 = softkin_angle_of(sin_q6_tried, cos_q6_tried);
   int passes = 0;
   double cos_q1, q2_plus_q3, cos_q23, r11_at_q23, sin_q1, sin_q23, r13_at_q23, sin_q4, cos_q4, r13_at_q4,
-      sin_q5, cos_q5, r13_at_q5, x_at_q2, sin_q2, r13_at_q2, x_at_q3, x_at_q4, r11_at_q5, x_at_q6, x,
-      error_1, r21_at_q23, r23_at_q23, r23_at_q4, r23_at_q5, y_at_q2, r23_at_q2, y_at_q3, y_at_q4, r21_at_q5,
-      y_at_q6, y, error_2, r33_at_q4, r33_at_q5, cos_q2, z_at_q3, z_at_q4, r31_at_q5, z_at_q6, z, error_3,
-      r22_at_q4, sin_q6, cos_q6, r21_at_q6, r32_at_q4, r31_at_q6, r22_at_q6, r32_at_q6, error_4, r12_at_q4,
-      r11_at_q6, r12_at_q6, error_5, error_6, agreement, error, rate_1_1, rate_2_1, z_minus_d1,
-      cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4,
-      y_minus_y_at_q4, rate_1_4, rate_1_5, z_minus_z_at_q6, y_minus_y_at_q6, rate_1_6, product_1_1,
-      sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, x_minus_x_at_q4, rate_2_4, rate_2_5,
-      x_minus_x_at_q6, rate_2_6, product_1_2, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6, product_1_3,
-      rate_1_2_plus_rate_1_3, product_1_4, product_1_5, product_1_6, product_2_2, product_2_3,
-      rate_2_2_plus_rate_2_3, product_2_4, product_2_5, product_2_6, product_3_3, rate_3_2_plus_rate_3_3,
-      product_3_4, product_3_5, product_3_6, product_4_4, product_4_5, product_4_6, product_5_5, product_5_6,
-      product_6_6, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6,
-      step_q1, sum_in_step_q2, step_q2, step_q3, step_q4, step_q5, step_q6, size;
+      sin_q5, cos_q5, r13_at_q5, x_at_q2, sin_q2, r13_at_q2, x_at_q3, x_at_q4, x_at_q5, r11_at_q5, x_at_q6,
+      x, error_1, r21_at_q23, r23_at_q23, r23_at_q4, r23_at_q5, y_at_q2, r23_at_q2, y_at_q3, y_at_q4,
+      y_at_q5, r21_at_q5, y_at_q6, y, error_2, r33_at_q4, r33_at_q5, cos_q2, z_at_q3, z_at_q4, z_at_q5,
+      r31_at_q5, z_at_q6, z, error_3, r22_at_q4, sin_q6, cos_q6, r21_at_q6, r32_at_q4, r31_at_q6, r22_at_q6,
+      r32_at_q6, error_4, r12_at_q4, r11_at_q6, r12_at_q6, error_5, error_6, agreement, error, rate_1_1,
+      rate_2_1, z_minus_d1, cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3,
+      z_minus_z_at_q4, y_minus_y_at_q4, rate_1_4, z_minus_z_at_q5, y_minus_y_at_q5, rate_1_5,
+      z_minus_z_at_q6, y_minus_y_at_q6, rate_1_6, product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2,
+      rate_2_3, x_minus_x_at_q4, rate_2_4, x_minus_x_at_q5, rate_2_5, x_minus_x_at_q6, rate_2_6, product_1_2,
+      rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6, product_1_3, rate_1_2_plus_rate_1_3, product_1_4,
+      product_1_5, product_1_6, product_2_2, product_2_3, rate_2_2_plus_rate_2_3, product_2_4, product_2_5,
+      product_2_6, product_3_3, rate_3_2_plus_rate_3_3, product_3_4, product_3_5, product_3_6, product_4_4,
+      product_4_5, product_4_6, product_5_5, product_5_6, product_6_6, multiplier_1, multiplier_2,
+      multiplier_3, multiplier_4, multiplier_5, multiplier_6, step_q1, sum_in_step_q2, step_q2, step_q3,
+      step_q4, step_q5, step_q6, size;
   bool taken;
   for (int pass = 0;; pass += 1) {
     if (pass == 7) {
@@ -473,9 +474,10 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     sin_q2 = sin(q2);
     r13_at_q2 = cos_q1*sin_q2;
     x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
-    x_at_q4 = x_at_q3 + k->a3*r13_at_q23 + k->d4*r11_at_q23;
+    x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
+    x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
     r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
-    x_at_q6 = x_at_q4 + k->j6_offset_x*r11_at_q5;
+    x_at_q6 = x_at_q5 + k->j6_offset_x*r11_at_q5;
     x = x_at_q6 + k->d6*r13_at_q5;
     error_1 = (goal_x - x)*k->one_by_machine_scale;
     r21_at_q23 = cos_q23*sin_q1;
@@ -485,18 +487,20 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     y_at_q2 = k->a1*sin_q1;
     r23_at_q2 = sin_q1*sin_q2;
     y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
-    y_at_q4 = y_at_q3 + k->a3*r23_at_q23 + k->d4*r21_at_q23;
+    y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
+    y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
     r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
-    y_at_q6 = y_at_q4 + k->j6_offset_x*r21_at_q5;
+    y_at_q6 = y_at_q5 + k->j6_offset_x*r21_at_q5;
     y = y_at_q6 + k->d6*r23_at_q5;
     error_2 = (goal_y - y)*k->one_by_machine_scale;
     r33_at_q4 = cos_q23*cos_q4;
     r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5;
     cos_q2 = cos(q2);
     z_at_q3 = k->d1 + k->a2*cos_q2;
-    z_at_q4 = z_at_q3 + k->a3*cos_q23 - k->d4*sin_q23;
+    z_at_q4 = z_at_q3 + k->a3*cos_q23;
+    z_at_q5 = z_at_q4 - k->d4*sin_q23;
     r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
-    z_at_q6 = z_at_q4 + k->j6_offset_x*r31_at_q5;
+    z_at_q6 = z_at_q5 + k->j6_offset_x*r31_at_q5;
     z = z_at_q6 + k->d6*r33_at_q5;
     error_3 = (goal_z - z)*k->one_by_machine_scale;
     r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
@@ -533,7 +537,9 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     z_minus_z_at_q4 = z - z_at_q4;
     y_minus_y_at_q4 = y - y_at_q4;
     rate_1_4 = k->one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23);
-    rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4);
+    z_minus_z_at_q5 = z - z_at_q5;
+    y_minus_y_at_q5 = y - y_at_q5;
+    rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5);
     z_minus_z_at_q6 = z - z_at_q6;
     y_minus_y_at_q6 = y - y_at_q6;
     rate_1_6 = k->one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6);
@@ -544,7 +550,8 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
     x_minus_x_at_q4 = x - x_at_q4;
     rate_2_4 = -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23);
-    rate_2_5 = (r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4)*k->one_by_machine_scale;
+    x_minus_x_at_q5 = x - x_at_q5;
+    rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
     x_minus_x_at_q6 = x - x_at_q6;
     rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale;
     product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4
@@ -552,7 +559,7 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     rate_3_2 = k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
     rate_3_3 = k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
     rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
-    rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4);
+    rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
     rate_3_6 = k->one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6);
     product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5
         + rate_1_6*rate_3_6;
@@ -730,9 +737,10 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double sin_q2 = sin(q2);
   const double r13_at_q2 = cos_q1*sin_q2;
   const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
-  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23 + k->d4*r11_at_q23;
+  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
   const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
-  const double x_at_q6 = x_at_q4 + k->j6_offset_x*r11_at_q5;
+  const double x_at_q6 = x_at_q5 + k->j6_offset_x*r11_at_q5;
   const double d6_times_r13_at_q5 = k->d6*r13_at_q5;
   const double x = d6_times_r13_at_q5 + x_at_q6;
   const double r21_at_q23 = cos_q23*sin_q1;
@@ -742,9 +750,10 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double y_at_q2 = k->a1*sin_q1;
   const double r23_at_q2 = sin_q1*sin_q2;
   const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
-  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23 + k->d4*r21_at_q23;
+  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
   const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
-  const double y_at_q6 = y_at_q4 + k->j6_offset_x*r21_at_q5;
+  const double y_at_q6 = y_at_q5 + k->j6_offset_x*r21_at_q5;
   const double d6_times_r23_at_q5 = k->d6*r23_at_q5;
   const double y = d6_times_r23_at_q5 + y_at_q6;
   const double r33_at_q4 = cos_q23*cos_q4;
@@ -754,17 +763,21 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double r32_at_q4 = cos_q23*sin_q4;
   const double cos_q2 = cos(q2);
   const double z_at_q3 = k->d1 + k->a2*cos_q2;
-  const double z_at_q4 = z_at_q3 + k->a3*cos_q23 - k->d4*sin_q23;
+  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
+  const double z_at_q5 = z_at_q4 - k->d4*sin_q23;
   const double r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
-  const double z_at_q6 = z_at_q4 + k->j6_offset_x*r31_at_q5;
+  const double z_at_q6 = z_at_q5 + k->j6_offset_x*r31_at_q5;
   const double z = z_at_q6 + k->d6*r33_at_q5;
   const double z_minus_d1 = z - k->d1;
   const double z_minus_z_at_q3 = z - z_at_q3;
   const double z_minus_z_at_q4 = z - z_at_q4;
   const double y_minus_y_at_q4 = y - y_at_q4;
+  const double z_minus_z_at_q5 = z - z_at_q5;
+  const double y_minus_y_at_q5 = y - y_at_q5;
   const double z_minus_z_at_q6 = z - z_at_q6;
   const double y_minus_y_at_q6 = y - y_at_q6;
   const double x_minus_x_at_q4 = x - x_at_q4;
+  const double x_minus_x_at_q5 = x - x_at_q5;
   const double x_minus_x_at_q6 = x - x_at_q6;
   const double cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
   const double sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
@@ -772,17 +785,17 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   double system[6][6] = {{-k->one_by_machine_scale*y, z_minus_d1*cos_q1_times_one_by_machine_scale,
       z_minus_z_at_q3*cos_q1_times_one_by_machine_scale,
       k->one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23),
-      k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4),
+      k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5),
       k->one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6)},
       {k->one_by_machine_scale*x, z_minus_d1*sin_q1_times_one_by_machine_scale,
       z_minus_z_at_q3*sin_q1_times_one_by_machine_scale,
       -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23),
-      (r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4)*k->one_by_machine_scale,
+      (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale,
       (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale},
       {0.0, k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1),
       k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1),
       k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4),
-      k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4),
+      k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5),
       k->one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6)},
       {0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5},
       {0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5},
@@ -802,8 +815,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double wrist_y_closed = y - d6_times_r23_at_q5;
   const double sin_q3_closed = sin(q3);
   const double cos_q3_closed = cos(q3);
-  const double margin_elbow_closed = k->a3_by_effective_q3_tried*sin_q3_closed
-      + k->d4_by_effective_q3_tried*cos_q3_closed;
+  const double margin_elbow_closed = (k->a3*sin_q3_closed + k->d4*cos_q3_closed)*k->one_by_effective_q3_tried;
   double branch_shoulder, branch_wrist, branch_crossing;
   if (k->searched) {
     /* wrist centre: the last joints do not move this point */
@@ -896,9 +908,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
   const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
   /* root scan along A6 */
+  double results[7];
   const double arguments[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k->searched,
       reference_a1, reference_a2, reference_a6, sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist};
-  double results[7];
   const softkin_status status = find_root(k, arguments, results, why);
   if (status != SOFTKIN_OK) {
     return status;
@@ -1230,27 +1242,33 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5;
   const double r33_at_q4 = cos_q23*cos_q4;
   const double r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5;
-  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23 + k->d4*r11_at_q23;
+  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
   const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
-  const double x_at_q6 = x_at_q4 + k->j6_offset_x*r11_at_q5;
+  const double x_at_q6 = x_at_q5 + k->j6_offset_x*r11_at_q5;
   const double x = x_at_q6 + k->d6*r13_at_q5;
-  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23 + k->d4*r21_at_q23;
+  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
   const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
-  const double y_at_q6 = y_at_q4 + k->j6_offset_x*r21_at_q5;
+  const double y_at_q6 = y_at_q5 + k->j6_offset_x*r21_at_q5;
   const double y = y_at_q6 + k->d6*r23_at_q5;
   const double cos_q2 = cos(q2);
   const double z_at_q3 = k->d1 + k->a2*cos_q2;
-  const double z_at_q4 = z_at_q3 + k->a3*cos_q23 - k->d4*sin_q23;
+  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
+  const double z_at_q5 = z_at_q4 - k->d4*sin_q23;
   const double r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
-  const double z_at_q6 = z_at_q4 + k->j6_offset_x*r31_at_q5;
+  const double z_at_q6 = z_at_q5 + k->j6_offset_x*r31_at_q5;
   const double z = z_at_q6 + k->d6*r33_at_q5;
   const double z_minus_d1 = z - k->d1;
   const double z_minus_z_at_q3 = z - z_at_q3;
   const double z_minus_z_at_q4 = z - z_at_q4;
   const double y_minus_y_at_q4 = y - y_at_q4;
+  const double z_minus_z_at_q5 = z - z_at_q5;
+  const double y_minus_y_at_q5 = y - y_at_q5;
   const double z_minus_z_at_q6 = z - z_at_q6;
   const double y_minus_y_at_q6 = y - y_at_q6;
   const double x_minus_x_at_q4 = x - x_at_q4;
+  const double x_minus_x_at_q5 = x - x_at_q5;
   const double x_minus_x_at_q6 = x - x_at_q6;
   const double cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
   const double sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
@@ -1258,17 +1276,17 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   double system[6][6] = {{-k->one_by_machine_scale*y, z_minus_d1*cos_q1_times_one_by_machine_scale,
       z_minus_z_at_q3*cos_q1_times_one_by_machine_scale,
       k->one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23),
-      k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4),
+      k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5),
       k->one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6)},
       {k->one_by_machine_scale*x, z_minus_d1*sin_q1_times_one_by_machine_scale,
       z_minus_z_at_q3*sin_q1_times_one_by_machine_scale,
       -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23),
-      (r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4)*k->one_by_machine_scale,
+      (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale,
       (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale},
       {0.0, k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1),
       k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1),
       k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4),
-      k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4),
+      k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5),
       k->one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6)},
       {0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5},
       {0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5},
@@ -1310,9 +1328,10 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double sin_q2 = sin(q2);
   const double r23_at_q2 = sin_q1*sin_q2;
   const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
-  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23 + k->d4*r21_at_q23;
+  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
   const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
-  const double y_at_q6 = y_at_q4 + k->j6_offset_x*r21_at_q5;
+  const double y_at_q6 = y_at_q5 + k->j6_offset_x*r21_at_q5;
   const double y = y_at_q6 + k->d6*r23_at_q5;
   const double r33_at_q4 = cos_q23*cos_q4;
   const double r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5;
@@ -1325,42 +1344,47 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double x_at_q2 = k->a1*cos_q1;
   const double r13_at_q2 = cos_q1*sin_q2;
   const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
-  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23 + k->d4*r11_at_q23;
+  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
   const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
-  const double x_at_q6 = x_at_q4 + k->j6_offset_x*r11_at_q5;
+  const double x_at_q6 = x_at_q5 + k->j6_offset_x*r11_at_q5;
   const double x = x_at_q6 + k->d6*r13_at_q5;
   const double r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
   const double cos_q2 = cos(q2);
   const double z_at_q3 = k->d1 + k->a2*cos_q2;
-  const double z_at_q4 = z_at_q3 + k->a3*cos_q23 - k->d4*sin_q23;
+  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
+  const double z_at_q5 = z_at_q4 - k->d4*sin_q23;
   const double r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
-  const double z_at_q6 = z_at_q4 + k->j6_offset_x*r31_at_q5;
+  const double z_at_q6 = z_at_q5 + k->j6_offset_x*r31_at_q5;
   const double z = z_at_q6 + k->d6*r33_at_q5;
   const double z_minus_d1 = z - k->d1;
   const double z_minus_z_at_q3 = z - z_at_q3;
   const double z_minus_z_at_q4 = z - z_at_q4;
   const double y_minus_y_at_q4 = y - y_at_q4;
+  const double z_minus_z_at_q5 = z - z_at_q5;
+  const double y_minus_y_at_q5 = y - y_at_q5;
   const double z_minus_z_at_q6 = z - z_at_q6;
   const double y_minus_y_at_q6 = y - y_at_q6;
   const double x_minus_x_at_q4 = x - x_at_q4;
+  const double x_minus_x_at_q5 = x - x_at_q5;
   const double x_minus_x_at_q6 = x - x_at_q6;
   rows[0] = -y;
   rows[1] = z_minus_d1*cos_q1;
   rows[2] = z_minus_z_at_q3*cos_q1;
   rows[3] = r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23;
-  rows[4] = r22_at_q4*z_minus_z_at_q4 - r32_at_q4*y_minus_y_at_q4;
+  rows[4] = r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5;
   rows[5] = r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6;
   rows[6] = x;
   rows[7] = z_minus_d1*sin_q1;
   rows[8] = z_minus_z_at_q3*sin_q1;
   rows[9] = -r11_at_q23*z_minus_z_at_q4 - x_minus_x_at_q4*sin_q23;
-  rows[10] = r32_at_q4*x_minus_x_at_q4 - r12_at_q4*z_minus_z_at_q4;
+  rows[10] = r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5;
   rows[11] = r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6;
   rows[12] = 0.0;
   rows[13] = (x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1;
   rows[14] = (x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1;
   rows[15] = r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4;
-  rows[16] = r12_at_q4*y_minus_y_at_q4 - r22_at_q4*x_minus_x_at_q4;
+  rows[16] = r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5;
   rows[17] = r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6;
   rows[18] = 0.0;
   rows[19] = -sin_q1;
@@ -1537,6 +1561,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double a3_by_effective_q3_tried = p->a3/effective_q3_tried;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double quotient_in_fits = 0.5*machine_scale*machine_scale/(p->a2*effective_q3_tried);
+  const double one_by_effective_q3_tried = 1.0/effective_q3_tried;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1583,6 +1608,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.a3_by_effective_q3_tried = a3_by_effective_q3_tried;
   made.one_by_machine_scale = one_by_machine_scale;
   made.quotient_in_fits = quotient_in_fits;
+  made.one_by_effective_q3_tried = one_by_effective_q3_tried;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, searched, p->warning_distance, 1e-6};
   *(ac6_rzryryrxryrz_j6offset_machine *)machine = made;
   return SOFTKIN_OK;

@@ -118,7 +118,7 @@ typedef struct {
       a2, a3, d4, j6_offset_x, d6, offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,
       effective_q3_tried, machine_scale_times_free_angle, a2_minus_effective_q3_tried,
       a2_plus_effective_q3_tried, d4_by_effective_q3_tried, a3_by_effective_q3_tried, one_by_machine_scale,
-      quotient_in_fits;
+      quotient_in_fits, one_by_effective_q3_tried;
   bool single_a1, single_a2, single_a3, single_a4, single_a5, single_a6, searched;
 } ac6_rzryryrxryrz_j6offset_machine;
 

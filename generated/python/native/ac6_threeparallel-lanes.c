@@ -9,18 +9,17 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
     double *SOFTKIN_RESTRICT misses) {
   const ac6_threeparallel_machine *k = machine;
-  const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3,
-      a2_squared_plus_a3_squared = k->a2_squared_plus_a3_squared, a3 = k->a3, d1 = k->d1, d4 = k->d4,
-      d5 = k->d5, d6 = k->d6, machine_scale_squared_times_plane = k->machine_scale_squared_times_plane,
-      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
-      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
-      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, quotient_in_cos_q3 = k->quotient_in_cos_q3,
-      quotient_in_sin_q3 = k->quotient_in_sin_q3, rounding_q1 = k->rounding_q1,
+  const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3, a3 = k->a3, d1 = k->d1,
+      d4 = k->d4, d5 = k->d5, d6 = k->d6, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5,
+      mid_a6 = k->mid_a6, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
+      offset_a4 = k->offset_a4, offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
+      product_in_lost_digits_37 = k->product_in_lost_digits_37,
+      quotient_in_closed_cos_q3 = k->quotient_in_closed_cos_q3,
+      quotient_in_closed_sin_q3 = k->quotient_in_closed_sin_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
-      single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0,
-      size_q1_for_q3 = k->size_q1_for_q3;
+      single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r13 = given->rotation[2][lane],
@@ -42,85 +41,69 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     /* q1: out of reach */
     missed += ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1 ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
     const double sign_shoulder = sigma_shoulder; /* shoulder: +1 left, -1 right */
     /* how far ahead of the axis the point is; negative: behind it */
-    const double ahead_q1_before_q1_for_q3 = -softkin_lane_root(ahead_squared_q1)*sign_shoulder;
+    const double ahead_q1 = -softkin_lane_root(ahead_squared_q1)*sign_shoulder;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    const double cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)
-        /distance_q1_squared;
-    const double sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)
-        /distance_q1_squared;
-    const double r21_from_q1 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3;
-    const double r22_from_q1 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3;
+    const double cos_q1 = (ahead_q1*wrist_x - d4*wrist_y)/distance_q1_squared;
+    const double sin_q1 = (ahead_q1*wrist_y + d4*wrist_x)/distance_q1_squared;
+    const double r21_from_q1 = r21*cos_q1 - r11*sin_q1;
+    const double r22_from_q1 = r22*cos_q1 - r12*sin_q1;
     /* polar coordinates: the radius at angle q6 */
     const double radius_q6 = softkin_lane_root(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1);
     missed += radius_q6 > 1e-11 ? 0.0 : 1.0;
-    /* cosine and sine of q5 from the q6 radius and r32 equations */
-    const double cos_q5 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3;
     const double sign_wrist = sigma_wrist; /* wrist: +1 down, -1 up */
     const double q6_radius_of_q5 = radius_q6*sign_wrist;
-    const double q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33;
-    /* polar coordinates: angle q6 from the r31 and r32 equations */
+    /* cosine and sine of q5 from the q6 radius and r22 equations */
+    const double cos_q5 = r13*sin_q1 - r23*cos_q1;
+    /* polar coordinates: angle q6 from the r21 and r23 equations */
     const double along_q6 = -r21_from_q1*sign_wrist;
-    /* at a singularity: the angle of the reference */
-    const double cos_q6_before_q6_of_q3 = along_q6/radius_q6;
+    const double cos_q6 = along_q6/radius_q6; /* at a singularity: the angle of the reference */
     const double across_q6 = r22_from_q1*sign_wrist;
-    const double sin_q6_before_q6_of_q3 = across_q6/radius_q6;
-    const double r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3
-        - r32*sin_q6_before_q6_of_q3;
-    const double r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5
-        - q6_radius_of_q5_times_r33;
-    const double wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3
-        - d5*r21_from_q1_before_q56_before_q6_of_q3;
+    const double sin_q6 = across_q6/radius_q6;
+    const double r31_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6;
+    const double r31_from_q1_before_q56 = r31_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_x_from_q1 = ahead_q1 - d5*r31_from_q1_before_q56;
+    const double r33_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6;
     const double wrist_z = z - d6*r33;
-    const double wrist_y_from_q1_fixed = wrist_z - d1;
-    const double r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3
-        + r31*sin_q6_before_q6_of_q3;
-    const double wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed
-        + d5*r22_from_q1_before_q6_before_q6_of_q3;
-    /* q3 has solutions where this is within its bound */
-    const double value_q6_of_q3 = wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-        + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared;
-    missed += fabs(value_q6_of_q3) <= size_q1_for_q3 ? 0.0 : 1.0;
-    const double r21_from_q1_before_q6 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3;
-    const double r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5_times_r33;
     /* coordinate of the point that the remaining links must reach */
-    const double wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56;
-    const double r22_from_q1_before_q6 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3;
-    /* coordinate of the point that the remaining links must reach */
-    const double wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6;
+    const double wrist_z_from_q1 = wrist_z + d5*r33_from_q1_before_q6 - d1;
     /* distance that the remaining links must span */
-    const double reach = softkin_lane_root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1);
-    /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
+    const double reach = softkin_lane_root(wrist_x_from_q1*wrist_x_from_q1 + wrist_z_from_q1*wrist_z_from_q1);
+    /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
     const double one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach);
-    const double cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)*quotient_in_cos_q3;
+    const double cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)*quotient_in_closed_cos_q3;
+    const bool within_37 = fabs(cos_q3) <= 1.0;
+    const bool lost_digits_37 = (!within_37)
+        && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01)
+        || (fabs(ahead_q1) <= product_in_lost_digits_37));
+    /* digits may be lost */
+    missed += !lost_digits_37 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_q3) <= 1.0000000000005 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
-    const double axis_a1 = offset_a1
-        + softkin_lane_angle(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*SOFTKIN_RADIAN;
+    const double axis_a1 = offset_a1 + softkin_lane_angle(sin_q1, cos_q1)*SOFTKIN_RADIAN;
     const double arm_along_q2 = a2 + a3*cos_q3;
     const double sign_elbow = sigma_elbow; /* elbow: +1 up, -1 down */
     /* sine squared, times the squared scale */
     const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
-    const double sin_q3 = softkin_lane_root(sine_square_q3)*quotient_in_sin_q3*sign_elbow;
+    const double sin_q3 = softkin_lane_root(sine_square_q3)*quotient_in_closed_sin_q3*sign_elbow;
     const double arm_across_q2 = a3*sin_q3;
     /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    const double direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1;
-    const double direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1;
+    const double direction_x_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
+    const double direction_y_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
     const double angle_q2 = softkin_lane_angle(direction_y_q2, direction_x_q2);
     const double axis_a2 = offset_a2 + angle_q2*SOFTKIN_RADIAN;
     const double angle_q3 = softkin_lane_angle(sin_q3, cos_q3);
     const double axis_a3 = offset_a3 + angle_q3*SOFTKIN_RADIAN;
-    const double angle_with_q4 = softkin_lane_angle(r21_from_q1_before_q56, r22_from_q1_before_q6);
+    const double angle_with_q4 = softkin_lane_angle(r31_from_q1_before_q56, r33_from_q1_before_q6);
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4 = offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)*SOFTKIN_RADIAN;
     const double axis_a5 = offset_a5 + softkin_lane_angle(q6_radius_of_q5, cos_q5)*SOFTKIN_RADIAN;
-    const double axis_a6 = offset_a6
-        + softkin_lane_angle(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)*SOFTKIN_RADIAN;
+    const double axis_a6 = offset_a6 + softkin_lane_angle(sin_q6, cos_q6)*SOFTKIN_RADIAN;
     near[0][lane] = single_a1 > 0.0 ? mid_a1 : ref_a1;
     near[1][lane] = single_a2 > 0.0 ? mid_a2 : ref_a2;
     near[2][lane] = single_a3 > 0.0 ? mid_a3 : ref_a3;
@@ -142,18 +125,17 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const ac6_threeparallel_machine *k = machine;
-  const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3,
-      a2_squared_plus_a3_squared = k->a2_squared_plus_a3_squared, a3 = k->a3, d1 = k->d1, d4 = k->d4,
-      d5 = k->d5, d6 = k->d6, machine_scale_squared_times_plane = k->machine_scale_squared_times_plane,
-      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
-      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
-      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, quotient_in_cos_q3 = k->quotient_in_cos_q3,
-      quotient_in_sin_q3 = k->quotient_in_sin_q3, rounding_q1 = k->rounding_q1,
+  const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3, a3 = k->a3, d1 = k->d1,
+      d4 = k->d4, d5 = k->d5, d6 = k->d6, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5,
+      mid_a6 = k->mid_a6, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
+      offset_a4 = k->offset_a4, offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
+      product_in_lost_digits_37 = k->product_in_lost_digits_37,
+      quotient_in_closed_cos_q3 = k->quotient_in_closed_cos_q3,
+      quotient_in_closed_sin_q3 = k->quotient_in_closed_sin_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
-      single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0,
-      size_q1_for_q3 = k->size_q1_for_q3;
+      single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r13 = given->rotation[2][lane],
@@ -169,165 +151,163 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double distance_q1 = softkin_lane_root(wrist_x*wrist_x + wrist_y*wrist_y);
     /* Pythagoras: square of the distance ahead of the axis */
     const double ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1);
-    /* near a fold */
-    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
     const double distance_q1_squared = distance_q1*distance_q1;
     /* q1: out of reach */
     missed += ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1 ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double d4_times_wrist_y = d4*wrist_y;
     /* how far ahead of the axis the point is; negative: behind it */
-    const double ahead_q1_before_q1_for_q3_right = softkin_lane_root(ahead_squared_q1);
-    const double product_in_cos_q1_before_q1_for_q3_left = ahead_q1_before_q1_for_q3_right*wrist_x;
+    const double ahead_q1_right = softkin_lane_root(ahead_squared_q1);
+    const double ahead_q1_right_times_wrist_x = ahead_q1_right*wrist_x;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    const double cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - product_in_cos_q1_before_q1_for_q3_left)
-        /distance_q1_squared;
+    const double cos_q1_left = (-ahead_q1_right_times_wrist_x - d4_times_wrist_y)/distance_q1_squared;
     const double d4_times_wrist_x = d4*wrist_x;
-    const double product_in_sin_q1_before_q1_for_q3_left = ahead_q1_before_q1_for_q3_right*wrist_y;
-    const double sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - product_in_sin_q1_before_q1_for_q3_left)
-        /distance_q1_squared;
-    const double r21_from_q1_left = r21*cos_q1_before_q1_for_q3_left - r11*sin_q1_before_q1_for_q3_left;
-    const double r22_from_q1_left = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left;
+    const double ahead_q1_right_times_wrist_y = ahead_q1_right*wrist_y;
+    const double sin_q1_left = (d4_times_wrist_x - ahead_q1_right_times_wrist_y)/distance_q1_squared;
+    const double r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left;
+    const double r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left;
     /* polar coordinates: the radius at angle q6 */
     const double radius_q6_left = softkin_lane_root(r21_from_q1_left*r21_from_q1_left
         + r22_from_q1_left*r22_from_q1_left);
     missed += radius_q6_left > 1e-11 ? 0.0 : 1.0;
-    /* cosine and sine of q5 from the q6 radius and r32 equations */
-    const double cos_q5_left = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left;
+    /* cosine and sine of q5 from the q6 radius and r22 equations */
+    const double cos_q5_left = r13*sin_q1_left - r23*cos_q1_left;
     const double r21_from_q1_left_by_radius_q6_left = r21_from_q1_left/radius_q6_left;
     /* at a singularity: the angle of the reference */
-    const double cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left_by_radius_q6_left;
+    const double cos_q6_left_down = -r21_from_q1_left_by_radius_q6_left;
     const double r22_from_q1_left_by_radius_q6_left = r22_from_q1_left/radius_q6_left;
-    const double r21_from_q1_before_q6_before_q6_of_q3_left_down = r31*cos_q6_before_q6_of_q3_left_down
+    const double r31_from_q1_before_q6_left_down = r31*cos_q6_left_down
         - r22_from_q1_left_by_radius_q6_left*r32;
     const double radius_q6_left_times_r33 = r33*radius_q6_left;
-    const double r21_from_q1_before_q56_before_q6_of_q3_left_down =
-        r21_from_q1_before_q6_before_q6_of_q3_left_down*cos_q5_left - radius_q6_left_times_r33;
-    const double wrist_x_from_q1_before_q6_of_q3_left_down = -ahead_q1_before_q1_for_q3_right
-        - d5*r21_from_q1_before_q56_before_q6_of_q3_left_down;
-    const double r22_from_q1_before_q6_before_q6_of_q3_left_down = r32*cos_q6_before_q6_of_q3_left_down
+    const double r31_from_q1_before_q56_left_down = r31_from_q1_before_q6_left_down*cos_q5_left
+        - radius_q6_left_times_r33;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_x_from_q1_left_down = -ahead_q1_right - d5*r31_from_q1_before_q56_left_down;
+    const double r33_from_q1_before_q6_left_down = r32*cos_q6_left_down
         + r22_from_q1_left_by_radius_q6_left*r31;
     const double wrist_z = z - d6*r33;
-    const double wrist_y_from_q1_fixed = wrist_z - d1;
-    const double wrist_y_from_q1_before_q6_of_q3_left_down = wrist_y_from_q1_fixed
-        + d5*r22_from_q1_before_q6_before_q6_of_q3_left_down;
-    /* q3 has solutions where this is within its bound */
-    const double value_q6_of_q3_left_down = wrist_x_from_q1_before_q6_of_q3_left_down
-        *wrist_x_from_q1_before_q6_of_q3_left_down
-        + wrist_y_from_q1_before_q6_of_q3_left_down*wrist_y_from_q1_before_q6_of_q3_left_down
-        - a2_squared_plus_a3_squared;
-    missed += fabs(value_q6_of_q3_left_down) <= size_q1_for_q3 ? 0.0 : 1.0;
+    const double wrist_z_minus_d1 = wrist_z - d1;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_z_from_q1_left_down = wrist_z_minus_d1 + d5*r33_from_q1_before_q6_left_down;
     /* distance that the remaining links must span */
-    const double reach_left_down = softkin_lane_root(wrist_x_from_q1_before_q6_of_q3_left_down
-        *wrist_x_from_q1_before_q6_of_q3_left_down
-        + wrist_y_from_q1_before_q6_of_q3_left_down*wrist_y_from_q1_before_q6_of_q3_left_down);
-    missed += reach_left_down > machine_scale_times_free_angle ? 0.0 : 1.0;
-    const double r21_from_q1_before_q56_before_q6_of_q3_left_up =
-        -r21_from_q1_before_q56_before_q6_of_q3_left_down;
-    const double wrist_x_from_q1_before_q6_of_q3_left_up = -ahead_q1_before_q1_for_q3_right
-        - d5*r21_from_q1_before_q56_before_q6_of_q3_left_up;
-    const double r22_from_q1_before_q6_before_q6_of_q3_left_up =
-        -r22_from_q1_before_q6_before_q6_of_q3_left_down;
-    const double wrist_y_from_q1_before_q6_of_q3_left_up = wrist_y_from_q1_fixed
-        + d5*r22_from_q1_before_q6_before_q6_of_q3_left_up;
-    /* q3 has solutions where this is within its bound */
-    const double value_q6_of_q3_left_up = wrist_x_from_q1_before_q6_of_q3_left_up
-        *wrist_x_from_q1_before_q6_of_q3_left_up
-        + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up
-        - a2_squared_plus_a3_squared;
-    missed += fabs(value_q6_of_q3_left_up) <= size_q1_for_q3 ? 0.0 : 1.0;
-    /* distance that the remaining links must span */
-    const double reach_left_up = softkin_lane_root(wrist_x_from_q1_before_q6_of_q3_left_up
-        *wrist_x_from_q1_before_q6_of_q3_left_up
-        + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up);
-    missed += reach_left_up > machine_scale_times_free_angle ? 0.0 : 1.0;
-    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    const double cos_q1_before_q1_for_q3_right = (product_in_cos_q1_before_q1_for_q3_left - d4_times_wrist_y)
-        /distance_q1_squared;
-    const double sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + product_in_sin_q1_before_q1_for_q3_left)
-        /distance_q1_squared;
-    const double r21_from_q1_right = r21*cos_q1_before_q1_for_q3_right - r11*sin_q1_before_q1_for_q3_right;
-    const double r22_from_q1_right = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right;
-    /* polar coordinates: the radius at angle q6 */
-    const double radius_q6_right = softkin_lane_root(r21_from_q1_right*r21_from_q1_right
-        + r22_from_q1_right*r22_from_q1_right);
-    missed += radius_q6_right > 1e-11 ? 0.0 : 1.0;
-    /* cosine and sine of q5 from the q6 radius and r32 equations */
-    const double cos_q5_right = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right;
-    const double r21_from_q1_right_by_radius_q6_right = r21_from_q1_right/radius_q6_right;
-    /* at a singularity: the angle of the reference */
-    const double cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right_by_radius_q6_right;
-    const double r22_from_q1_right_by_radius_q6_right = r22_from_q1_right/radius_q6_right;
-    const double r21_from_q1_before_q6_before_q6_of_q3_right_down = r31*cos_q6_before_q6_of_q3_right_down
-        - r22_from_q1_right_by_radius_q6_right*r32;
-    const double radius_q6_right_times_r33 = r33*radius_q6_right;
-    const double r21_from_q1_before_q56_before_q6_of_q3_right_down =
-        r21_from_q1_before_q6_before_q6_of_q3_right_down*cos_q5_right - radius_q6_right_times_r33;
-    const double wrist_x_from_q1_before_q6_of_q3_right_down = ahead_q1_before_q1_for_q3_right
-        - d5*r21_from_q1_before_q56_before_q6_of_q3_right_down;
-    const double r22_from_q1_before_q6_before_q6_of_q3_right_down = r32*cos_q6_before_q6_of_q3_right_down
-        + r22_from_q1_right_by_radius_q6_right*r31;
-    const double wrist_y_from_q1_before_q6_of_q3_right_down = wrist_y_from_q1_fixed
-        + d5*r22_from_q1_before_q6_before_q6_of_q3_right_down;
-    /* q3 has solutions where this is within its bound */
-    const double value_q6_of_q3_right_down = wrist_x_from_q1_before_q6_of_q3_right_down
-        *wrist_x_from_q1_before_q6_of_q3_right_down
-        + wrist_y_from_q1_before_q6_of_q3_right_down*wrist_y_from_q1_before_q6_of_q3_right_down
-        - a2_squared_plus_a3_squared;
-    missed += fabs(value_q6_of_q3_right_down) <= size_q1_for_q3 ? 0.0 : 1.0;
-    /* distance that the remaining links must span */
-    const double reach_right_down = softkin_lane_root(wrist_x_from_q1_before_q6_of_q3_right_down
-        *wrist_x_from_q1_before_q6_of_q3_right_down
-        + wrist_y_from_q1_before_q6_of_q3_right_down*wrist_y_from_q1_before_q6_of_q3_right_down);
-    missed += reach_right_down > machine_scale_times_free_angle ? 0.0 : 1.0;
-    const double r21_from_q1_before_q56_before_q6_of_q3_right_up =
-        -r21_from_q1_before_q56_before_q6_of_q3_right_down;
-    const double wrist_x_from_q1_before_q6_of_q3_right_up = ahead_q1_before_q1_for_q3_right
-        - d5*r21_from_q1_before_q56_before_q6_of_q3_right_up;
-    const double r22_from_q1_before_q6_before_q6_of_q3_right_up =
-        -r22_from_q1_before_q6_before_q6_of_q3_right_down;
-    const double wrist_y_from_q1_before_q6_of_q3_right_up = wrist_y_from_q1_fixed
-        + d5*r22_from_q1_before_q6_before_q6_of_q3_right_up;
-    /* q3 has solutions where this is within its bound */
-    const double value_q6_of_q3_right_up = wrist_x_from_q1_before_q6_of_q3_right_up
-        *wrist_x_from_q1_before_q6_of_q3_right_up
-        + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up
-        - a2_squared_plus_a3_squared;
-    missed += fabs(value_q6_of_q3_right_up) <= size_q1_for_q3 ? 0.0 : 1.0;
-    /* distance that the remaining links must span */
-    const double reach_right_up = softkin_lane_root(wrist_x_from_q1_before_q6_of_q3_right_up
-        *wrist_x_from_q1_before_q6_of_q3_right_up
-        + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up);
-    missed += reach_right_up > machine_scale_times_free_angle ? 0.0 : 1.0;
-    /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
+    const double reach_left_down = softkin_lane_root(wrist_x_from_q1_left_down*wrist_x_from_q1_left_down
+        + wrist_z_from_q1_left_down*wrist_z_from_q1_left_down);
+    /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
     const double one_less_cos_q3_left_down = (a2_plus_a3 + reach_left_down)*(a2_plus_a3 - reach_left_down);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_q3_left_down = (reach_left_down - a2_minus_a3)*(a2_minus_a3 + reach_left_down);
     const double cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)
-        *quotient_in_cos_q3;
+        *quotient_in_closed_cos_q3;
+    const bool within_37_left_down = fabs(cos_q3_left_down) <= 1.0;
+    const bool lost_digits_37_left_down = (!within_37_left_down)
+        && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_37));
+    /* digits may be lost */
+    missed += !lost_digits_37_left_down ? 0.0 : 1.0;
+    const double r31_from_q1_before_q56_left_up = -r31_from_q1_before_q56_left_down;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_x_from_q1_left_up = -ahead_q1_right - d5*r31_from_q1_before_q56_left_up;
+    const double r33_from_q1_before_q6_left_up = -r33_from_q1_before_q6_left_down;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_z_from_q1_left_up = wrist_z_minus_d1 + d5*r33_from_q1_before_q6_left_up;
+    /* distance that the remaining links must span */
+    const double reach_left_up = softkin_lane_root(wrist_x_from_q1_left_up*wrist_x_from_q1_left_up
+        + wrist_z_from_q1_left_up*wrist_z_from_q1_left_up);
+    /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+    const double one_less_cos_q3_left_up = (a2_plus_a3 + reach_left_up)*(a2_plus_a3 - reach_left_up);
+    /* 1 + cosine, times the scale */
+    const double one_plus_cos_q3_left_up = (reach_left_up - a2_minus_a3)*(a2_minus_a3 + reach_left_up);
+    const double cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)
+        *quotient_in_closed_cos_q3;
+    const bool within_37_left_up = fabs(cos_q3_left_up) <= 1.0;
+    const bool lost_digits_37_left_up = (!within_37_left_up)
+        && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_37));
+    /* digits may be lost */
+    missed += !lost_digits_37_left_up ? 0.0 : 1.0;
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
+    const double cos_q1_right = (ahead_q1_right_times_wrist_x - d4_times_wrist_y)/distance_q1_squared;
+    const double sin_q1_right = (ahead_q1_right_times_wrist_y + d4_times_wrist_x)/distance_q1_squared;
+    const double r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right;
+    const double r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right;
+    /* polar coordinates: the radius at angle q6 */
+    const double radius_q6_right = softkin_lane_root(r21_from_q1_right*r21_from_q1_right
+        + r22_from_q1_right*r22_from_q1_right);
+    missed += radius_q6_right > 1e-11 ? 0.0 : 1.0;
+    /* cosine and sine of q5 from the q6 radius and r22 equations */
+    const double cos_q5_right = r13*sin_q1_right - r23*cos_q1_right;
+    const double r21_from_q1_right_by_radius_q6_right = r21_from_q1_right/radius_q6_right;
+    /* at a singularity: the angle of the reference */
+    const double cos_q6_right_down = -r21_from_q1_right_by_radius_q6_right;
+    const double r22_from_q1_right_by_radius_q6_right = r22_from_q1_right/radius_q6_right;
+    const double r31_from_q1_before_q6_right_down = r31*cos_q6_right_down
+        - r22_from_q1_right_by_radius_q6_right*r32;
+    const double radius_q6_right_times_r33 = r33*radius_q6_right;
+    const double r31_from_q1_before_q56_right_down = r31_from_q1_before_q6_right_down*cos_q5_right
+        - radius_q6_right_times_r33;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_x_from_q1_right_down = ahead_q1_right - d5*r31_from_q1_before_q56_right_down;
+    const double r33_from_q1_before_q6_right_down = r32*cos_q6_right_down
+        + r22_from_q1_right_by_radius_q6_right*r31;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_z_from_q1_right_down = wrist_z_minus_d1 + d5*r33_from_q1_before_q6_right_down;
+    /* distance that the remaining links must span */
+    const double reach_right_down = softkin_lane_root(wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
+        + wrist_z_from_q1_right_down*wrist_z_from_q1_right_down);
+    /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+    const double one_less_cos_q3_right_down = (a2_plus_a3 + reach_right_down)*(a2_plus_a3 - reach_right_down);
+    /* 1 + cosine, times the scale */
+    const double one_plus_cos_q3_right_down = (reach_right_down - a2_minus_a3)
+        *(a2_minus_a3 + reach_right_down);
+    const double cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)
+        *quotient_in_closed_cos_q3;
+    const bool within_37_right_down = fabs(cos_q3_right_down) <= 1.0;
+    const bool lost_digits_37_right_down = (!within_37_right_down)
+        && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_37));
+    /* digits may be lost */
+    missed += !lost_digits_37_right_down ? 0.0 : 1.0;
+    const double r31_from_q1_before_q56_right_up = -r31_from_q1_before_q56_right_down;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_x_from_q1_right_up = ahead_q1_right - d5*r31_from_q1_before_q56_right_up;
+    const double r33_from_q1_before_q6_right_up = -r33_from_q1_before_q6_right_down;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_z_from_q1_right_up = wrist_z_minus_d1 + d5*r33_from_q1_before_q6_right_up;
+    /* distance that the remaining links must span */
+    const double reach_right_up = softkin_lane_root(wrist_x_from_q1_right_up*wrist_x_from_q1_right_up
+        + wrist_z_from_q1_right_up*wrist_z_from_q1_right_up);
+    /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+    const double one_less_cos_q3_right_up = (a2_plus_a3 + reach_right_up)*(a2_plus_a3 - reach_right_up);
+    /* 1 + cosine, times the scale */
+    const double one_plus_cos_q3_right_up = (reach_right_up - a2_minus_a3)*(a2_minus_a3 + reach_right_up);
+    const double cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)
+        *quotient_in_closed_cos_q3;
+    const bool within_37_right_up = fabs(cos_q3_right_up) <= 1.0;
+    const bool lost_digits_37_right_up = (!within_37_right_up)
+        && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_37));
+    /* digits may be lost */
+    missed += !lost_digits_37_right_up ? 0.0 : 1.0;
+    missed += reach_left_down > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += reach_left_up > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += reach_right_down > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += reach_right_up > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* q3: out of reach */
     const double refusal_left_down = fabs(cos_q3_left_down) <= 1.0000000000005 ? 0 : 3;
-    const double axis_a1_left = offset_a1
-        + softkin_lane_angle(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*SOFTKIN_RADIAN;
+    const double axis_a1_left = offset_a1 + softkin_lane_angle(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
     const double arm_along_q2_left_down = a2 + a3*cos_q3_left_down;
     /* sine squared, times the squared scale */
     const double sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down;
-    const double sin_q3_left_up_down = softkin_lane_root(sine_square_q3_left_down)*quotient_in_sin_q3;
+    const double sin_q3_left_up_down = softkin_lane_root(sine_square_q3_left_down)*quotient_in_closed_sin_q3;
     const double arm_across_q2_left_up_down = a3*sin_q3_left_up_down;
     const double angle_of_arm_along_q2_left_up_down = softkin_lane_angle(arm_across_q2_left_up_down,
         arm_along_q2_left_down);
-    const double angle_of_wrist_x_from_q1_left_down =
-        softkin_lane_angle(wrist_y_from_q1_before_q6_of_q3_left_down,
-        wrist_x_from_q1_before_q6_of_q3_left_down);
+    const double angle_of_wrist_x_from_q1_left_down = softkin_lane_angle(wrist_z_from_q1_left_down,
+        wrist_x_from_q1_left_down);
     const double angle_q2_left_up_down = angle_of_wrist_x_from_q1_left_down
         - angle_of_arm_along_q2_left_up_down;
     const double axis_a2_left_up_down = offset_a2 + angle_q2_left_up_down*SOFTKIN_RADIAN;
     const double angle_q3_left_up_down = softkin_lane_angle(sin_q3_left_up_down, cos_q3_left_down);
     const double quotient_in_axis_a3_left_up_down = angle_q3_left_up_down*SOFTKIN_RADIAN;
     const double axis_a3_left_up_down = offset_a3 + quotient_in_axis_a3_left_up_down;
-    const double angle_with_q4_left_down =
-        softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3_left_down,
-        r22_from_q1_before_q6_before_q6_of_q3_left_down);
+    const double angle_with_q4_left_down = softkin_lane_angle(r31_from_q1_before_q56_left_down,
+        r33_from_q1_before_q6_left_down);
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_left_up_down = offset_a4
         + (angle_with_q4_left_down - angle_q2_left_up_down - angle_q3_left_up_down)*SOFTKIN_RADIAN;
@@ -335,39 +315,29 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         *SOFTKIN_RADIAN;
     const double axis_a5_left_down = offset_a5 + quotient_in_axis_a5_left_down;
     const double axis_a6_left_down = offset_a6
-        + softkin_lane_angle(r22_from_q1_left_by_radius_q6_left, cos_q6_before_q6_of_q3_left_down)
-        *SOFTKIN_RADIAN;
-    /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-    const double one_less_cos_q3_left_up = (a2_plus_a3 + reach_left_up)*(a2_plus_a3 - reach_left_up);
-    /* 1 + cosine, times the scale */
-    const double one_plus_cos_q3_left_up = (reach_left_up - a2_minus_a3)*(a2_minus_a3 + reach_left_up);
-    const double cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)*quotient_in_cos_q3;
+        + softkin_lane_angle(r22_from_q1_left_by_radius_q6_left, cos_q6_left_down)*SOFTKIN_RADIAN;
     /* q3: out of reach */
     const double refusal_left_up = fabs(cos_q3_left_up) <= 1.0000000000005 ? 0 : 3;
     const double arm_along_q2_left_up = a2 + a3*cos_q3_left_up;
     /* sine squared, times the squared scale */
     const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
-    const double sin_q3_left_up_up = softkin_lane_root(sine_square_q3_left_up)*quotient_in_sin_q3;
+    const double sin_q3_left_up_up = softkin_lane_root(sine_square_q3_left_up)*quotient_in_closed_sin_q3;
     const double arm_across_q2_left_up_up = a3*sin_q3_left_up_up;
     const double angle_of_arm_along_q2_left_up_up = softkin_lane_angle(arm_across_q2_left_up_up,
         arm_along_q2_left_up);
-    const double angle_of_wrist_x_from_q1_left_up =
-        softkin_lane_angle(wrist_y_from_q1_before_q6_of_q3_left_up, wrist_x_from_q1_before_q6_of_q3_left_up);
+    const double angle_of_wrist_x_from_q1_left_up = softkin_lane_angle(wrist_z_from_q1_left_up,
+        wrist_x_from_q1_left_up);
     const double angle_q2_left_up_up = angle_of_wrist_x_from_q1_left_up - angle_of_arm_along_q2_left_up_up;
     const double axis_a2_left_up_up = offset_a2 + angle_q2_left_up_up*SOFTKIN_RADIAN;
     const double angle_q3_left_up_up = softkin_lane_angle(sin_q3_left_up_up, cos_q3_left_up);
     const double quotient_in_axis_a3_left_up_up = angle_q3_left_up_up*SOFTKIN_RADIAN;
     const double axis_a3_left_up_up = offset_a3 + quotient_in_axis_a3_left_up_up;
-    const double angle_with_q4_left_up = softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3_left_up,
-        r22_from_q1_before_q6_before_q6_of_q3_left_up);
+    const double angle_with_q4_left_up = 180.0*SOFTKIN_DEGREE + angle_with_q4_left_down;
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_left_up_up = offset_a4
         + (angle_with_q4_left_up - angle_q2_left_up_up - angle_q3_left_up_up)*SOFTKIN_RADIAN;
     const double axis_a5_left_up = offset_a5 - quotient_in_axis_a5_left_down;
-    const double sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left_by_radius_q6_left;
-    const double axis_a6_left_up = offset_a6
-        + softkin_lane_angle(sin_q6_before_q6_of_q3_left_up, r21_from_q1_left_by_radius_q6_left)
-        *SOFTKIN_RADIAN;
+    const double axis_a6_left_up = 180.0 + axis_a6_left_down;
     const double angle_q2_left_down_down = angle_of_arm_along_q2_left_up_down
         + angle_of_wrist_x_from_q1_left_down;
     const double axis_a2_left_down_down = offset_a2 + angle_q2_left_down_down*SOFTKIN_RADIAN;
@@ -381,36 +351,27 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_left_down_up = offset_a4
         + (angle_q3_left_up_up + angle_with_q4_left_up - angle_q2_left_down_up)*SOFTKIN_RADIAN;
-    /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-    const double one_less_cos_q3_right_down = (a2_plus_a3 + reach_right_down)*(a2_plus_a3 - reach_right_down);
-    /* 1 + cosine, times the scale */
-    const double one_plus_cos_q3_right_down = (reach_right_down - a2_minus_a3)
-        *(a2_minus_a3 + reach_right_down);
-    const double cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)
-        *quotient_in_cos_q3;
     /* q3: out of reach */
     const double refusal_right_down = fabs(cos_q3_right_down) <= 1.0000000000005 ? 0 : 3;
-    const double axis_a1_right = offset_a1
-        + softkin_lane_angle(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*SOFTKIN_RADIAN;
+    const double axis_a1_right = offset_a1 + softkin_lane_angle(sin_q1_right, cos_q1_right)*SOFTKIN_RADIAN;
     const double arm_along_q2_right_down = a2 + a3*cos_q3_right_down;
     /* sine squared, times the squared scale */
     const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
-    const double sin_q3_right_up_down = softkin_lane_root(sine_square_q3_right_down)*quotient_in_sin_q3;
+    const double sin_q3_right_up_down = softkin_lane_root(sine_square_q3_right_down)
+        *quotient_in_closed_sin_q3;
     const double arm_across_q2_right_up_down = a3*sin_q3_right_up_down;
     const double angle_of_arm_along_q2_right_up_down = softkin_lane_angle(arm_across_q2_right_up_down,
         arm_along_q2_right_down);
-    const double angle_of_wrist_x_from_q1_right_down =
-        softkin_lane_angle(wrist_y_from_q1_before_q6_of_q3_right_down,
-        wrist_x_from_q1_before_q6_of_q3_right_down);
+    const double angle_of_wrist_x_from_q1_right_down = softkin_lane_angle(wrist_z_from_q1_right_down,
+        wrist_x_from_q1_right_down);
     const double angle_q2_right_up_down = angle_of_wrist_x_from_q1_right_down
         - angle_of_arm_along_q2_right_up_down;
     const double axis_a2_right_up_down = offset_a2 + angle_q2_right_up_down*SOFTKIN_RADIAN;
     const double angle_q3_right_up_down = softkin_lane_angle(sin_q3_right_up_down, cos_q3_right_down);
     const double quotient_in_axis_a3_right_up_down = angle_q3_right_up_down*SOFTKIN_RADIAN;
     const double axis_a3_right_up_down = offset_a3 + quotient_in_axis_a3_right_up_down;
-    const double angle_with_q4_right_down =
-        softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3_right_down,
-        r22_from_q1_before_q6_before_q6_of_q3_right_down);
+    const double angle_with_q4_right_down = softkin_lane_angle(r31_from_q1_before_q56_right_down,
+        r33_from_q1_before_q6_right_down);
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_right_up_down = offset_a4
         + (angle_with_q4_right_down - angle_q2_right_up_down - angle_q3_right_up_down)*SOFTKIN_RADIAN;
@@ -418,40 +379,29 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         *SOFTKIN_RADIAN;
     const double axis_a5_right_down = offset_a5 + quotient_in_axis_a5_right_down;
     const double axis_a6_right_down = offset_a6
-        + softkin_lane_angle(r22_from_q1_right_by_radius_q6_right, cos_q6_before_q6_of_q3_right_down)
-        *SOFTKIN_RADIAN;
-    /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-    const double one_less_cos_q3_right_up = (a2_plus_a3 + reach_right_up)*(a2_plus_a3 - reach_right_up);
-    /* 1 + cosine, times the scale */
-    const double one_plus_cos_q3_right_up = (reach_right_up - a2_minus_a3)*(a2_minus_a3 + reach_right_up);
-    const double cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)*quotient_in_cos_q3;
+        + softkin_lane_angle(r22_from_q1_right_by_radius_q6_right, cos_q6_right_down)*SOFTKIN_RADIAN;
     /* q3: out of reach */
     const double refusal_right_up = fabs(cos_q3_right_up) <= 1.0000000000005 ? 0 : 3;
     const double arm_along_q2_right_up = a2 + a3*cos_q3_right_up;
     /* sine squared, times the squared scale */
     const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
-    const double sin_q3_right_up_up = softkin_lane_root(sine_square_q3_right_up)*quotient_in_sin_q3;
+    const double sin_q3_right_up_up = softkin_lane_root(sine_square_q3_right_up)*quotient_in_closed_sin_q3;
     const double arm_across_q2_right_up_up = a3*sin_q3_right_up_up;
     const double angle_of_arm_along_q2_right_up_up = softkin_lane_angle(arm_across_q2_right_up_up,
         arm_along_q2_right_up);
-    const double angle_of_wrist_x_from_q1_right_up =
-        softkin_lane_angle(wrist_y_from_q1_before_q6_of_q3_right_up,
-        wrist_x_from_q1_before_q6_of_q3_right_up);
+    const double angle_of_wrist_x_from_q1_right_up = softkin_lane_angle(wrist_z_from_q1_right_up,
+        wrist_x_from_q1_right_up);
     const double angle_q2_right_up_up = angle_of_wrist_x_from_q1_right_up - angle_of_arm_along_q2_right_up_up;
     const double axis_a2_right_up_up = offset_a2 + angle_q2_right_up_up*SOFTKIN_RADIAN;
     const double angle_q3_right_up_up = softkin_lane_angle(sin_q3_right_up_up, cos_q3_right_up);
     const double quotient_in_axis_a3_right_up_up = angle_q3_right_up_up*SOFTKIN_RADIAN;
     const double axis_a3_right_up_up = offset_a3 + quotient_in_axis_a3_right_up_up;
-    const double angle_with_q4_right_up = softkin_lane_angle(r21_from_q1_before_q56_before_q6_of_q3_right_up,
-        r22_from_q1_before_q6_before_q6_of_q3_right_up);
+    const double angle_with_q4_right_up = 180.0*SOFTKIN_DEGREE + angle_with_q4_right_down;
     /* q4 from the sum q234 of angles about parallel axes */
     const double axis_a4_right_up_up = offset_a4
         + (angle_with_q4_right_up - angle_q2_right_up_up - angle_q3_right_up_up)*SOFTKIN_RADIAN;
     const double axis_a5_right_up = offset_a5 - quotient_in_axis_a5_right_down;
-    const double sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right_by_radius_q6_right;
-    const double axis_a6_right_up = offset_a6
-        + softkin_lane_angle(sin_q6_before_q6_of_q3_right_up, r21_from_q1_right_by_radius_q6_right)
-        *SOFTKIN_RADIAN;
+    const double axis_a6_right_up = 180.0 + axis_a6_right_down;
     const double angle_q2_right_down_down = angle_of_arm_along_q2_right_up_down
         + angle_of_wrist_x_from_q1_right_down;
     const double axis_a2_right_down_down = offset_a2 + angle_q2_right_down_down*SOFTKIN_RADIAN;

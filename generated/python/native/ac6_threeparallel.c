@@ -129,6 +129,376 @@ static const int PERIOD_AXES[] = {0, 1, 2, 3, 4, 5};
 
 static const int DISTANCE_AXES[] = {0, 1, 2, 3, 4, 5};
 
+/* The axes that meet a pose, found by steps on the closure, and whether they do. */
+static softkin_status find_meet_pose(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  const ac6_threeparallel_machine *k = machine;
+  const double given_ref_a1 = given[0], given_ref_a2 = given[1], given_ref_a3 = given[2],
+      given_ref_a4 = given[3], given_ref_a5 = given[4], given_ref_a6 = given[5], goal_r11 = given[15],
+      goal_r12 = given[16], goal_r13 = given[17], goal_r21 = given[18], goal_r22 = given[19],
+      goal_r23 = given[20], goal_r31 = given[21], goal_r32 = given[22], goal_r33 = given[23],
+      goal_x = given[24], goal_y = given[25], goal_z = given[26], start_a1 = given[27], start_a2 = given[28],
+      start_a3 = given[29], start_a4 = given[30], start_a5 = given[31], start_a6 = given[32];
+  const int given_sigma_elbow = (int)given[6], given_sigma_shoulder = (int)given[7],
+      given_sigma_wrist = (int)given[8], given_turn_a1 = (int)given[9], given_turn_a2 = (int)given[10],
+      given_turn_a3 = (int)given[11], given_turn_a4 = (int)given[12], given_turn_a5 = (int)given[13],
+      given_turn_a6 = (int)given[14];
+  const double closed_sign_shoulder = given_sigma_shoulder; /* shoulder: +1 left, -1 right */
+  const double closed_sign_elbow = given_sigma_elbow; /* elbow: +1 up, -1 down */
+  const double closed_sign_wrist = given_sigma_wrist; /* wrist: +1 down, -1 up */
+  /* wrist centre: the last joints do not move this point */
+  const double closed_wrist_x = goal_x - k->d6*goal_r13;
+  const double closed_wrist_y = goal_y - k->d6*goal_r23;
+  /* distance of the point from the axis of q1 */
+  const double closed_distance_q1 = sqrt(closed_wrist_x*closed_wrist_x + closed_wrist_y*closed_wrist_y);
+  /* Pythagoras: square of the distance ahead of the axis */
+  const double closed_ahead_squared_q1 = (closed_distance_q1 + k->d4)*(closed_distance_q1 - k->d4);
+  /* how far ahead of the axis the point is; negative: behind it */
+  const double closed_ahead_q1 = -softkin_root(closed_ahead_squared_q1)*closed_sign_shoulder;
+  /* A1: without a commanded turn, the value nearest to this */
+  const double closed_open_a1 = k->single_a1 ? k->mid_a1 : given_ref_a1;
+  const double closed_near_a1 = given_turn_a1 != 0
+      ? 360.0*(given_turn_a1 > 0 ? given_turn_a1 - 1 : given_turn_a1) : closed_open_a1;
+  const double closed_wrist_z = goal_z - k->d6*goal_r33;
+  /* A2: without a commanded turn, the value nearest to this */
+  const double closed_open_a2 = k->single_a2 ? k->mid_a2 : given_ref_a2;
+  const double closed_near_a2 = given_turn_a2 != 0
+      ? 360.0*(given_turn_a2 > 0 ? given_turn_a2 - 1 : given_turn_a2) : closed_open_a2;
+  /* A3: without a commanded turn, the value nearest to this */
+  const double closed_open_a3 = k->single_a3 ? k->mid_a3 : given_ref_a3;
+  const double closed_near_a3 = given_turn_a3 != 0
+      ? 360.0*(given_turn_a3 > 0 ? given_turn_a3 - 1 : given_turn_a3) : closed_open_a3;
+  /* A4: without a commanded turn, the value nearest to this */
+  const double closed_open_a4 = k->single_a4 ? k->mid_a4 : given_ref_a4;
+  const double closed_near_a4 = given_turn_a4 != 0
+      ? 360.0*(given_turn_a4 > 0 ? given_turn_a4 - 1 : given_turn_a4) : closed_open_a4;
+  /* A5: without a commanded turn, the value nearest to this */
+  const double closed_open_a5 = k->single_a5 ? k->mid_a5 : given_ref_a5;
+  const double closed_near_a5 = given_turn_a5 != 0
+      ? 360.0*(given_turn_a5 > 0 ? given_turn_a5 - 1 : given_turn_a5) : closed_open_a5;
+  /* A6: without a commanded turn, the value nearest to this */
+  const double closed_open_a6 = k->single_a6 ? k->mid_a6 : given_ref_a6;
+  const double closed_near_a6 = given_turn_a6 != 0
+      ? 360.0*(given_turn_a6 > 0 ? given_turn_a6 - 1 : given_turn_a6) : closed_open_a6;
+  /* steps of damped least squares on the closure, from one start after the other */
+  double tried_a1 = start_a1;
+  double tried_a2 = start_a2;
+  double tried_a3 = start_a3;
+  double tried_a4 = start_a4;
+  double tried_a5 = start_a5;
+  double tried_a6 = start_a6;
+  int passes_left = 40;
+  int attempt = 0;
+  double error_before = 9.0;
+  double q1, sin_q1, cos_q1, q2, q3, q4, q2_plus_q3, q2_plus_q3_plus_q4, cos_q234, r11_at_q234, q5, sin_q5,
+      cos_q5, r12_at_q5, sin_q234, r13_at_q234, cos_q2, r11_at_q2, x_at_q3, cos_q23, r11_at_q23, x_at_q4,
+      x_at_q5, x_at_q6, d6_times_r12_at_q5, x, wrist_x, r21_at_q234, r22_at_q5, r23_at_q234, r21_at_q2,
+      y_at_q3, r21_at_q23, y_at_q4, y_at_q5, y_at_q6, d6_times_r22_at_q5, y, wrist_y, branch_shoulder,
+      sin_q3, r11_at_q5, q6, sin_q6, cos_q6, r11_at_q6, r21_at_q5, r21_at_q6, r31_at_q5, r31_at_q6,
+      r13_at_q6, r23_at_q6, r33_at_q6, r32_at_q5, error_1, error_2, sin_q2, z_at_q3, sin_q23, z_at_q4,
+      z_at_q6, z, error_3, error_4, error_5, error_6, value_in_error, error, free_angle, free_turn,
+      closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1, closed_cos_q1, closed_sin_q1,
+      closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1, cos_q1_times_one_by_machine_scale, rate_1_2,
+      z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4, rate_1_4, y_minus_y_at_q5, rate_1_5, z_minus_z_at_q6,
+      y_minus_y_at_q6, rate_1_6, product_in_damping, damping, product_1_1, sin_q1_times_one_by_machine_scale,
+      rate_2_2, rate_2_3, rate_2_4, x_minus_x_at_q5, rate_2_5, x_minus_x_at_q6, rate_2_6, product_1_2,
+      rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6, product_1_3, rate_1_2_plus_rate_1_3_plus_rate_1_4,
+      product_1_4, product_1_5, product_1_6, product_2_2, product_2_3, rate_2_2_plus_rate_2_3_plus_rate_2_4,
+      product_2_4, product_2_5, product_2_6, product_3_3, rate_3_2_plus_rate_3_3_plus_rate_3_4, product_3_4,
+      product_3_5, product_3_6, product_4_4, product_4_5, product_4_6, product_5_5, product_5_6, product_6_6,
+      multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6, step_a1,
+      sum_in_step_a2, step_a2, step_a3, step_a4, step_a5, step_a6, step_length, shrinking,
+      closed_r21_from_q1, closed_r22_from_q1, closed_radius_q6, closed_q6_radius_of_q5, closed_cos_q5,
+      closed_reference_a6, closed_along_q6, closed_length_q6, closed_cos_q6, closed_across_q6, closed_sin_q6,
+      closed_r31_from_q1_before_q6, closed_r31_from_q1_before_q56, closed_wrist_x_from_q1,
+      closed_r33_from_q1_before_q6, closed_wrist_z_from_q1, closed_reach, closed_reference_a2,
+      closed_one_less_cos_q3, closed_one_plus_cos_q3, closed_cos_q3, closed_arm_along_q2,
+      closed_sine_square_q3, closed_sin_q3, closed_arm_across_q2, closed_direction_x_q2,
+      closed_direction_y_q2, closed_angle_q2, closed_axis_a2, closed_angle_q3, closed_axis_a3,
+      closed_angle_with_q4, closed_axis_a4, closed_axis_a5, closed_axis_a6, shared_quotient;
+  int next_attempt;
+  bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, mirrors;
+  for (int pass = 0;; pass += 1) {
+    if (pass == 164) {
+      return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
+    }
+    q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
+    sin_q1 = sin(q1);
+    cos_q1 = cos(q1);
+    q2 = (tried_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    q3 = (tried_a3 - k->offset_a3)*SOFTKIN_DEGREE;
+    q4 = (tried_a4 - k->offset_a4)*SOFTKIN_DEGREE;
+    q2_plus_q3 = q2 + q3;
+    q2_plus_q3_plus_q4 = q2_plus_q3 + q4;
+    cos_q234 = cos(q2_plus_q3_plus_q4);
+    r11_at_q234 = cos_q1*cos_q234;
+    q5 = (tried_a5 - k->offset_a5)*SOFTKIN_DEGREE;
+    sin_q5 = sin(q5);
+    cos_q5 = cos(q5);
+    r12_at_q5 = r11_at_q234*sin_q5 - cos_q5*sin_q1;
+    sin_q234 = sin(q2_plus_q3_plus_q4);
+    r13_at_q234 = -cos_q1*sin_q234;
+    cos_q2 = cos(q2);
+    r11_at_q2 = cos_q1*cos_q2;
+    x_at_q3 = k->a2*r11_at_q2;
+    cos_q23 = cos(q2_plus_q3);
+    r11_at_q23 = cos_q1*cos_q23;
+    x_at_q4 = x_at_q3 + k->a3*r11_at_q23;
+    x_at_q5 = x_at_q4 + k->d4*sin_q1;
+    x_at_q6 = x_at_q5 - k->d5*r13_at_q234;
+    d6_times_r12_at_q5 = k->d6*r12_at_q5;
+    x = x_at_q6 - d6_times_r12_at_q5;
+    wrist_x = d6_times_r12_at_q5 + x; /* wrist centre: the last joints do not move this point */
+    r21_at_q234 = cos_q234*sin_q1;
+    r22_at_q5 = cos_q1*cos_q5 + r21_at_q234*sin_q5;
+    r23_at_q234 = -sin_q1*sin_q234;
+    r21_at_q2 = cos_q2*sin_q1;
+    y_at_q3 = k->a2*r21_at_q2;
+    r21_at_q23 = cos_q23*sin_q1;
+    y_at_q4 = y_at_q3 + k->a3*r21_at_q23;
+    y_at_q5 = y_at_q4 - k->d4*cos_q1;
+    y_at_q6 = y_at_q5 - k->d5*r23_at_q234;
+    d6_times_r22_at_q5 = k->d6*r22_at_q5;
+    y = y_at_q6 - d6_times_r22_at_q5;
+    wrist_y = d6_times_r22_at_q5 + y;
+    branch_shoulder = -k->one_by_machine_scale*(wrist_x*cos_q1 + wrist_y*sin_q1);
+    beside_shoulder = branch_shoulder*closed_sign_shoulder < -1e-6;
+    sin_q3 = sin(q3);
+    beside_elbow = closed_sign_elbow*sin_q3 < -1e-6;
+    beside_wrist = closed_sign_wrist*sin_q5 < -1e-6;
+    r11_at_q5 = r11_at_q234*cos_q5 + sin_q1*sin_q5;
+    q6 = (tried_a6 - k->offset_a6)*SOFTKIN_DEGREE;
+    sin_q6 = sin(q6);
+    cos_q6 = cos(q6);
+    r11_at_q6 = r11_at_q5*cos_q6 + r13_at_q234*sin_q6;
+    r21_at_q5 = r21_at_q234*cos_q5 - cos_q1*sin_q5;
+    r21_at_q6 = r21_at_q5*cos_q6 + r23_at_q234*sin_q6;
+    r31_at_q5 = cos_q5*sin_q234;
+    r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6;
+    r13_at_q6 = r13_at_q234*cos_q6 - r11_at_q5*sin_q6;
+    r23_at_q6 = r23_at_q234*cos_q6 - r21_at_q5*sin_q6;
+    r33_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6;
+    r32_at_q5 = sin_q234*sin_q5;
+    error_1 = (goal_x - x)*k->one_by_machine_scale;
+    error_2 = (goal_y - y)*k->one_by_machine_scale;
+    sin_q2 = sin(q2);
+    z_at_q3 = k->d1 + k->a2*sin_q2;
+    sin_q23 = sin(q2_plus_q3);
+    z_at_q4 = z_at_q3 + k->a3*sin_q23;
+    z_at_q6 = z_at_q4 - k->d5*cos_q234;
+    z = z_at_q6 - k->d6*r32_at_q5;
+    error_3 = (goal_z - z)*k->one_by_machine_scale;
+    error_4 = 0.5*(goal_r23*r32_at_q5 + goal_r31*r21_at_q6 + goal_r32*r23_at_q6 - goal_r21*r31_at_q6
+        - goal_r22*r33_at_q6 - goal_r33*r22_at_q5);
+    error_5 = 0.5*(goal_r11*r31_at_q6 + goal_r12*r33_at_q6 + goal_r33*r12_at_q5 - goal_r13*r32_at_q5
+        - goal_r31*r11_at_q6 - goal_r32*r13_at_q6);
+    error_6 = 0.5*(goal_r13*r22_at_q5 + goal_r21*r11_at_q6 + goal_r22*r13_at_q6 - goal_r11*r21_at_q6
+        - goal_r12*r23_at_q6 - goal_r23*r12_at_q5);
+    value_in_error = goal_r11*r11_at_q6 + goal_r12*r13_at_q6 + goal_r21*r21_at_q6 + goal_r22*r23_at_q6
+        + goal_r31*r31_at_q6 + goal_r32*r33_at_q6 - 1.0 - goal_r13*r12_at_q5 - goal_r23*r22_at_q5
+        - goal_r33*r32_at_q5 > 0.0 ? 0.0 : 1.0;
+    /* error of the pose, in characteristic lengths and radians */
+    error = value_in_error + sqrt(error_1*error_1 + error_2*error_2 + error_3*error_3 + error_4*error_4
+        + error_5*error_5 + error_6*error_6);
+    another = passes_left <= 0;
+    /* the error is rounding, and steps make it no smaller */
+    pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
+    pose_is_met = pose_is_close && (!beside_elbow) && (!beside_shoulder) && (!beside_wrist);
+    next_attempt = attempt + (another ? 1 : 0);
+    mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_wrist);
+    free_angle = next_attempt > 0 ? 1e-6 : 1e-11;
+    free_turn = -137.5*(next_attempt > 1 ? 1 - next_attempt : 0);
+    closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
+    free_angle_times_machine_scale = free_angle*k->machine_scale;
+    closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? closed_distance_q1*closed_distance_q1 : 1.0;
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
+    closed_cos_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*closed_wrist_x - closed_wrist_y*k->d4)/closed_divisor_q1
+        : cos(closed_reference_a1);
+    closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*closed_wrist_y + closed_wrist_x*k->d4)/closed_divisor_q1
+        : sin(closed_reference_a1);
+    closed_axis_a1 = softkin_on_turn(k->offset_a1
+        + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
+    rate_1_1 = -k->one_by_machine_scale*y;
+    rate_2_1 = k->one_by_machine_scale*x;
+    z_minus_d1 = z - k->d1;
+    cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
+    rate_1_2 = -z_minus_d1*cos_q1_times_one_by_machine_scale;
+    z_minus_z_at_q3 = z - z_at_q3;
+    rate_1_3 = -z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
+    z_minus_z_at_q4 = z - z_at_q4;
+    rate_1_4 = -z_minus_z_at_q4*cos_q1_times_one_by_machine_scale;
+    y_minus_y_at_q5 = y - y_at_q5;
+    rate_1_5 = k->one_by_machine_scale*(y_minus_y_at_q5*cos_q234 - r23_at_q234*z_minus_z_at_q4);
+    z_minus_z_at_q6 = z - z_at_q6;
+    y_minus_y_at_q6 = y - y_at_q6;
+    rate_1_6 = (r32_at_q5*y_minus_y_at_q6 - r22_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale;
+    product_in_damping = 0.001*error;
+    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
+    product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4
+        + rate_1_5*rate_1_5 + rate_1_6*rate_1_6;
+    sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
+    rate_2_2 = -z_minus_d1*sin_q1_times_one_by_machine_scale;
+    rate_2_3 = -z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
+    rate_2_4 = -z_minus_z_at_q4*sin_q1_times_one_by_machine_scale;
+    x_minus_x_at_q5 = x - x_at_q5;
+    rate_2_5 = (r13_at_q234*z_minus_z_at_q4 - x_minus_x_at_q5*cos_q234)*k->one_by_machine_scale;
+    x_minus_x_at_q6 = x - x_at_q6;
+    rate_2_6 = k->one_by_machine_scale*(r12_at_q5*z_minus_z_at_q6 - r32_at_q5*x_minus_x_at_q6);
+    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4
+        + rate_1_5*rate_2_5 + rate_1_6*rate_2_6;
+    rate_3_2 = k->one_by_machine_scale*(x*cos_q1 + y*sin_q1);
+    rate_3_3 = -k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
+    rate_3_4 = -k->one_by_machine_scale*((x_at_q4 - x)*cos_q1 + (y_at_q4 - y)*sin_q1);
+    rate_3_5 = (r23_at_q234*x_minus_x_at_q5 - r13_at_q234*y_minus_y_at_q5)*k->one_by_machine_scale;
+    rate_3_6 = (r22_at_q5*x_minus_x_at_q6 - r12_at_q5*y_minus_y_at_q6)*k->one_by_machine_scale;
+    product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5
+        + rate_1_6*rate_3_6;
+    rate_1_2_plus_rate_1_3_plus_rate_1_4 = rate_1_2 + rate_1_3 + rate_1_4;
+    product_1_4 = rate_1_2_plus_rate_1_3_plus_rate_1_4*sin_q1 - r12_at_q5*rate_1_6 - r13_at_q234*rate_1_5;
+    product_1_5 = -rate_1_2_plus_rate_1_3_plus_rate_1_4*cos_q1 - r22_at_q5*rate_1_6 - r23_at_q234*rate_1_5;
+    product_1_6 = rate_1_1 - rate_1_5*cos_q234 - r32_at_q5*rate_1_6;
+    product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4
+        + rate_2_5*rate_2_5 + rate_2_6*rate_2_6;
+    product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5
+        + rate_2_6*rate_3_6;
+    rate_2_2_plus_rate_2_3_plus_rate_2_4 = rate_2_2 + rate_2_3 + rate_2_4;
+    product_2_4 = rate_2_2_plus_rate_2_3_plus_rate_2_4*sin_q1 - r12_at_q5*rate_2_6 - r13_at_q234*rate_2_5;
+    product_2_5 = -rate_2_2_plus_rate_2_3_plus_rate_2_4*cos_q1 - r22_at_q5*rate_2_6 - r23_at_q234*rate_2_5;
+    product_2_6 = rate_2_1 - rate_2_5*cos_q234 - r32_at_q5*rate_2_6;
+    product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5
+        + rate_3_6*rate_3_6;
+    rate_3_2_plus_rate_3_3_plus_rate_3_4 = rate_3_2 + rate_3_3 + rate_3_4;
+    product_3_4 = rate_3_2_plus_rate_3_3_plus_rate_3_4*sin_q1 - r12_at_q5*rate_3_6 - r13_at_q234*rate_3_5;
+    product_3_5 = -rate_3_2_plus_rate_3_3_plus_rate_3_4*cos_q1 - r22_at_q5*rate_3_6 - r23_at_q234*rate_3_5;
+    product_3_6 = -rate_3_5*cos_q234 - r32_at_q5*rate_3_6;
+    product_4_4 = damping + r12_at_q5*r12_at_q5 + r13_at_q234*r13_at_q234 + 3.0*sin_q1*sin_q1;
+    product_4_5 = r12_at_q5*r22_at_q5 + r13_at_q234*r23_at_q234 - 3.0*cos_q1*sin_q1;
+    product_4_6 = r13_at_q234*cos_q234 + r12_at_q5*r32_at_q5;
+    product_5_5 = damping + 3.0*cos_q1*cos_q1 + r22_at_q5*r22_at_q5 + r23_at_q234*r23_at_q234;
+    product_5_6 = r23_at_q234*cos_q234 + r22_at_q5*r32_at_q5;
+    product_6_6 = 1.0 + damping + cos_q234*cos_q234 + r32_at_q5*r32_at_q5;
+    double system[6][7] = {{product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6,
+        error_1}, {product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6, error_2},
+        {product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6, error_3},
+        {product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6, error_4},
+        {product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6, error_5},
+        {product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6, error_6}};
+    softkin_solve(&system[0][0], 6, 1);
+    multiplier_1 = system[0][6];
+    multiplier_2 = system[1][6];
+    multiplier_3 = system[2][6];
+    multiplier_4 = system[3][6];
+    multiplier_5 = system[4][6];
+    multiplier_6 = system[5][6];
+    step_a1 = multiplier_6 + multiplier_1*rate_1_1 + multiplier_2*rate_2_1;
+    sum_in_step_a2 = multiplier_4*sin_q1 - multiplier_5*cos_q1;
+    step_a2 = sum_in_step_a2 + multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2;
+    step_a3 = sum_in_step_a2 + multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
+    step_a4 = sum_in_step_a2 + multiplier_1*rate_1_4 + multiplier_2*rate_2_4 + multiplier_3*rate_3_4;
+    step_a5 = multiplier_1*rate_1_5 + multiplier_2*rate_2_5 + multiplier_3*rate_3_5 - multiplier_6*cos_q234
+        - multiplier_4*r13_at_q234 - multiplier_5*r23_at_q234;
+    step_a6 = multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6 - multiplier_4*r12_at_q5
+        - multiplier_5*r22_at_q5 - multiplier_6*r32_at_q5;
+    step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3 + step_a4*step_a4
+        + step_a5*step_a5 + step_a6*step_a6);
+    shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
+    closed_r21_from_q1 = closed_cos_q1*goal_r21 - closed_sin_q1*goal_r11;
+    closed_r22_from_q1 = closed_cos_q1*goal_r22 - closed_sin_q1*goal_r12;
+    /* polar coordinates: the radius at angle q6 */
+    closed_radius_q6 = sqrt(closed_r21_from_q1*closed_r21_from_q1 + closed_r22_from_q1*closed_r22_from_q1);
+    closed_q6_radius_of_q5 = closed_radius_q6*closed_sign_wrist;
+    /* cosine and sine of q5 from the q6 radius and r22 equations */
+    closed_cos_q5 = closed_sin_q1*goal_r13 - closed_cos_q1*goal_r23;
+    closed_reference_a6 = SOFTKIN_DEGREE*(free_turn + given_ref_a6 - k->offset_a6);
+    /* polar coordinates: angle q6 from the r21 and r23 equations */
+    closed_along_q6 = -closed_r21_from_q1*closed_sign_wrist;
+    closed_length_q6 = closed_radius_q6 > free_angle ? closed_radius_q6 : 1.0;
+    /* at a singularity: the angle of the reference */
+    closed_cos_q6 = closed_radius_q6 > free_angle ? closed_along_q6/closed_length_q6
+        : cos(closed_reference_a6);
+    closed_across_q6 = closed_r22_from_q1*closed_sign_wrist;
+    closed_sin_q6 = closed_radius_q6 > free_angle ? closed_across_q6/closed_length_q6
+        : sin(closed_reference_a6);
+    closed_r31_from_q1_before_q6 = closed_cos_q6*goal_r31 - closed_sin_q6*goal_r32;
+    closed_r31_from_q1_before_q56 = closed_cos_q5*closed_r31_from_q1_before_q6
+        - closed_q6_radius_of_q5*goal_r33;
+    /* coordinate of the point that the remaining links must reach */
+    closed_wrist_x_from_q1 = closed_ahead_q1 - closed_r31_from_q1_before_q56*k->d5;
+    closed_r33_from_q1_before_q6 = closed_cos_q6*goal_r32 + closed_sin_q6*goal_r31;
+    /* coordinate of the point that the remaining links must reach */
+    closed_wrist_z_from_q1 = closed_wrist_z + closed_r33_from_q1_before_q6*k->d5 - k->d1;
+    /* distance that the remaining links must span */
+    closed_reach = sqrt(closed_wrist_x_from_q1*closed_wrist_x_from_q1
+        + closed_wrist_z_from_q1*closed_wrist_z_from_q1);
+    closed_reference_a2 = SOFTKIN_DEGREE*(free_turn + given_ref_a2 - k->offset_a2);
+    /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+    closed_one_less_cos_q3 = (k->a2_plus_a3 + closed_reach)*(k->a2_plus_a3 - closed_reach);
+    /* 1 + cosine, times the scale */
+    closed_one_plus_cos_q3 = (closed_reach - k->a2_minus_a3)*(k->a2_minus_a3 + closed_reach);
+    closed_cos_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3)*k->quotient_in_closed_cos_q3;
+    closed_arm_along_q2 = k->a2 + k->a3*closed_cos_q3;
+    /* sine squared, times the squared scale */
+    closed_sine_square_q3 = closed_one_less_cos_q3*closed_one_plus_cos_q3;
+    closed_sin_q3 = softkin_root(closed_sine_square_q3)*closed_sign_elbow*k->quotient_in_closed_sin_q3;
+    closed_arm_across_q2 = k->a3*closed_sin_q3;
+    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
+    closed_direction_x_q2 = closed_reach > free_angle_times_machine_scale
+        ? closed_arm_across_q2*closed_wrist_z_from_q1 + closed_arm_along_q2*closed_wrist_x_from_q1
+        : cos(closed_reference_a2);
+    closed_direction_y_q2 = closed_reach > free_angle_times_machine_scale
+        ? closed_arm_along_q2*closed_wrist_z_from_q1 - closed_arm_across_q2*closed_wrist_x_from_q1
+        : sin(closed_reference_a2);
+    closed_angle_q2 = softkin_angle_of(closed_direction_y_q2, closed_direction_x_q2);
+    closed_axis_a2 = softkin_on_turn(k->offset_a2 + closed_angle_q2*SOFTKIN_RADIAN, closed_near_a2);
+    closed_angle_q3 = softkin_angle_of(closed_sin_q3, closed_cos_q3);
+    closed_axis_a3 = softkin_on_turn(k->offset_a3 + closed_angle_q3*SOFTKIN_RADIAN, closed_near_a3);
+    closed_angle_with_q4 = softkin_angle_of(closed_r31_from_q1_before_q56, closed_r33_from_q1_before_q6);
+    /* q4 from the sum q234 of angles about parallel axes */
+    closed_axis_a4 = softkin_on_turn(k->offset_a4
+        + (closed_angle_with_q4 - closed_angle_q2 - closed_angle_q3)*SOFTKIN_RADIAN, closed_near_a4);
+    closed_axis_a5 = softkin_on_turn(k->offset_a5
+        + softkin_angle_of(closed_q6_radius_of_q5, closed_cos_q5)*SOFTKIN_RADIAN, closed_near_a5);
+    closed_axis_a6 = softkin_on_turn(k->offset_a6
+        + softkin_angle_of(closed_sin_q6, closed_cos_q6)*SOFTKIN_RADIAN, closed_near_a6);
+    shared_quotient = shrinking*SOFTKIN_RADIAN;
+    if (pose_is_met || (another && (next_attempt >= 4))) {
+      break;
+    }
+    tried_a1 = (another ? closed_axis_a1
+        : (mirrors ? (beside_shoulder ? 2.0*closed_axis_a1 - tried_a1 : tried_a1) : tried_a1
+        + shared_quotient*step_a1));
+    tried_a2 = (another ? closed_axis_a2 : (mirrors ? tried_a2 : tried_a2 + shared_quotient*step_a2));
+    tried_a3 = (another ? closed_axis_a3
+        : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
+        + shared_quotient*step_a3));
+    tried_a4 = (another ? closed_axis_a4 : (mirrors ? tried_a4 : tried_a4 + shared_quotient*step_a4));
+    tried_a5 = (another ? closed_axis_a5 : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
+    tried_a6 = (another ? closed_axis_a6
+        : (mirrors ? (beside_wrist ? 2.0*closed_axis_a6 - tried_a6 : tried_a6) : tried_a6
+        + shared_quotient*step_a6));
+    passes_left = (another ? 40 : passes_left - 1);
+    attempt = next_attempt;
+    error_before = (another || mirrors ? 9.0 : error);
+  }
+  const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
+  const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);
+  const double chosen_a3 = softkin_on_turn(tried_a3, closed_near_a3);
+  const double chosen_a4 = softkin_on_turn(tried_a4, closed_near_a4);
+  const double chosen_a5 = softkin_on_turn(tried_a5, closed_near_a5);
+  const double chosen_a6 = softkin_on_turn(tried_a6, closed_near_a6);
+  found[0] = pose_is_met;
+  found[1] = chosen_a1;
+  found[2] = chosen_a2;
+  found[3] = chosen_a3;
+  found[4] = chosen_a4;
+  found[5] = chosen_a5;
+  found[6] = chosen_a6;
+  return SOFTKIN_OK;
+}
+
 /* Position, rotation, and the signed margin of every branch. */
 static softkin_status find_forward(const void *machine, const double *axes, softkin_frame *frame,
     double *margins, softkin_refusal *why) {
@@ -151,9 +521,9 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double cos_q234 = cos(q2_plus_q3_plus_q4);
   const double r11_at_q234 = cos_q1*cos_q234;
   const double cos_q5 = cos(q5);
-  const double r12_at_q5 = cos_q5*sin_q1 - r11_at_q234*sin_q5;
+  const double r12_at_q5 = r11_at_q234*sin_q5 - cos_q5*sin_q1;
   const double sin_q234 = sin(q2_plus_q3_plus_q4);
-  const double r12_at_q234 = -cos_q1*sin_q234;
+  const double r13_at_q234 = -cos_q1*sin_q234;
   const double cos_q2 = cos(q2);
   const double r11_at_q2 = cos_q1*cos_q2;
   const double x_at_q3 = k->a2*r11_at_q2;
@@ -161,56 +531,56 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double r11_at_q23 = cos_q1*cos_q23;
   const double x_at_q4 = x_at_q3 + k->a3*r11_at_q23;
   const double x_at_q5 = x_at_q4 + k->d4*sin_q1;
-  const double x_at_q6 = x_at_q5 - k->d5*r12_at_q234;
+  const double x_at_q6 = x_at_q5 - k->d5*r13_at_q234;
   const double d6_times_r12_at_q5 = k->d6*r12_at_q5;
-  const double x = d6_times_r12_at_q5 + x_at_q6;
+  const double x = x_at_q6 - d6_times_r12_at_q5;
   const double r21_at_q234 = cos_q234*sin_q1;
-  const double r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5;
-  const double r22_at_q234 = -sin_q1*sin_q234;
+  const double r22_at_q5 = cos_q1*cos_q5 + r21_at_q234*sin_q5;
+  const double r23_at_q234 = -sin_q1*sin_q234;
   const double r21_at_q2 = cos_q2*sin_q1;
   const double y_at_q3 = k->a2*r21_at_q2;
   const double r21_at_q23 = cos_q23*sin_q1;
   const double y_at_q4 = y_at_q3 + k->a3*r21_at_q23;
   const double y_at_q5 = y_at_q4 - k->d4*cos_q1;
-  const double y_at_q6 = y_at_q5 - k->d5*r22_at_q234;
+  const double y_at_q6 = y_at_q5 - k->d5*r23_at_q234;
   const double d6_times_r22_at_q5 = k->d6*r22_at_q5;
-  const double y = d6_times_r22_at_q5 + y_at_q6;
-  const double r32_at_q5 = -sin_q234*sin_q5;
+  const double y = y_at_q6 - d6_times_r22_at_q5;
+  const double r32_at_q5 = sin_q234*sin_q5;
   const double sin_q2 = sin(q2);
   const double z_at_q3 = k->d1 + k->a2*sin_q2;
   const double sin_q23 = sin(q2_plus_q3);
   const double z_at_q4 = z_at_q3 + k->a3*sin_q23;
   const double z_at_q6 = z_at_q4 - k->d5*cos_q234;
-  const double z = z_at_q6 + k->d6*r32_at_q5;
+  const double z = z_at_q6 - k->d6*r32_at_q5;
   const double r11_at_q5 = r11_at_q234*cos_q5 + sin_q1*sin_q5;
   const double q6 = SOFTKIN_DEGREE*(axis_a6 - k->offset_a6);
   const double sin_q6 = sin(q6);
   const double cos_q6 = cos(q6);
-  const double r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q234*sin_q6;
-  const double r12_at_q6 = r12_at_q234*cos_q6 - r11_at_q5*sin_q6;
+  const double r11_at_q6 = r11_at_q5*cos_q6 + r13_at_q234*sin_q6;
+  const double r13_at_q6 = r13_at_q234*cos_q6 - r11_at_q5*sin_q6;
   const double r21_at_q5 = r21_at_q234*cos_q5 - cos_q1*sin_q5;
-  const double r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q234*sin_q6;
-  const double r22_at_q6 = r22_at_q234*cos_q6 - r21_at_q5*sin_q6;
+  const double r21_at_q6 = r21_at_q5*cos_q6 + r23_at_q234*sin_q6;
+  const double r23_at_q6 = r23_at_q234*cos_q6 - r21_at_q5*sin_q6;
   const double r31_at_q5 = cos_q5*sin_q234;
   const double r31_at_q6 = cos_q234*sin_q6 + r31_at_q5*cos_q6;
-  const double r32_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6;
+  const double r33_at_q6 = cos_q234*cos_q6 - r31_at_q5*sin_q6;
   /* wrist centre: the last joints do not move this point */
-  const double wrist_x = x - d6_times_r12_at_q5;
-  const double wrist_y = y - d6_times_r22_at_q5;
+  const double wrist_x = d6_times_r12_at_q5 + x;
+  const double wrist_y = d6_times_r22_at_q5 + y;
   const double branch_shoulder = -k->one_by_machine_scale*(wrist_x*cos_q1 + wrist_y*sin_q1);
   const double sin_q3 = sin(q3);
   frame->position[0] = x;
   frame->position[1] = y;
   frame->position[2] = z;
   frame->rotation[0][0] = r11_at_q6;
-  frame->rotation[0][1] = r12_at_q6;
-  frame->rotation[0][2] = r12_at_q5;
+  frame->rotation[0][1] = r13_at_q6;
+  frame->rotation[0][2] = -r12_at_q5;
   frame->rotation[1][0] = r21_at_q6;
-  frame->rotation[1][1] = r22_at_q6;
-  frame->rotation[1][2] = r22_at_q5;
+  frame->rotation[1][1] = r23_at_q6;
+  frame->rotation[1][2] = -r22_at_q5;
   frame->rotation[2][0] = r31_at_q6;
-  frame->rotation[2][1] = r32_at_q6;
-  frame->rotation[2][2] = r32_at_q5;
+  frame->rotation[2][1] = r33_at_q6;
+  frame->rotation[2][2] = -r32_at_q5;
   margins[0] = branch_shoulder;
   margins[1] = sin_q3;
   margins[2] = sin_q5;
@@ -245,362 +615,59 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   }
   const double sign_shoulder = sigma_shoulder; /* shoulder: +1 left, -1 right */
   /* how far ahead of the axis the point is; negative: behind it */
-  const double ahead_q1_before_q1_for_q3 = -softkin_root(ahead_squared_q1)*sign_shoulder;
+  const double ahead_q1 = -softkin_root(ahead_squared_q1)*sign_shoulder;
   const double sign_wrist = sigma_wrist; /* wrist: +1 down, -1 up */
-  double cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3;
+  double cos_q1, sin_q1;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - k->d4*wrist_y)/distance_q1_squared;
-    sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + k->d4*wrist_x)/distance_q1_squared;
+    cos_q1 = (ahead_q1*wrist_x - k->d4*wrist_y)/distance_q1_squared;
+    sin_q1 = (ahead_q1*wrist_y + k->d4*wrist_x)/distance_q1_squared;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3 = cos(reference_a1);
-    sin_q1_before_q1_for_q3 = sin(reference_a1);
+    cos_q1 = cos(reference_a1);
+    sin_q1 = sin(reference_a1);
   }
-  const double wrist_z = z - k->d6*r33;
-  const double wrist_y_from_q1_fixed = wrist_z - k->d1;
-  double ahead_q1, cos_q1, sin_q1;
-  if (ahead_squared_q1 > k->machine_scale_squared_times_plane) {
-    ahead_q1 = ahead_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-    cos_q1 = cos_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-    sin_q1 = sin_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-  } else {
-    const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
-    const double cos_of_reference_a6 = cos(reference_a6);
-    const double sin_of_reference_a6 = sin(reference_a6);
-    const double r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3;
-    const double r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3;
-    const double radius_q6_before_q1_for_q3 = sqrt(r21_from_q1_before_q1_for_q3*r21_from_q1_before_q1_for_q3
-        + r22_from_q1_before_q1_for_q3*r22_from_q1_before_q1_for_q3);
-    const double q6_radius_of_q5_before_q1_for_q3 = radius_q6_before_q1_for_q3*sign_wrist;
-    const double cos_q5_before_q1_for_q3 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3;
-    const double r21_from_q1_rate_q1_for_q3 = -r11*cos_q1_before_q1_for_q3 - r21*sin_q1_before_q1_for_q3;
-    const double r22_from_q1_rate_q1_for_q3 = -r12*cos_q1_before_q1_for_q3 - r22*sin_q1_before_q1_for_q3;
-    const double along_q6_rate_q1_for_q3 = -r21_from_q1_rate_q1_for_q3*sign_wrist;
-    const double across_q6_rate_q1_for_q3 = r22_from_q1_rate_q1_for_q3*sign_wrist;
-    double cos_q6_before_q1_for_q3, sin_q6_before_q1_for_q3, radius_q6_rate_q1_for_q3, cos_q6_rate_q1_for_q3,
-        sin_q6_rate_q1_for_q3;
-    if (radius_q6_before_q1_for_q3 > 1e-11) {
-      const double along_q6_before_q1_for_q3 = -r21_from_q1_before_q1_for_q3*sign_wrist;
-      const double one_by_radius_q6_before_q1_for_q3 = 1.0/radius_q6_before_q1_for_q3;
-      cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3;
-      const double across_q6_before_q1_for_q3 = r22_from_q1_before_q1_for_q3*sign_wrist;
-      sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3*one_by_radius_q6_before_q1_for_q3;
-      radius_q6_rate_q1_for_q3 = (r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-          + r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3)/radius_q6_before_q1_for_q3;
-      cos_q6_rate_q1_for_q3 = (along_q6_rate_q1_for_q3 - radius_q6_rate_q1_for_q3*cos_q6_before_q1_for_q3)
-          *one_by_radius_q6_before_q1_for_q3;
-      sin_q6_rate_q1_for_q3 = (across_q6_rate_q1_for_q3 - radius_q6_rate_q1_for_q3*sin_q6_before_q1_for_q3)
-          *one_by_radius_q6_before_q1_for_q3;
-    } else {
-      cos_q6_before_q1_for_q3 = cos_of_reference_a6;
-      sin_q6_before_q1_for_q3 = sin_of_reference_a6;
-      if (radius_q6_before_q1_for_q3 > 0.0) {
-        radius_q6_rate_q1_for_q3 = (r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
-            + r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3)/radius_q6_before_q1_for_q3;
-      } else {
-        radius_q6_rate_q1_for_q3 = 0.0;
-      }
-      cos_q6_rate_q1_for_q3 = 0.0;
-      sin_q6_rate_q1_for_q3 = 0.0;
-    }
-    const double r21_from_q1_before_q6_before_q1_for_q3 = r31*cos_q6_before_q1_for_q3
-        - r32*sin_q6_before_q1_for_q3;
-    const double r21_from_q1_before_q56_before_q1_for_q3 = r21_from_q1_before_q6_before_q1_for_q3
-        *cos_q5_before_q1_for_q3 - q6_radius_of_q5_before_q1_for_q3*r33;
-    const double wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3
-        - k->d5*r21_from_q1_before_q56_before_q1_for_q3;
-    const double r22_from_q1_before_q6_before_q1_for_q3 = r32*cos_q6_before_q1_for_q3
-        + r31*sin_q6_before_q1_for_q3;
-    const double wrist_y_from_q1_before_q1_for_q3 = wrist_y_from_q1_fixed
-        + k->d5*r22_from_q1_before_q6_before_q1_for_q3;
-    /* q3 has solutions where this is within its bound */
-    const double value_q1_for_q3 = wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
-        + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - k->a2_squared_plus_a3_squared;
-    if (fabs(value_q1_for_q3) <= k->size_q1_for_q3) {
-      ahead_q1 = ahead_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-      cos_q1 = cos_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-      sin_q1 = sin_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-    } else {
-      const double r23_from_q1_rate_q1_for_q3 = -r13*cos_q1_before_q1_for_q3 - r23*sin_q1_before_q1_for_q3;
-      const double q6_radius_of_q5_rate_q1_for_q3 = radius_q6_rate_q1_for_q3*sign_wrist;
-      const double r21_from_q1_before_q6_rate_q1_for_q3 = r31*cos_q6_rate_q1_for_q3
-          - r32*sin_q6_rate_q1_for_q3;
-      const double r21_from_q1_before_q56_rate_q1_for_q3 = r21_from_q1_before_q6_rate_q1_for_q3
-          *cos_q5_before_q1_for_q3 - q6_radius_of_q5_rate_q1_for_q3*r33
-          - r21_from_q1_before_q6_before_q1_for_q3*r23_from_q1_rate_q1_for_q3;
-      const double wrist_x_from_q1_rate_q1_for_q3 = -k->d4 - k->d5*r21_from_q1_before_q56_rate_q1_for_q3;
-      const double r22_from_q1_before_q6_rate_q1_for_q3 = r32*cos_q6_rate_q1_for_q3
-          + r31*sin_q6_rate_q1_for_q3;
-      const double wrist_y_from_q1_rate_q1_for_q3 = k->d5*r22_from_q1_before_q6_rate_q1_for_q3;
-      /* its derivative by q1 */
-      const double rate_q1_for_q3 = 2.0
-          *(wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_rate_q1_for_q3
-          + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3);
-      double turn_q1_for_q3;
-      if (fabs(rate_q1_for_q3) > k->size_q1_for_q3_times_rounding) {
-        const double excess_q1_for_q3 = value_q1_for_q3 > 0.0 ? value_q1_for_q3 - k->size_q1_for_q3
-            : k->size_q1_for_q3 + value_q1_for_q3;
-        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3; /* turn of q1 to first order */
-      } else {
-        turn_q1_for_q3 = 1.0; /* turn of q1 to first order */
-      }
-      const double turn_q1_for_q3_squared = turn_q1_for_q3*turn_q1_for_q3;
-      const double sum_in_across_q6_q1_for_q3 = k->d1_times_d5_times_2 - k->twice_d5*wrist_z;
-      const double product_in_across_q6_q1_for_q3 = ahead_q1_before_q1_for_q3*k->twice_d5
-          *cos_q5_before_q1_for_q3;
-      const double along_q6_q1_for_q3 = -product_in_across_q6_q1_for_q3*r31 - r32*sum_in_across_q6_q1_for_q3;
-      const double across_q6_q1_for_q3 = product_in_across_q6_q1_for_q3*r32 - r31*sum_in_across_q6_q1_for_q3;
-      const double swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3
-          + along_q6_q1_for_q3*along_q6_q1_for_q3);
-      /* whether the first order is not enough: then q6 is chosen first */
-      const bool follows_q1_for_q3 = (turn_q1_for_q3_squared > 1e-12)
-          || ((across_q6_rate_q1_for_q3*across_q6_rate_q1_for_q3
-          + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3)*swing_q6_q1_for_q3
-          *turn_q1_for_q3_squared > k->product_in_follows_q1_for_q3*radius_q6_before_q1_for_q3
-          *radius_q6_before_q1_for_q3);
-      double best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3;
-      if (follows_q1_for_q3) {
-        double highest_q6_q1_for_q3, lowest_q6_q1_for_q3;
-        if (swing_q6_q1_for_q3 > k->product_in_divisor_q6_q1_for_q3) {
-          const double level_q6_q1_for_q3 = value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3
-              - along_q6_q1_for_q3*cos_q6_before_q1_for_q3;
-          const double quotient_in_highest_q6_q1_for_q3 = (k->product_in_highest_q6_q1_for_q3
-              - level_q6_q1_for_q3)/swing_q6_q1_for_q3;
-          /* feasible arc: cosines of its ends */
-          highest_q6_q1_for_q3 = quotient_in_highest_q6_q1_for_q3 > 1.0 ? 1.0
-              : (quotient_in_highest_q6_q1_for_q3 < -1.0 ? -1.0 : quotient_in_highest_q6_q1_for_q3);
-          const double quotient_in_lowest_q6_q1_for_q3 = (level_q6_q1_for_q3
-              + k->product_in_highest_q6_q1_for_q3)/swing_q6_q1_for_q3;
-          lowest_q6_q1_for_q3 = -quotient_in_lowest_q6_q1_for_q3 > 1.0 ? 1.0
-              : (-quotient_in_lowest_q6_q1_for_q3 < -1.0 ? -1.0 : -quotient_in_lowest_q6_q1_for_q3);
-        } else {
-          highest_q6_q1_for_q3 = 1.0; /* feasible arc: cosines of its ends */
-          lowest_q6_q1_for_q3 = -1.0;
-        }
-        const double near_q6_q1_for_q3 = softkin_angle_of(softkin_root((1.0 - highest_q6_q1_for_q3)
-            *(1.0 + highest_q6_q1_for_q3)), highest_q6_q1_for_q3);
-        const double far_q6_q1_for_q3 = softkin_angle_of(softkin_root((1.0 - lowest_q6_q1_for_q3)
-            *(1.0 + lowest_q6_q1_for_q3)), lowest_q6_q1_for_q3);
-        const double centre_q6_q1_for_q3 = softkin_angle_of(across_q6_q1_for_q3, along_q6_q1_for_q3);
-        const double angle_q6_q1_for_q3 = softkin_angle_of(sin_q6_before_q1_for_q3, cos_q6_before_q1_for_q3);
-        const double side_q6_q1_for_q3 = along_q6_q1_for_q3*sin_q6_before_q1_for_q3
-            - across_q6_q1_for_q3*cos_q6_before_q1_for_q3 >= 0.0 ? 1.0 : -1.0;
-        const double moved_q6_q1_for_q3 = softkin_nearest_on_arc(angle_q6_q1_for_q3,
-            centre_q6_q1_for_q3 + 0.5*(far_q6_q1_for_q3 + near_q6_q1_for_q3)*side_q6_q1_for_q3,
-            0.5*(far_q6_q1_for_q3 - near_q6_q1_for_q3));
-        const double near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3);
-        const double near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3);
-        const double near_q_q1_for_q3 = (near_cos_q6_q1_for_q3*r12 + near_sin_q6_q1_for_q3*r11)*sign_wrist;
-        const double near_p_q1_for_q3 = (-near_cos_q6_q1_for_q3*r22 - near_sin_q6_q1_for_q3*r21)*sign_wrist;
-        const double near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3
-            + near_q_q1_for_q3*near_q_q1_for_q3);
-        double near_cos_q1_for_q3, near_sin_q1_for_q3;
-        if (near_radius_q1_for_q3 > 1e-12) {
-          const double near_along_q1_for_q3 = (near_cos_q6_q1_for_q3*r21 - near_sin_q6_q1_for_q3*r22)
-              *near_q_q1_for_q3*sign_wrist
-              - (near_sin_q6_q1_for_q3*r12 - near_cos_q6_q1_for_q3*r11)*near_p_q1_for_q3*sign_wrist;
-          /* positive where the vector points along the later angle */
-          const double near_towards_q1_for_q3 = fabs(near_along_q1_for_q3) <= 5e-12*near_radius_q1_for_q3
-              ? near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3
-              : near_along_q1_for_q3;
-          const double near_side_q1_for_q3 = near_towards_q1_for_q3 < 0.0 ? -1.0 : 1.0;
-          const double quotient_in_near_cos_q1_for_q3 = near_side_q1_for_q3/near_radius_q1_for_q3;
-          /* the earlier angle follows */
-          near_cos_q1_for_q3 = -near_q_q1_for_q3*quotient_in_near_cos_q1_for_q3;
-          /* it stays where it has no effect */
-          near_sin_q1_for_q3 = near_p_q1_for_q3*quotient_in_near_cos_q1_for_q3;
-        } else {
-          near_cos_q1_for_q3 = cos_q1_before_q1_for_q3; /* the earlier angle follows */
-          near_sin_q1_for_q3 = sin_q1_before_q1_for_q3; /* it stays where it has no effect */
-        }
-        if (distance_q1 > k->machine_scale_times_free_angle) {
-          const double near_cost_q1_for_q3 = fabs(k->d4 + near_cos_q1_for_q3*wrist_y
-              - near_sin_q1_for_q3*wrist_x);
-          /* mirror image on the other arc */
-          const double mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3;
-          const double mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3);
-          const double mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3);
-          const double mirrored_q_q1_for_q3 = (mirrored_cos_q6_q1_for_q3*r12 + mirrored_sin_q6_q1_for_q3*r11)
-              *sign_wrist;
-          const double mirrored_p_q1_for_q3 = (-mirrored_cos_q6_q1_for_q3*r22 - mirrored_sin_q6_q1_for_q3*r21)
-              *sign_wrist;
-          const double mirrored_radius_q1_for_q3 = sqrt(mirrored_p_q1_for_q3*mirrored_p_q1_for_q3
-              + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3);
-          double mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3;
-          if (mirrored_radius_q1_for_q3 > 1e-12) {
-            const double mirrored_along_q1_for_q3 = (mirrored_cos_q6_q1_for_q3*r21
-                - mirrored_sin_q6_q1_for_q3*r22)*mirrored_q_q1_for_q3*sign_wrist
-                - (mirrored_sin_q6_q1_for_q3*r12 - mirrored_cos_q6_q1_for_q3*r11)*mirrored_p_q1_for_q3
-                *sign_wrist;
-            /* positive where the vector points along the later angle */
-            const double mirrored_towards_q1_for_q3 = fabs(mirrored_along_q1_for_q3) <= 5e-12
-                *mirrored_radius_q1_for_q3 ? mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3
-                - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3 : mirrored_along_q1_for_q3;
-            const double mirrored_side_q1_for_q3 = mirrored_towards_q1_for_q3 < 0.0 ? -1.0 : 1.0;
-            const double quotient_in_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3
-                /mirrored_radius_q1_for_q3;
-            /* the earlier angle follows */
-            mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*quotient_in_mirrored_cos_q1_for_q3;
-            /* it stays where it has no effect */
-            mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*quotient_in_mirrored_cos_q1_for_q3;
-          } else {
-            mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3; /* the earlier angle follows */
-            mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3; /* it stays where it has no effect */
-          }
-          const double mirrored_cost_q1_for_q3 = fabs(k->d4 + mirrored_cos_q1_for_q3*wrist_y
-              - mirrored_sin_q1_for_q3*wrist_x);
-          if (near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3) {
-            best_cost_q1_for_q3 = near_cost_q1_for_q3;
-            best_cos_q1_for_q3 = near_cos_q1_for_q3;
-            best_sin_q1_for_q3 = near_sin_q1_for_q3;
-          } else {
-            best_cost_q1_for_q3 = mirrored_cost_q1_for_q3;
-            best_cos_q1_for_q3 = mirrored_cos_q1_for_q3;
-            best_sin_q1_for_q3 = mirrored_sin_q1_for_q3;
-          }
-        } else {
-          best_cost_q1_for_q3 = 0.0;
-          best_cos_q1_for_q3 = near_cos_q1_for_q3;
-          best_sin_q1_for_q3 = near_sin_q1_for_q3;
-        }
-        best_ahead_q1_for_q3 = best_cos_q1_for_q3*wrist_x + best_sin_q1_for_q3*wrist_y;
-      } else {
-        const double turned_length_q1_for_q3 = softkin_root(1.0 + turn_q1_for_q3_squared);
-        const double one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3;
-        best_cos_q1_for_q3 = one_by_turned_length_q1_for_q3
-            *(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3);
-        best_sin_q1_for_q3 = one_by_turned_length_q1_for_q3
-            *(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3);
-        /* residual of the equation of q1 */
-        best_cost_q1_for_q3 = fabs(k->d4 + best_cos_q1_for_q3*wrist_y - best_sin_q1_for_q3*wrist_x);
-        best_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - k->d4*turn_q1_for_q3)
-            *one_by_turned_length_q1_for_q3;
-      }
-      if (best_cost_q1_for_q3 > k->machine_scale_times_rounding) {
-        ahead_q1 = ahead_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-        cos_q1 = cos_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-        sin_q1 = sin_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-      } else {
-        ahead_q1 = best_ahead_q1_for_q3; /* turned so that q3 has a solution */
-        cos_q1 = best_cos_q1_for_q3; /* turned so that q3 has a solution */
-        sin_q1 = best_sin_q1_for_q3; /* turned so that q3 has a solution */
-      }
-    }
-  }
-  /* cosine and sine of q5 from the q6 radius and r32 equations */
-  const double cos_q5 = r13*sin_q1 - r23*cos_q1;
   const double r21_from_q1 = r21*cos_q1 - r11*sin_q1;
   const double r22_from_q1 = r22*cos_q1 - r12*sin_q1;
   /* polar coordinates: the radius at angle q6 */
   const double radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1);
   const double q6_radius_of_q5 = radius_q6*sign_wrist;
-  const double q6_radius_of_q5_times_r33 = q6_radius_of_q5*r33;
-  double cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3;
+  /* cosine and sine of q5 from the q6 radius and r22 equations */
+  const double cos_q5 = r13*sin_q1 - r23*cos_q1;
+  double cos_q6, sin_q6;
   if (radius_q6 > 1e-11) {
-    /* polar coordinates: angle q6 from the r31 and r32 equations */
+    /* polar coordinates: angle q6 from the r21 and r23 equations */
     const double along_q6 = -r21_from_q1*sign_wrist;
-    cos_q6_before_q6_of_q3 = along_q6/radius_q6; /* at a singularity: the angle of the reference */
+    cos_q6 = along_q6/radius_q6; /* at a singularity: the angle of the reference */
     const double across_q6 = r22_from_q1*sign_wrist;
-    sin_q6_before_q6_of_q3 = across_q6/radius_q6;
+    sin_q6 = across_q6/radius_q6;
   } else {
     const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
-    const double cos_of_reference_a6 = cos(reference_a6);
-    const double sin_of_reference_a6 = sin(reference_a6);
-    cos_q6_before_q6_of_q3 = cos_of_reference_a6; /* at a singularity: the angle of the reference */
-    sin_q6_before_q6_of_q3 = sin_of_reference_a6;
+    cos_q6 = cos(reference_a6); /* at a singularity: the angle of the reference */
+    sin_q6 = sin(reference_a6);
   }
-  const double r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3
-      - r32*sin_q6_before_q6_of_q3;
-  const double r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5
-      - q6_radius_of_q5_times_r33;
-  const double wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - k->d5*r21_from_q1_before_q56_before_q6_of_q3;
-  const double r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3
-      + r31*sin_q6_before_q6_of_q3;
-  const double wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed
-      + k->d5*r22_from_q1_before_q6_before_q6_of_q3;
-  /* q3 has solutions where this is within its bound */
-  const double value_q6_of_q3 = wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
-      + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - k->a2_squared_plus_a3_squared;
-  double cos_q6, sin_q6;
-  if (fabs(value_q6_of_q3) <= k->size_q1_for_q3) {
-    cos_q6 = cos_q6_before_q6_of_q3; /* moved so that q3 has a solution */
-    sin_q6 = sin_q6_before_q6_of_q3; /* moved so that q3 has a solution */
-  } else {
-    if (radius_q6 > 0.1 && fabs(value_q6_of_q3) > k->product_in_cos_q6) {
-      cos_q6 = cos_q6_before_q6_of_q3; /* moved so that q3 has a solution */
-      sin_q6 = sin_q6_before_q6_of_q3; /* moved so that q3 has a solution */
-    } else {
-      const double wrist_x_from_q1_fixed = ahead_q1 + k->d5*q6_radius_of_q5_times_r33;
-      const double wrist_y_from_q1_across = k->d5*r31;
-      const double wrist_x_from_q1_along = -wrist_y_from_q1_across*cos_q5;
-      const double wrist_y_from_q1_along = k->d5*r32;
-      const double along_q6_of_q3 = 2.0
-          *(wrist_x_from_q1_along*wrist_x_from_q1_fixed + wrist_y_from_q1_along*wrist_y_from_q1_fixed);
-      const double wrist_x_from_q1_across = wrist_y_from_q1_along*cos_q5;
-      const double across_q6_of_q3 = 2.0
-          *(wrist_x_from_q1_across*wrist_x_from_q1_fixed + wrist_y_from_q1_across*wrist_y_from_q1_fixed);
-      const double swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3);
-      double highest_q6_of_q3, lowest_q6_of_q3;
-      if (swing_q6_of_q3 > k->size_q1_for_q3_times_rounding) {
-        const double level_q6_of_q3 = value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3
-            - along_q6_of_q3*cos_q6_before_q6_of_q3;
-        const double quotient_in_highest_q6_of_q3 = (k->size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3;
-        /* feasible arc: cosines of its ends */
-        highest_q6_of_q3 = quotient_in_highest_q6_of_q3 > 1.0 ? 1.0
-            : (quotient_in_highest_q6_of_q3 < -1.0 ? -1.0 : quotient_in_highest_q6_of_q3);
-        const double quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + k->size_q1_for_q3)/swing_q6_of_q3;
-        lowest_q6_of_q3 = -quotient_in_lowest_q6_of_q3 > 1.0 ? 1.0
-            : (-quotient_in_lowest_q6_of_q3 < -1.0 ? -1.0 : -quotient_in_lowest_q6_of_q3);
-      } else {
-        highest_q6_of_q3 = 1.0; /* feasible arc: cosines of its ends */
-        lowest_q6_of_q3 = -1.0;
-      }
-      const double near_q6_of_q3 = softkin_angle_of(softkin_root((1.0 - highest_q6_of_q3)
-          *(1.0 + highest_q6_of_q3)), highest_q6_of_q3);
-      const double far_q6_of_q3 = softkin_angle_of(softkin_root((1.0 - lowest_q6_of_q3)
-          *(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3);
-      const double centre_q6_of_q3 = softkin_angle_of(across_q6_of_q3, along_q6_of_q3);
-      const double angle_q6_of_q3 = softkin_angle_of(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3);
-      const double side_q6_of_q3 = along_q6_of_q3*sin_q6_before_q6_of_q3
-          - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0 ? 1.0 : -1.0;
-      const double moved_q6_of_q3 = softkin_nearest_on_arc(angle_q6_of_q3,
-          centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
-          0.5*(far_q6_of_q3 - near_q6_of_q3));
-      const double cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3);
-      const double sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3);
-      const double sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3;
-      const double sum_in_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3;
-      /* change of the pose by this motion */
-      const double cost_q6_of_q3 = sqrt(sum_in_cost_q6_of_q3*sum_in_cost_q6_of_q3
-          + sum_in_cost_q6_of_q3_2*sum_in_cost_q6_of_q3_2)*radius_q6;
-      const bool stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) && (radius_q6 > 1e-11);
-      if (stays_q6_of_q3) {
-        cos_q6 = cos_q6_before_q6_of_q3; /* moved so that q3 has a solution */
-        sin_q6 = sin_q6_before_q6_of_q3; /* moved so that q3 has a solution */
-      } else {
-        cos_q6 = cos_q6_after_q6_of_q3; /* moved so that q3 has a solution */
-        sin_q6 = sin_q6_after_q6_of_q3; /* moved so that q3 has a solution */
-      }
-    }
-  }
-  const double r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6;
-  const double r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5_times_r33;
+  const double r31_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6;
+  const double r31_from_q1_before_q56 = r31_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33;
   /* coordinate of the point that the remaining links must reach */
-  const double wrist_x_from_q1 = ahead_q1 - k->d5*r21_from_q1_before_q56;
-  const double r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6;
+  const double wrist_x_from_q1 = ahead_q1 - k->d5*r31_from_q1_before_q56;
+  const double r33_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6;
+  const double wrist_z = z - k->d6*r33;
   /* coordinate of the point that the remaining links must reach */
-  const double wrist_y_from_q1 = wrist_y_from_q1_fixed + k->d5*r22_from_q1_before_q6;
+  const double wrist_z_from_q1 = wrist_z + k->d5*r33_from_q1_before_q6 - k->d1;
   /* distance that the remaining links must span */
-  const double reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1);
-  /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
+  const double reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_z_from_q1*wrist_z_from_q1);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
   const double one_less_cos_q3 = (k->a2_plus_a3 + reach)*(k->a2_plus_a3 - reach);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3 = (reach - k->a2_minus_a3)*(k->a2_minus_a3 + reach);
-  const double cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)*k->quotient_in_cos_q3;
+  const double cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)*k->quotient_in_closed_cos_q3;
+  const bool within_37 = fabs(cos_q3) <= 1.0;
+  const bool lost_digits_37 = (!within_37)
+      && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01)
+      || (fabs(ahead_q1) <= k->product_in_lost_digits_37));
   /* q3: out of reach */
-  if (!(fabs(cos_q3) <= 1.0000000000005)) {
+  if (!(lost_digits_37 || (fabs(cos_q3) <= 1.0000000000005))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
         : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
@@ -614,14 +681,14 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sign_elbow = sigma_elbow; /* elbow: +1 up, -1 down */
   /* sine squared, times the squared scale */
   const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
-  const double sin_q3 = softkin_root(sine_square_q3)*k->quotient_in_sin_q3*sign_elbow;
+  const double sin_q3 = softkin_root(sine_square_q3)*k->quotient_in_closed_sin_q3*sign_elbow;
   double direction_x_q2, direction_y_q2;
   if (reach > k->machine_scale_times_free_angle) {
     const double arm_along_q2 = k->a2 + k->a3*cos_q3;
     const double arm_across_q2 = k->a3*sin_q3;
     /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1;
-    direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1;
+    direction_x_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
+    direction_y_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
     /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
@@ -640,7 +707,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double near_a3 = turn_a3 != 0 ? 360.0*(turn_a3 > 0 ? turn_a3 - 1 : turn_a3) : open_a3;
   /* A3: whole turns added */
   const double axis_a3 = softkin_on_turn(k->offset_a3 + angle_q3*SOFTKIN_RADIAN, near_a3);
-  const double angle_with_q4 = softkin_angle_of(r21_from_q1_before_q56, r22_from_q1_before_q6);
+  const double angle_with_q4 = softkin_angle_of(r31_from_q1_before_q56, r33_from_q1_before_q6);
   /* A4: without a commanded turn, the value nearest to this */
   const double open_a4 = k->single_a4 ? k->mid_a4 : ref_a4;
   const double near_a4 = turn_a4 != 0 ? 360.0*(turn_a4 > 0 ? turn_a4 - 1 : turn_a4) : open_a4;
@@ -659,12 +726,32 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* A6: whole turns added */
   const double axis_a6 = softkin_on_turn(k->offset_a6 + softkin_angle_of(sin_q6, cos_q6)*SOFTKIN_RADIAN,
       near_a6);
-  axes[0] = axis_a1;
-  axes[1] = axis_a2;
-  axes[2] = axis_a3;
-  axes[3] = axis_a4;
-  axes[4] = axis_a5;
-  axes[5] = axis_a6;
+  /* digits were lost: the pose is met by steps on the closure */
+  double results[7] = {0.0};
+  if (lost_digits_37) {
+    const double arguments[] = {ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, sigma_elbow, sigma_shoulder,
+        sigma_wrist, turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6, r11, r12, r13, r21, r22, r23, r31,
+        r32, r33, x, y, z, axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6};
+    const softkin_status status = find_meet_pose(k, arguments, results, why);
+    if (status != SOFTKIN_OK) {
+      return status;
+    }
+  }
+  const double found_a1 = results[1], found_a2 = results[2], found_a3 = results[3], found_a4 = results[4],
+      found_a5 = results[5], found_a6 = results[6];
+  const bool met = results[0] != 0.0;
+  /* q3: out of reach */
+  if (!(met || (fabs(cos_q3) <= 1.0000000000005))) {
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
+        (reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
+        : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
+  }
+  axes[0] = (met ? found_a1 : axis_a1);
+  axes[1] = (met ? found_a2 : axis_a2);
+  axes[2] = (met ? found_a3 : axis_a3);
+  axes[3] = (met ? found_a4 : axis_a4);
+  axes[4] = (met ? found_a5 : axis_a5);
+  axes[5] = (met ? found_a6 : axis_a6);
   return SOFTKIN_OK;
 }
 
@@ -836,10 +923,10 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double cos_q234 = cos(q2_plus_q3_plus_q4);
   const double r11_at_q234 = cos_q1*cos_q234;
   const double cos_q5 = cos(q5);
-  const double r12_at_q5 = cos_q5*sin_q1 - r11_at_q234*sin_q5;
+  const double r12_at_q5 = r11_at_q234*sin_q5 - cos_q5*sin_q1;
   const double d6_times_r12_at_q5 = k->d6*r12_at_q5;
   const double sin_q234 = sin(q2_plus_q3_plus_q4);
-  const double r12_at_q234 = -cos_q1*sin_q234;
+  const double r13_at_q234 = -cos_q1*sin_q234;
   const double cos_q2 = cos(q2);
   const double r11_at_q2 = cos_q1*cos_q2;
   const double x_at_q3 = k->a2*r11_at_q2;
@@ -847,22 +934,22 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double r11_at_q23 = cos_q1*cos_q23;
   const double x_at_q4 = x_at_q3 + k->a3*r11_at_q23;
   const double x_at_q5 = x_at_q4 + k->d4*sin_q1;
-  const double x_at_q6 = x_at_q5 - k->d5*r12_at_q234;
-  const double x = d6_times_r12_at_q5 + x_at_q6;
+  const double x_at_q6 = x_at_q5 - k->d5*r13_at_q234;
+  const double x = x_at_q6 - d6_times_r12_at_q5;
   /* wrist centre: the last joints do not move this point */
-  const double wrist_x = x - d6_times_r12_at_q5;
+  const double wrist_x = d6_times_r12_at_q5 + x;
   const double r21_at_q234 = cos_q234*sin_q1;
-  const double r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5;
+  const double r22_at_q5 = cos_q1*cos_q5 + r21_at_q234*sin_q5;
   const double d6_times_r22_at_q5 = k->d6*r22_at_q5;
-  const double r22_at_q234 = -sin_q1*sin_q234;
+  const double r23_at_q234 = -sin_q1*sin_q234;
   const double r21_at_q2 = cos_q2*sin_q1;
   const double y_at_q3 = k->a2*r21_at_q2;
   const double r21_at_q23 = cos_q23*sin_q1;
   const double y_at_q4 = y_at_q3 + k->a3*r21_at_q23;
   const double y_at_q5 = y_at_q4 - k->d4*cos_q1;
-  const double y_at_q6 = y_at_q5 - k->d5*r22_at_q234;
-  const double y = d6_times_r22_at_q5 + y_at_q6;
-  const double wrist_y = y - d6_times_r22_at_q5;
+  const double y_at_q6 = y_at_q5 - k->d5*r23_at_q234;
+  const double y = y_at_q6 - d6_times_r22_at_q5;
+  const double wrist_y = d6_times_r22_at_q5 + y;
   const double margin_wrist_on_axis_1 = -k->one_by_machine_scale*(wrist_x*cos_q1 + wrist_y*sin_q1);
   const double sin_q3 = sin(q3);
   margins[0] = margin_wrist_on_axis_1;
@@ -893,9 +980,9 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double q5 = SOFTKIN_DEGREE*(axis_a5 - k->offset_a5);
   const double sin_q5 = sin(q5);
   const double cos_q5 = cos(q5);
-  const double r22_at_q5 = -cos_q1*cos_q5 - r21_at_q234*sin_q5;
+  const double r22_at_q5 = cos_q1*cos_q5 + r21_at_q234*sin_q5;
   const double sin_q234 = sin(q2_plus_q3_plus_q4);
-  const double r22_at_q234 = -sin_q1*sin_q234;
+  const double r23_at_q234 = -sin_q1*sin_q234;
   const double cos_q2 = cos(q2);
   const double r21_at_q2 = cos_q2*sin_q1;
   const double y_at_q3 = k->a2*r21_at_q2;
@@ -903,74 +990,74 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double r21_at_q23 = cos_q23*sin_q1;
   const double y_at_q4 = y_at_q3 + k->a3*r21_at_q23;
   const double y_at_q5 = y_at_q4 - k->d4*cos_q1;
-  const double y_at_q6 = y_at_q5 - k->d5*r22_at_q234;
-  const double y = y_at_q6 + k->d6*r22_at_q5;
-  const double r32_at_q5 = -sin_q234*sin_q5;
+  const double y_at_q6 = y_at_q5 - k->d5*r23_at_q234;
+  const double y = y_at_q6 - k->d6*r22_at_q5;
+  const double r32_at_q5 = sin_q234*sin_q5;
   const double r11_at_q234 = cos_q1*cos_q234;
-  const double r12_at_q5 = cos_q5*sin_q1 - r11_at_q234*sin_q5;
-  const double r12_at_q234 = -cos_q1*sin_q234;
+  const double r12_at_q5 = r11_at_q234*sin_q5 - cos_q5*sin_q1;
+  const double r13_at_q234 = -cos_q1*sin_q234;
   const double r11_at_q2 = cos_q1*cos_q2;
   const double x_at_q3 = k->a2*r11_at_q2;
   const double r11_at_q23 = cos_q1*cos_q23;
   const double x_at_q4 = x_at_q3 + k->a3*r11_at_q23;
   const double x_at_q5 = x_at_q4 + k->d4*sin_q1;
-  const double x_at_q6 = x_at_q5 - k->d5*r12_at_q234;
-  const double x = x_at_q6 + k->d6*r12_at_q5;
+  const double x_at_q6 = x_at_q5 - k->d5*r13_at_q234;
+  const double x = x_at_q6 - k->d6*r12_at_q5;
   const double sin_q2 = sin(q2);
   const double z_at_q3 = k->d1 + k->a2*sin_q2;
   const double sin_q23 = sin(q2_plus_q3);
   const double z_at_q4 = z_at_q3 + k->a3*sin_q23;
   const double z_at_q6 = z_at_q4 - k->d5*cos_q234;
-  const double z = z_at_q6 + k->d6*r32_at_q5;
+  const double z = z_at_q6 - k->d6*r32_at_q5;
   const double z_minus_d1 = z - k->d1;
   const double z_minus_z_at_q3 = z - z_at_q3;
   const double z_minus_z_at_q4 = z - z_at_q4;
   const double y_minus_y_at_q5 = y - y_at_q5;
-  const double y_minus_y_at_q6 = y - y_at_q6;
   const double z_minus_z_at_q6 = z - z_at_q6;
+  const double y_minus_y_at_q6 = y - y_at_q6;
   const double x_minus_x_at_q5 = x - x_at_q5;
   const double x_minus_x_at_q6 = x - x_at_q6;
   rows[0] = -y;
   rows[1] = -z_minus_d1*cos_q1;
   rows[2] = -z_minus_z_at_q3*cos_q1;
   rows[3] = -z_minus_z_at_q4*cos_q1;
-  rows[4] = y_minus_y_at_q5*cos_q234 - r22_at_q234*z_minus_z_at_q4;
-  rows[5] = r22_at_q5*z_minus_z_at_q6 - r32_at_q5*y_minus_y_at_q6;
+  rows[4] = y_minus_y_at_q5*cos_q234 - r23_at_q234*z_minus_z_at_q4;
+  rows[5] = r32_at_q5*y_minus_y_at_q6 - r22_at_q5*z_minus_z_at_q6;
   rows[6] = x;
   rows[7] = -z_minus_d1*sin_q1;
   rows[8] = -z_minus_z_at_q3*sin_q1;
   rows[9] = -z_minus_z_at_q4*sin_q1;
-  rows[10] = r12_at_q234*z_minus_z_at_q4 - x_minus_x_at_q5*cos_q234;
-  rows[11] = r32_at_q5*x_minus_x_at_q6 - r12_at_q5*z_minus_z_at_q6;
+  rows[10] = r13_at_q234*z_minus_z_at_q4 - x_minus_x_at_q5*cos_q234;
+  rows[11] = r12_at_q5*z_minus_z_at_q6 - r32_at_q5*x_minus_x_at_q6;
   rows[12] = 0.0;
   rows[13] = x*cos_q1 + y*sin_q1;
   rows[14] = (x - x_at_q3)*cos_q1 + (y - y_at_q3)*sin_q1;
   rows[15] = (x - x_at_q4)*cos_q1 + (y - y_at_q4)*sin_q1;
-  rows[16] = r22_at_q234*x_minus_x_at_q5 - r12_at_q234*y_minus_y_at_q5;
-  rows[17] = r12_at_q5*y_minus_y_at_q6 - r22_at_q5*x_minus_x_at_q6;
+  rows[16] = r23_at_q234*x_minus_x_at_q5 - r13_at_q234*y_minus_y_at_q5;
+  rows[17] = r22_at_q5*x_minus_x_at_q6 - r12_at_q5*y_minus_y_at_q6;
   rows[18] = 0.0;
   rows[19] = sin_q1;
   rows[20] = sin_q1;
   rows[21] = sin_q1;
-  rows[22] = -r12_at_q234;
-  rows[23] = r12_at_q5;
+  rows[22] = -r13_at_q234;
+  rows[23] = -r12_at_q5;
   rows[24] = 0.0;
   rows[25] = -cos_q1;
   rows[26] = -cos_q1;
   rows[27] = -cos_q1;
-  rows[28] = -r22_at_q234;
-  rows[29] = r22_at_q5;
+  rows[28] = -r23_at_q234;
+  rows[29] = -r22_at_q5;
   rows[30] = 1.0;
   rows[31] = 0.0;
   rows[32] = 0.0;
   rows[33] = 0.0;
   rows[34] = -cos_q234;
-  rows[35] = r32_at_q5;
+  rows[35] = -r32_at_q5;
   return SOFTKIN_OK;
 }
 
-/* Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an
- * answer. */
+/* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
+ * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
     softkin_status *statuses, double *axes) {
   const ac6_threeparallel_machine *k = machine;
@@ -986,203 +1073,222 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y);
   /* Pythagoras: square of the distance ahead of the axis */
   const double ahead_squared_q1 = (distance_q1 - k->d4)*(k->d4 + distance_q1);
-  if (!(ahead_squared_q1 > k->machine_scale_squared_times_plane)) {
-    return false;
-  }
   const double distance_q1_squared = distance_q1*distance_q1;
   if (!(ahead_squared_q1 >= -1e-12*distance_q1_squared - k->rounding_q1)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
   }
   /* how far ahead of the axis the point is; negative: behind it */
-  const double ahead_q1_before_q1_for_q3_right = softkin_root(ahead_squared_q1);
-  double cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_right,
-      sin_q1_before_q1_for_q3_right;
+  const double ahead_q1_right = softkin_root(ahead_squared_q1);
+  double cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     const double d4_times_wrist_y = k->d4*wrist_y;
-    const double product_in_cos_q1_before_q1_for_q3_left = ahead_q1_before_q1_for_q3_right*wrist_x;
+    const double ahead_q1_right_times_wrist_x = ahead_q1_right*wrist_x;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - product_in_cos_q1_before_q1_for_q3_left)
-        /distance_q1_squared;
+    cos_q1_left = (-ahead_q1_right_times_wrist_x - d4_times_wrist_y)/distance_q1_squared;
     const double d4_times_wrist_x = k->d4*wrist_x;
-    const double product_in_sin_q1_before_q1_for_q3_left = ahead_q1_before_q1_for_q3_right*wrist_y;
-    sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - product_in_sin_q1_before_q1_for_q3_left)
-        /distance_q1_squared;
+    const double ahead_q1_right_times_wrist_y = ahead_q1_right*wrist_y;
+    sin_q1_left = (d4_times_wrist_x - ahead_q1_right_times_wrist_y)/distance_q1_squared;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3_right = (product_in_cos_q1_before_q1_for_q3_left - d4_times_wrist_y)
-        /distance_q1_squared;
-    sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + product_in_sin_q1_before_q1_for_q3_left)
-        /distance_q1_squared;
+    cos_q1_right = (ahead_q1_right_times_wrist_x - d4_times_wrist_y)/distance_q1_squared;
+    sin_q1_right = (ahead_q1_right_times_wrist_y + d4_times_wrist_x)/distance_q1_squared;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3_left = cos(reference_a1);
-    sin_q1_before_q1_for_q3_left = sin(reference_a1);
+    cos_q1_left = cos(reference_a1);
+    sin_q1_left = sin(reference_a1);
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left;
-    sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left;
+    cos_q1_right = cos_q1_left;
+    sin_q1_right = sin_q1_left;
   }
-  /* cosine and sine of q5 from the q6 radius and r32 equations */
-  const double cos_q5_left = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left;
-  const double r21_from_q1_left = r21*cos_q1_before_q1_for_q3_left - r11*sin_q1_before_q1_for_q3_left;
-  const double r22_from_q1_left = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left;
+  const double r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left;
+  const double r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left;
   /* polar coordinates: the radius at angle q6 */
   const double radius_q6_left = sqrt(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left);
-  double cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up,
-      sin_q6_before_q6_of_q3_left_up;
+  /* cosine and sine of q5 from the q6 radius and r22 equations */
+  const double cos_q5_left = r13*sin_q1_left - r23*cos_q1_left;
+  double cos_q6_left_down, sin_q6_left_down, cos_q6_left_up, sin_q6_left_up;
   if (radius_q6_left > 1e-11) {
     const double r21_from_q1_left_by_radius_q6_left = r21_from_q1_left/radius_q6_left;
     /* at a singularity: the angle of the reference */
-    cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left_by_radius_q6_left;
-    sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left;
-    /* at a singularity: the angle of the reference */
-    cos_q6_before_q6_of_q3_left_up = -cos_q6_before_q6_of_q3_left_down;
-    sin_q6_before_q6_of_q3_left_up = -sin_q6_before_q6_of_q3_left_down;
+    cos_q6_left_down = -r21_from_q1_left_by_radius_q6_left;
+    sin_q6_left_down = r22_from_q1_left/radius_q6_left;
+    cos_q6_left_up = -cos_q6_left_down; /* at a singularity: the angle of the reference */
+    sin_q6_left_up = -sin_q6_left_down;
   } else {
     const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
     const double cos_of_reference_a6 = cos(reference_a6);
     const double sin_of_reference_a6 = sin(reference_a6);
-    /* at a singularity: the angle of the reference */
-    cos_q6_before_q6_of_q3_left_down = cos_of_reference_a6;
-    sin_q6_before_q6_of_q3_left_down = sin_of_reference_a6;
-    /* at a singularity: the angle of the reference */
-    cos_q6_before_q6_of_q3_left_up = cos_of_reference_a6;
-    sin_q6_before_q6_of_q3_left_up = sin_of_reference_a6;
+    cos_q6_left_down = cos_of_reference_a6; /* at a singularity: the angle of the reference */
+    sin_q6_left_down = sin_of_reference_a6;
+    cos_q6_left_up = cos_of_reference_a6; /* at a singularity: the angle of the reference */
+    sin_q6_left_up = sin_of_reference_a6;
   }
-  const double r21_from_q1_before_q6_before_q6_of_q3_left_down = r31*cos_q6_before_q6_of_q3_left_down
-      - r32*sin_q6_before_q6_of_q3_left_down;
+  const double r31_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down;
   const double radius_q6_left_times_r33 = r33*radius_q6_left;
-  const double r21_from_q1_before_q56_before_q6_of_q3_left_down =
-      r21_from_q1_before_q6_before_q6_of_q3_left_down*cos_q5_left - radius_q6_left_times_r33;
-  const double wrist_x_from_q1_before_q6_of_q3_left_down = -ahead_q1_before_q1_for_q3_right
-      - k->d5*r21_from_q1_before_q56_before_q6_of_q3_left_down;
-  const double r22_from_q1_before_q6_before_q6_of_q3_left_down = r32*cos_q6_before_q6_of_q3_left_down
-      + r31*sin_q6_before_q6_of_q3_left_down;
+  const double r31_from_q1_before_q56_left_down = r31_from_q1_before_q6_left_down*cos_q5_left
+      - radius_q6_left_times_r33;
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_x_from_q1_left_down = -ahead_q1_right - k->d5*r31_from_q1_before_q56_left_down;
+  const double r33_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down;
   const double wrist_z = z - k->d6*r33;
-  const double wrist_y_from_q1_fixed = wrist_z - k->d1;
-  const double wrist_y_from_q1_before_q6_of_q3_left_down = wrist_y_from_q1_fixed
-      + k->d5*r22_from_q1_before_q6_before_q6_of_q3_left_down;
-  /* q3 has solutions where this is within its bound */
-  const double value_q6_of_q3_left_down = wrist_x_from_q1_before_q6_of_q3_left_down
-      *wrist_x_from_q1_before_q6_of_q3_left_down
-      + wrist_y_from_q1_before_q6_of_q3_left_down*wrist_y_from_q1_before_q6_of_q3_left_down
-      - k->a2_squared_plus_a3_squared;
-  double cos_q6_left_down, sin_q6_left_down, r21_from_q1_before_q56_left_down, wrist_x_from_q1_left_down,
-      r22_from_q1_before_q6_left_down, wrist_y_from_q1_left_down;
-  if (fabs(value_q6_of_q3_left_down) <= k->size_q1_for_q3) {
-    cos_q6_left_down = cos_q6_before_q6_of_q3_left_down; /* moved so that q3 has a solution */
-    sin_q6_left_down = sin_q6_before_q6_of_q3_left_down; /* moved so that q3 has a solution */
-    r21_from_q1_before_q56_left_down = r21_from_q1_before_q56_before_q6_of_q3_left_down;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_x_from_q1_left_down = wrist_x_from_q1_before_q6_of_q3_left_down;
-    r22_from_q1_before_q6_left_down = r22_from_q1_before_q6_before_q6_of_q3_left_down;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_y_from_q1_left_down = wrist_y_from_q1_before_q6_of_q3_left_down;
-  } else {
-    const double radius_q6_left_times_r33_times_d5 = k->d5*radius_q6_left_times_r33;
-    const double cos_q5_left_times_d5 = k->d5*cos_q5_left;
-    const double wrist_x_from_q1_along_left = -r31*cos_q5_left_times_d5;
-    const double wrist_y_from_q1_along = k->d5*r32;
-    const double product_in_along_q6_of_q3_left_down = wrist_y_from_q1_along*wrist_y_from_q1_fixed;
-    const double wrist_x_from_q1_across_left = r32*cos_q5_left_times_d5;
-    const double wrist_y_from_q1_across = k->d5*r31;
-    const double product_in_across_q6_of_q3_left_down = wrist_y_from_q1_across*wrist_y_from_q1_fixed;
-    if (radius_q6_left > 0.1 && fabs(value_q6_of_q3_left_down) > k->product_in_cos_q6) {
-      cos_q6_left_down = cos_q6_before_q6_of_q3_left_down; /* moved so that q3 has a solution */
-      sin_q6_left_down = sin_q6_before_q6_of_q3_left_down; /* moved so that q3 has a solution */
-    } else {
-      const double wrist_x_from_q1_fixed_left_down = radius_q6_left_times_r33_times_d5
-          - ahead_q1_before_q1_for_q3_right;
-      const double along_q6_of_q3_left_down = 2.0
-          *(product_in_along_q6_of_q3_left_down + wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_down);
-      const double across_q6_of_q3_left_down = 2.0
-          *(product_in_across_q6_of_q3_left_down
-          + wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_down);
-      const double swing_q6_of_q3_left_down = sqrt(across_q6_of_q3_left_down*across_q6_of_q3_left_down
-          + along_q6_of_q3_left_down*along_q6_of_q3_left_down);
-      double highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down;
-      if (swing_q6_of_q3_left_down > k->size_q1_for_q3_times_rounding) {
-        const double level_q6_of_q3_left_down = value_q6_of_q3_left_down
-            - across_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
-            - along_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down;
-        const double quotient_in_highest_q6_of_q3_left_down = (k->size_q1_for_q3 - level_q6_of_q3_left_down)
-            /swing_q6_of_q3_left_down;
-        /* feasible arc: cosines of its ends */
-        highest_q6_of_q3_left_down = quotient_in_highest_q6_of_q3_left_down > 1.0 ? 1.0
-            : (quotient_in_highest_q6_of_q3_left_down < -1.0 ? -1.0 : quotient_in_highest_q6_of_q3_left_down);
-        const double quotient_in_lowest_q6_of_q3_left_down = (level_q6_of_q3_left_down + k->size_q1_for_q3)
-            /swing_q6_of_q3_left_down;
-        lowest_q6_of_q3_left_down = -quotient_in_lowest_q6_of_q3_left_down > 1.0 ? 1.0
-            : (-quotient_in_lowest_q6_of_q3_left_down < -1.0 ? -1.0 : -quotient_in_lowest_q6_of_q3_left_down);
-      } else {
-        highest_q6_of_q3_left_down = 1.0; /* feasible arc: cosines of its ends */
-        lowest_q6_of_q3_left_down = -1.0;
-      }
-      const double near_q6_of_q3_left_down = softkin_angle_of(softkin_root((1.0 - highest_q6_of_q3_left_down)
-          *(1.0 + highest_q6_of_q3_left_down)), highest_q6_of_q3_left_down);
-      const double far_q6_of_q3_left_down = softkin_angle_of(softkin_root((1.0 - lowest_q6_of_q3_left_down)
-          *(1.0 + lowest_q6_of_q3_left_down)), lowest_q6_of_q3_left_down);
-      const double centre_q6_of_q3_left_down = softkin_angle_of(across_q6_of_q3_left_down,
-          along_q6_of_q3_left_down);
-      const double angle_q6_of_q3_left_down = softkin_angle_of(sin_q6_before_q6_of_q3_left_down,
-          cos_q6_before_q6_of_q3_left_down);
-      const double side_q6_of_q3_left_down = along_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
-          - across_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down >= 0.0 ? 1.0 : -1.0;
-      const double moved_q6_of_q3_left_down = softkin_nearest_on_arc(angle_q6_of_q3_left_down,
-          centre_q6_of_q3_left_down
-          + 0.5*(far_q6_of_q3_left_down + near_q6_of_q3_left_down)*side_q6_of_q3_left_down,
-          0.5*(far_q6_of_q3_left_down - near_q6_of_q3_left_down));
-      const double cos_q6_after_q6_of_q3_left_down = cos(moved_q6_of_q3_left_down);
-      const double sin_q6_after_q6_of_q3_left_down = sin(moved_q6_of_q3_left_down);
-      const double sum_in_cost_q6_of_q3_left_down = sin_q6_after_q6_of_q3_left_down
-          - sin_q6_before_q6_of_q3_left_down;
-      const double sum_in_cost_q6_of_q3_left_down_2 = cos_q6_after_q6_of_q3_left_down
-          - cos_q6_before_q6_of_q3_left_down;
-      /* change of the pose by this motion */
-      const double cost_q6_of_q3_left_down = sqrt(sum_in_cost_q6_of_q3_left_down
-          *sum_in_cost_q6_of_q3_left_down + sum_in_cost_q6_of_q3_left_down_2*sum_in_cost_q6_of_q3_left_down_2)
-          *radius_q6_left;
-      const bool stays_q6_of_q3_left_down = (cost_q6_of_q3_left_down > 1e-12) && (radius_q6_left > 1e-11);
-      if (stays_q6_of_q3_left_down) {
-        cos_q6_left_down = cos_q6_before_q6_of_q3_left_down; /* moved so that q3 has a solution */
-        sin_q6_left_down = sin_q6_before_q6_of_q3_left_down; /* moved so that q3 has a solution */
-      } else {
-        cos_q6_left_down = cos_q6_after_q6_of_q3_left_down; /* moved so that q3 has a solution */
-        sin_q6_left_down = sin_q6_after_q6_of_q3_left_down; /* moved so that q3 has a solution */
-      }
-    }
-    const double r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down;
-    r21_from_q1_before_q56_left_down = r21_from_q1_before_q6_left_down*cos_q5_left - radius_q6_left_times_r33;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_x_from_q1_left_down = -ahead_q1_before_q1_for_q3_right - k->d5*r21_from_q1_before_q56_left_down;
-    r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_y_from_q1_left_down = wrist_y_from_q1_fixed + k->d5*r22_from_q1_before_q6_left_down;
-  }
+  const double wrist_z_minus_d1 = wrist_z - k->d1;
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_z_from_q1_left_down = wrist_z_minus_d1 + k->d5*r33_from_q1_before_q6_left_down;
   /* distance that the remaining links must span */
   const double reach_left_down = sqrt(wrist_x_from_q1_left_down*wrist_x_from_q1_left_down
-      + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down);
-  /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
+      + wrist_z_from_q1_left_down*wrist_z_from_q1_left_down);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
   const double one_less_cos_q3_left_down = (k->a2_plus_a3 + reach_left_down)
       *(k->a2_plus_a3 - reach_left_down);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3_left_down = (reach_left_down - k->a2_minus_a3)
       *(k->a2_minus_a3 + reach_left_down);
   const double cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)
-      *k->quotient_in_cos_q3;
+      *k->quotient_in_closed_cos_q3;
+  const bool within_37_left_down = fabs(cos_q3_left_down) <= 1.0;
+  const bool lost_digits_37_left_down = (!within_37_left_down)
+      && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_37));
+  const double angle_with_q4_left_down = softkin_angle_of(r31_from_q1_before_q56_left_down,
+      r33_from_q1_before_q6_left_down);
+  const double axis_a6_left_down = k->offset_a6
+      + softkin_angle_of(sin_q6_left_down, cos_q6_left_down)*SOFTKIN_RADIAN;
+  double r31_from_q1_before_q56_left_up, r33_from_q1_before_q6_left_up, angle_with_q4_left_up,
+      axis_a6_left_up;
+  if (radius_q6_left > 1e-11) {
+    r31_from_q1_before_q56_left_up = -r31_from_q1_before_q56_left_down;
+    r33_from_q1_before_q6_left_up = -r33_from_q1_before_q6_left_down;
+    angle_with_q4_left_up = 180.0*SOFTKIN_DEGREE + angle_with_q4_left_down;
+    axis_a6_left_up = 180.0 + axis_a6_left_down;
+  } else {
+    const double r31_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up;
+    r31_from_q1_before_q56_left_up = radius_q6_left_times_r33 + r31_from_q1_before_q6_left_up*cos_q5_left;
+    r33_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up;
+    angle_with_q4_left_up = softkin_angle_of(r31_from_q1_before_q56_left_up, r33_from_q1_before_q6_left_up);
+    axis_a6_left_up = k->offset_a6 + softkin_angle_of(sin_q6_left_up, cos_q6_left_up)*SOFTKIN_RADIAN;
+  }
+  if (!(!lost_digits_37_left_down)) {
+    return false;
+  }
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_x_from_q1_left_up = -ahead_q1_right - k->d5*r31_from_q1_before_q56_left_up;
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_z_from_q1_left_up = wrist_z_minus_d1 + k->d5*r33_from_q1_before_q6_left_up;
+  /* distance that the remaining links must span */
+  const double reach_left_up = sqrt(wrist_x_from_q1_left_up*wrist_x_from_q1_left_up
+      + wrist_z_from_q1_left_up*wrist_z_from_q1_left_up);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double one_less_cos_q3_left_up = (k->a2_plus_a3 + reach_left_up)*(k->a2_plus_a3 - reach_left_up);
+  /* 1 + cosine, times the scale */
+  const double one_plus_cos_q3_left_up = (reach_left_up - k->a2_minus_a3)*(k->a2_minus_a3 + reach_left_up);
+  const double cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)
+      *k->quotient_in_closed_cos_q3;
+  const bool within_37_left_up = fabs(cos_q3_left_up) <= 1.0;
+  const bool lost_digits_37_left_up = (!within_37_left_up)
+      && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_37));
+  if (!(!lost_digits_37_left_up)) {
+    return false;
+  }
+  const double r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right;
+  const double r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right;
+  /* polar coordinates: the radius at angle q6 */
+  const double radius_q6_right = sqrt(r21_from_q1_right*r21_from_q1_right
+      + r22_from_q1_right*r22_from_q1_right);
+  /* cosine and sine of q5 from the q6 radius and r22 equations */
+  const double cos_q5_right = r13*sin_q1_right - r23*cos_q1_right;
+  double cos_q6_right_down, sin_q6_right_down, cos_q6_right_up, sin_q6_right_up;
+  if (radius_q6_right > 1e-11) {
+    const double r21_from_q1_right_by_radius_q6_right = r21_from_q1_right/radius_q6_right;
+    /* at a singularity: the angle of the reference */
+    cos_q6_right_down = -r21_from_q1_right_by_radius_q6_right;
+    sin_q6_right_down = r22_from_q1_right/radius_q6_right;
+    cos_q6_right_up = -cos_q6_right_down; /* at a singularity: the angle of the reference */
+    sin_q6_right_up = -sin_q6_right_down;
+  } else {
+    const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
+    const double cos_of_reference_a6 = cos(reference_a6);
+    const double sin_of_reference_a6 = sin(reference_a6);
+    cos_q6_right_down = cos_of_reference_a6; /* at a singularity: the angle of the reference */
+    sin_q6_right_down = sin_of_reference_a6;
+    cos_q6_right_up = cos_of_reference_a6; /* at a singularity: the angle of the reference */
+    sin_q6_right_up = sin_of_reference_a6;
+  }
+  const double r31_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down;
+  const double radius_q6_right_times_r33 = r33*radius_q6_right;
+  const double r31_from_q1_before_q56_right_down = r31_from_q1_before_q6_right_down*cos_q5_right
+      - radius_q6_right_times_r33;
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_x_from_q1_right_down = ahead_q1_right - k->d5*r31_from_q1_before_q56_right_down;
+  const double r33_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down;
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_z_from_q1_right_down = wrist_z_minus_d1 + k->d5*r33_from_q1_before_q6_right_down;
+  /* distance that the remaining links must span */
+  const double reach_right_down = sqrt(wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
+      + wrist_z_from_q1_right_down*wrist_z_from_q1_right_down);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double one_less_cos_q3_right_down = (k->a2_plus_a3 + reach_right_down)
+      *(k->a2_plus_a3 - reach_right_down);
+  /* 1 + cosine, times the scale */
+  const double one_plus_cos_q3_right_down = (reach_right_down - k->a2_minus_a3)
+      *(k->a2_minus_a3 + reach_right_down);
+  const double cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)
+      *k->quotient_in_closed_cos_q3;
+  const bool within_37_right_down = fabs(cos_q3_right_down) <= 1.0;
+  const bool lost_digits_37_right_down = (!within_37_right_down)
+      && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_37));
+  const double angle_with_q4_right_down = softkin_angle_of(r31_from_q1_before_q56_right_down,
+      r33_from_q1_before_q6_right_down);
+  const double axis_a6_right_down = k->offset_a6
+      + softkin_angle_of(sin_q6_right_down, cos_q6_right_down)*SOFTKIN_RADIAN;
+  double r31_from_q1_before_q56_right_up, r33_from_q1_before_q6_right_up, angle_with_q4_right_up,
+      axis_a6_right_up;
+  if (radius_q6_right > 1e-11) {
+    r31_from_q1_before_q56_right_up = -r31_from_q1_before_q56_right_down;
+    r33_from_q1_before_q6_right_up = -r33_from_q1_before_q6_right_down;
+    angle_with_q4_right_up = 180.0*SOFTKIN_DEGREE + angle_with_q4_right_down;
+    axis_a6_right_up = 180.0 + axis_a6_right_down;
+  } else {
+    const double r31_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up;
+    r31_from_q1_before_q56_right_up = radius_q6_right_times_r33 + r31_from_q1_before_q6_right_up*cos_q5_right;
+    r33_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up;
+    angle_with_q4_right_up = softkin_angle_of(r31_from_q1_before_q56_right_up,
+        r33_from_q1_before_q6_right_up);
+    axis_a6_right_up = k->offset_a6 + softkin_angle_of(sin_q6_right_up, cos_q6_right_up)*SOFTKIN_RADIAN;
+  }
+  if (!(!lost_digits_37_right_down)) {
+    return false;
+  }
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_x_from_q1_right_up = ahead_q1_right - k->d5*r31_from_q1_before_q56_right_up;
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_z_from_q1_right_up = wrist_z_minus_d1 + k->d5*r33_from_q1_before_q6_right_up;
+  /* distance that the remaining links must span */
+  const double reach_right_up = sqrt(wrist_x_from_q1_right_up*wrist_x_from_q1_right_up
+      + wrist_z_from_q1_right_up*wrist_z_from_q1_right_up);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double one_less_cos_q3_right_up = (k->a2_plus_a3 + reach_right_up)*(k->a2_plus_a3 - reach_right_up);
+  /* 1 + cosine, times the scale */
+  const double one_plus_cos_q3_right_up = (reach_right_up - k->a2_minus_a3)*(k->a2_minus_a3 + reach_right_up);
+  const double cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)
+      *k->quotient_in_closed_cos_q3;
+  const bool within_37_right_up = fabs(cos_q3_right_up) <= 1.0;
+  const bool lost_digits_37_right_up = (!within_37_right_up)
+      && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_37));
+  if (!(!lost_digits_37_right_up)) {
+    return false;
+  }
   /* q3: out of reach */
   const int refusal_left_down = fabs(cos_q3_left_down) <= 1.0000000000005 ? 0 : 3;
-  const double axis_a1_left = k->offset_a1
-      + softkin_angle_of(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*SOFTKIN_RADIAN;
+  const double axis_a1_left = k->offset_a1 + softkin_angle_of(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
   /* sine squared, times the squared scale */
   const double sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down;
-  const double sin_q3_left_up_down = softkin_root(sine_square_q3_left_down)*k->quotient_in_sin_q3;
+  const double sin_q3_left_up_down = softkin_root(sine_square_q3_left_down)*k->quotient_in_closed_sin_q3;
   double angle_q2_left_up_down, angle_q2_left_down_down;
   if (reach_left_down > k->machine_scale_times_free_angle) {
     const double arm_along_q2_left_down = k->a2 + k->a3*cos_q3_left_down;
     const double arm_across_q2_left_up_down = k->a3*sin_q3_left_up_down;
     const double angle_of_arm_along_q2_left_up_down = softkin_angle_of(arm_across_q2_left_up_down,
         arm_along_q2_left_down);
-    const double angle_of_wrist_x_from_q1_left_down = softkin_angle_of(wrist_y_from_q1_left_down,
+    const double angle_of_wrist_x_from_q1_left_down = softkin_angle_of(wrist_z_from_q1_left_down,
         wrist_x_from_q1_left_down);
     angle_q2_left_up_down = angle_of_wrist_x_from_q1_left_down - angle_of_arm_along_q2_left_up_down;
     angle_q2_left_down_down = angle_of_arm_along_q2_left_up_down + angle_of_wrist_x_from_q1_left_down;
@@ -1195,146 +1301,22 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double angle_q3_left_up_down = softkin_angle_of(sin_q3_left_up_down, cos_q3_left_down);
   const double quotient_in_axis_a3_left_up_down = angle_q3_left_up_down*SOFTKIN_RADIAN;
   const double axis_a3_left_up_down = k->offset_a3 + quotient_in_axis_a3_left_up_down;
-  const double angle_with_q4_left_down = softkin_angle_of(r21_from_q1_before_q56_left_down,
-      r22_from_q1_before_q6_left_down);
   /* q4 from the sum q234 of angles about parallel axes */
   const double axis_a4_left_up_down = k->offset_a4
       + (angle_with_q4_left_down - angle_q2_left_up_down - angle_q3_left_up_down)*SOFTKIN_RADIAN;
   const double quotient_in_axis_a5_left_down = softkin_angle_of(radius_q6_left, cos_q5_left)*SOFTKIN_RADIAN;
   const double axis_a5_left_down = k->offset_a5 + quotient_in_axis_a5_left_down;
-  const double axis_a6_left_down = k->offset_a6
-      + softkin_angle_of(sin_q6_left_down, cos_q6_left_down)*SOFTKIN_RADIAN;
-  double r21_from_q1_before_q6_before_q6_of_q3_left_up, r21_from_q1_before_q56_before_q6_of_q3_left_up,
-      r22_from_q1_before_q6_before_q6_of_q3_left_up;
-  if (radius_q6_left > 1e-11) {
-    r21_from_q1_before_q6_before_q6_of_q3_left_up = -r21_from_q1_before_q6_before_q6_of_q3_left_down;
-    r21_from_q1_before_q56_before_q6_of_q3_left_up = -r21_from_q1_before_q56_before_q6_of_q3_left_down;
-    r22_from_q1_before_q6_before_q6_of_q3_left_up = -r22_from_q1_before_q6_before_q6_of_q3_left_down;
-  } else {
-    r21_from_q1_before_q6_before_q6_of_q3_left_up = r31*cos_q6_before_q6_of_q3_left_up
-        - r32*sin_q6_before_q6_of_q3_left_up;
-    r21_from_q1_before_q56_before_q6_of_q3_left_up = radius_q6_left_times_r33
-        + r21_from_q1_before_q6_before_q6_of_q3_left_up*cos_q5_left;
-    r22_from_q1_before_q6_before_q6_of_q3_left_up = r32*cos_q6_before_q6_of_q3_left_up
-        + r31*sin_q6_before_q6_of_q3_left_up;
-  }
-  const double wrist_x_from_q1_before_q6_of_q3_left_up = -ahead_q1_before_q1_for_q3_right
-      - k->d5*r21_from_q1_before_q56_before_q6_of_q3_left_up;
-  const double wrist_y_from_q1_before_q6_of_q3_left_up = wrist_y_from_q1_fixed
-      + k->d5*r22_from_q1_before_q6_before_q6_of_q3_left_up;
-  /* q3 has solutions where this is within its bound */
-  const double value_q6_of_q3_left_up = wrist_x_from_q1_before_q6_of_q3_left_up
-      *wrist_x_from_q1_before_q6_of_q3_left_up
-      + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up
-      - k->a2_squared_plus_a3_squared;
-  double cos_q6_left_up, sin_q6_left_up, r21_from_q1_before_q56_left_up, wrist_x_from_q1_left_up,
-      r22_from_q1_before_q6_left_up, wrist_y_from_q1_left_up;
-  if (fabs(value_q6_of_q3_left_up) <= k->size_q1_for_q3) {
-    cos_q6_left_up = cos_q6_before_q6_of_q3_left_up; /* moved so that q3 has a solution */
-    sin_q6_left_up = sin_q6_before_q6_of_q3_left_up; /* moved so that q3 has a solution */
-    r21_from_q1_before_q56_left_up = r21_from_q1_before_q56_before_q6_of_q3_left_up;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_x_from_q1_left_up = wrist_x_from_q1_before_q6_of_q3_left_up;
-    r22_from_q1_before_q6_left_up = r22_from_q1_before_q6_before_q6_of_q3_left_up;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_y_from_q1_left_up = wrist_y_from_q1_before_q6_of_q3_left_up;
-  } else {
-    const double radius_q6_left_times_r33_times_d5 = k->d5*radius_q6_left_times_r33;
-    const double cos_q5_left_times_d5 = k->d5*cos_q5_left;
-    const double wrist_x_from_q1_along_left = -r31*cos_q5_left_times_d5;
-    const double wrist_y_from_q1_along = k->d5*r32;
-    const double product_in_along_q6_of_q3_left_down = wrist_y_from_q1_along*wrist_y_from_q1_fixed;
-    const double wrist_x_from_q1_across_left = r32*cos_q5_left_times_d5;
-    const double wrist_y_from_q1_across = k->d5*r31;
-    const double product_in_across_q6_of_q3_left_down = wrist_y_from_q1_across*wrist_y_from_q1_fixed;
-    if (radius_q6_left > 0.1 && fabs(value_q6_of_q3_left_up) > k->product_in_cos_q6) {
-      cos_q6_left_up = cos_q6_before_q6_of_q3_left_up; /* moved so that q3 has a solution */
-      sin_q6_left_up = sin_q6_before_q6_of_q3_left_up; /* moved so that q3 has a solution */
-    } else {
-      const double wrist_x_from_q1_fixed_left_up = -ahead_q1_before_q1_for_q3_right
-          - radius_q6_left_times_r33_times_d5;
-      const double along_q6_of_q3_left_up = 2.0
-          *(product_in_along_q6_of_q3_left_down + wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up);
-      const double across_q6_of_q3_left_up = 2.0
-          *(product_in_across_q6_of_q3_left_down + wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up);
-      const double swing_q6_of_q3_left_up = sqrt(across_q6_of_q3_left_up*across_q6_of_q3_left_up
-          + along_q6_of_q3_left_up*along_q6_of_q3_left_up);
-      double highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up;
-      if (swing_q6_of_q3_left_up > k->size_q1_for_q3_times_rounding) {
-        const double level_q6_of_q3_left_up = value_q6_of_q3_left_up
-            - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-            - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up;
-        const double quotient_in_highest_q6_of_q3_left_up = (k->size_q1_for_q3 - level_q6_of_q3_left_up)
-            /swing_q6_of_q3_left_up;
-        /* feasible arc: cosines of its ends */
-        highest_q6_of_q3_left_up = quotient_in_highest_q6_of_q3_left_up > 1.0 ? 1.0
-            : (quotient_in_highest_q6_of_q3_left_up < -1.0 ? -1.0 : quotient_in_highest_q6_of_q3_left_up);
-        const double quotient_in_lowest_q6_of_q3_left_up = (level_q6_of_q3_left_up + k->size_q1_for_q3)
-            /swing_q6_of_q3_left_up;
-        lowest_q6_of_q3_left_up = -quotient_in_lowest_q6_of_q3_left_up > 1.0 ? 1.0
-            : (-quotient_in_lowest_q6_of_q3_left_up < -1.0 ? -1.0 : -quotient_in_lowest_q6_of_q3_left_up);
-      } else {
-        highest_q6_of_q3_left_up = 1.0; /* feasible arc: cosines of its ends */
-        lowest_q6_of_q3_left_up = -1.0;
-      }
-      const double near_q6_of_q3_left_up = softkin_angle_of(softkin_root((1.0 - highest_q6_of_q3_left_up)
-          *(1.0 + highest_q6_of_q3_left_up)), highest_q6_of_q3_left_up);
-      const double far_q6_of_q3_left_up = softkin_angle_of(softkin_root((1.0 - lowest_q6_of_q3_left_up)
-          *(1.0 + lowest_q6_of_q3_left_up)), lowest_q6_of_q3_left_up);
-      const double centre_q6_of_q3_left_up = softkin_angle_of(across_q6_of_q3_left_up,
-          along_q6_of_q3_left_up);
-      const double angle_q6_of_q3_left_up = softkin_angle_of(sin_q6_before_q6_of_q3_left_up,
-          cos_q6_before_q6_of_q3_left_up);
-      const double side_q6_of_q3_left_up = along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-          - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0 ? 1.0 : -1.0;
-      const double moved_q6_of_q3_left_up = softkin_nearest_on_arc(angle_q6_of_q3_left_up,
-          centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up,
-          0.5*(far_q6_of_q3_left_up - near_q6_of_q3_left_up));
-      const double cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up);
-      const double sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up);
-      const double sum_in_cost_q6_of_q3_left_up = sin_q6_after_q6_of_q3_left_up
-          - sin_q6_before_q6_of_q3_left_up;
-      const double sum_in_cost_q6_of_q3_left_up_2 = cos_q6_after_q6_of_q3_left_up
-          - cos_q6_before_q6_of_q3_left_up;
-      /* change of the pose by this motion */
-      const double cost_q6_of_q3_left_up = sqrt(sum_in_cost_q6_of_q3_left_up*sum_in_cost_q6_of_q3_left_up
-          + sum_in_cost_q6_of_q3_left_up_2*sum_in_cost_q6_of_q3_left_up_2)*radius_q6_left;
-      const bool stays_q6_of_q3_left_up = (cost_q6_of_q3_left_up > 1e-12) && (radius_q6_left > 1e-11);
-      if (stays_q6_of_q3_left_up) {
-        cos_q6_left_up = cos_q6_before_q6_of_q3_left_up; /* moved so that q3 has a solution */
-        sin_q6_left_up = sin_q6_before_q6_of_q3_left_up; /* moved so that q3 has a solution */
-      } else {
-        cos_q6_left_up = cos_q6_after_q6_of_q3_left_up; /* moved so that q3 has a solution */
-        sin_q6_left_up = sin_q6_after_q6_of_q3_left_up; /* moved so that q3 has a solution */
-      }
-    }
-    const double r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up;
-    r21_from_q1_before_q56_left_up = radius_q6_left_times_r33 + r21_from_q1_before_q6_left_up*cos_q5_left;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_x_from_q1_left_up = -ahead_q1_before_q1_for_q3_right - k->d5*r21_from_q1_before_q56_left_up;
-    r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_y_from_q1_left_up = wrist_y_from_q1_fixed + k->d5*r22_from_q1_before_q6_left_up;
-  }
-  /* distance that the remaining links must span */
-  const double reach_left_up = sqrt(wrist_x_from_q1_left_up*wrist_x_from_q1_left_up
-      + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up);
-  /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_left_up = (k->a2_plus_a3 + reach_left_up)*(k->a2_plus_a3 - reach_left_up);
-  /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_left_up = (reach_left_up - k->a2_minus_a3)*(k->a2_minus_a3 + reach_left_up);
-  const double cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)*k->quotient_in_cos_q3;
   const int refusal_left_up = fabs(cos_q3_left_up) <= 1.0000000000005 ? 0 : 3; /* q3: out of reach */
   /* sine squared, times the squared scale */
   const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
-  const double sin_q3_left_up_up = softkin_root(sine_square_q3_left_up)*k->quotient_in_sin_q3;
+  const double sin_q3_left_up_up = softkin_root(sine_square_q3_left_up)*k->quotient_in_closed_sin_q3;
   double angle_q2_left_up_up, angle_q2_left_down_up;
   if (reach_left_up > k->machine_scale_times_free_angle) {
     const double arm_along_q2_left_up = k->a2 + k->a3*cos_q3_left_up;
     const double arm_across_q2_left_up_up = k->a3*sin_q3_left_up_up;
     const double angle_of_arm_along_q2_left_up_up = softkin_angle_of(arm_across_q2_left_up_up,
         arm_along_q2_left_up);
-    const double angle_of_wrist_x_from_q1_left_up = softkin_angle_of(wrist_y_from_q1_left_up,
+    const double angle_of_wrist_x_from_q1_left_up = softkin_angle_of(wrist_z_from_q1_left_up,
         wrist_x_from_q1_left_up);
     angle_q2_left_up_up = angle_of_wrist_x_from_q1_left_up - angle_of_arm_along_q2_left_up_up;
     angle_q2_left_down_up = angle_of_arm_along_q2_left_up_up + angle_of_wrist_x_from_q1_left_up;
@@ -1347,14 +1329,10 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double angle_q3_left_up_up = softkin_angle_of(sin_q3_left_up_up, cos_q3_left_up);
   const double quotient_in_axis_a3_left_up_up = angle_q3_left_up_up*SOFTKIN_RADIAN;
   const double axis_a3_left_up_up = k->offset_a3 + quotient_in_axis_a3_left_up_up;
-  const double angle_with_q4_left_up = softkin_angle_of(r21_from_q1_before_q56_left_up,
-      r22_from_q1_before_q6_left_up);
   /* q4 from the sum q234 of angles about parallel axes */
   const double axis_a4_left_up_up = k->offset_a4
       + (angle_with_q4_left_up - angle_q2_left_up_up - angle_q3_left_up_up)*SOFTKIN_RADIAN;
   const double axis_a5_left_up = k->offset_a5 - quotient_in_axis_a5_left_down;
-  const double axis_a6_left_up = k->offset_a6
-      + softkin_angle_of(sin_q6_left_up, cos_q6_left_up)*SOFTKIN_RADIAN;
   const double axis_a2_left_down_down = k->offset_a2 + angle_q2_left_down_down*SOFTKIN_RADIAN;
   const double axis_a3_left_down_down = k->offset_a3 - quotient_in_axis_a3_left_up_down;
   /* q4 from the sum q234 of angles about parallel axes */
@@ -1365,171 +1343,19 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* q4 from the sum q234 of angles about parallel axes */
   const double axis_a4_left_down_up = k->offset_a4
       + (angle_q3_left_up_up + angle_with_q4_left_up - angle_q2_left_down_up)*SOFTKIN_RADIAN;
-  /* cosine and sine of q5 from the q6 radius and r32 equations */
-  const double cos_q5_right = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right;
-  const double r21_from_q1_right = r21*cos_q1_before_q1_for_q3_right - r11*sin_q1_before_q1_for_q3_right;
-  const double r22_from_q1_right = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right;
-  /* polar coordinates: the radius at angle q6 */
-  const double radius_q6_right = sqrt(r21_from_q1_right*r21_from_q1_right
-      + r22_from_q1_right*r22_from_q1_right);
-  double cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down,
-      cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up;
-  if (radius_q6_right > 1e-11) {
-    const double r21_from_q1_right_by_radius_q6_right = r21_from_q1_right/radius_q6_right;
-    /* at a singularity: the angle of the reference */
-    cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right_by_radius_q6_right;
-    sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right;
-    /* at a singularity: the angle of the reference */
-    cos_q6_before_q6_of_q3_right_up = -cos_q6_before_q6_of_q3_right_down;
-    sin_q6_before_q6_of_q3_right_up = -sin_q6_before_q6_of_q3_right_down;
-  } else {
-    const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
-    const double cos_of_reference_a6 = cos(reference_a6);
-    const double sin_of_reference_a6 = sin(reference_a6);
-    /* at a singularity: the angle of the reference */
-    cos_q6_before_q6_of_q3_right_down = cos_of_reference_a6;
-    sin_q6_before_q6_of_q3_right_down = sin_of_reference_a6;
-    /* at a singularity: the angle of the reference */
-    cos_q6_before_q6_of_q3_right_up = cos_of_reference_a6;
-    sin_q6_before_q6_of_q3_right_up = sin_of_reference_a6;
-  }
-  const double r21_from_q1_before_q6_before_q6_of_q3_right_down = r31*cos_q6_before_q6_of_q3_right_down
-      - r32*sin_q6_before_q6_of_q3_right_down;
-  const double radius_q6_right_times_r33 = r33*radius_q6_right;
-  const double r21_from_q1_before_q56_before_q6_of_q3_right_down =
-      r21_from_q1_before_q6_before_q6_of_q3_right_down*cos_q5_right - radius_q6_right_times_r33;
-  const double wrist_x_from_q1_before_q6_of_q3_right_down = ahead_q1_before_q1_for_q3_right
-      - k->d5*r21_from_q1_before_q56_before_q6_of_q3_right_down;
-  const double r22_from_q1_before_q6_before_q6_of_q3_right_down = r32*cos_q6_before_q6_of_q3_right_down
-      + r31*sin_q6_before_q6_of_q3_right_down;
-  const double wrist_y_from_q1_before_q6_of_q3_right_down = wrist_y_from_q1_fixed
-      + k->d5*r22_from_q1_before_q6_before_q6_of_q3_right_down;
-  /* q3 has solutions where this is within its bound */
-  const double value_q6_of_q3_right_down = wrist_x_from_q1_before_q6_of_q3_right_down
-      *wrist_x_from_q1_before_q6_of_q3_right_down
-      + wrist_y_from_q1_before_q6_of_q3_right_down*wrist_y_from_q1_before_q6_of_q3_right_down
-      - k->a2_squared_plus_a3_squared;
-  double cos_q6_right_down, sin_q6_right_down, r21_from_q1_before_q56_right_down, wrist_x_from_q1_right_down,
-      r22_from_q1_before_q6_right_down, wrist_y_from_q1_right_down;
-  if (fabs(value_q6_of_q3_right_down) <= k->size_q1_for_q3) {
-    cos_q6_right_down = cos_q6_before_q6_of_q3_right_down; /* moved so that q3 has a solution */
-    sin_q6_right_down = sin_q6_before_q6_of_q3_right_down; /* moved so that q3 has a solution */
-    r21_from_q1_before_q56_right_down = r21_from_q1_before_q56_before_q6_of_q3_right_down;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_x_from_q1_right_down = wrist_x_from_q1_before_q6_of_q3_right_down;
-    r22_from_q1_before_q6_right_down = r22_from_q1_before_q6_before_q6_of_q3_right_down;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_y_from_q1_right_down = wrist_y_from_q1_before_q6_of_q3_right_down;
-  } else {
-    const double wrist_y_from_q1_along = k->d5*r32;
-    const double product_in_along_q6_of_q3_left_down = wrist_y_from_q1_along*wrist_y_from_q1_fixed;
-    const double wrist_y_from_q1_across = k->d5*r31;
-    const double product_in_across_q6_of_q3_left_down = wrist_y_from_q1_across*wrist_y_from_q1_fixed;
-    const double radius_q6_right_times_r33_times_d5 = k->d5*radius_q6_right_times_r33;
-    const double cos_q5_right_times_d5 = k->d5*cos_q5_right;
-    const double wrist_x_from_q1_along_right = -r31*cos_q5_right_times_d5;
-    const double wrist_x_from_q1_across_right = r32*cos_q5_right_times_d5;
-    if (radius_q6_right > 0.1 && fabs(value_q6_of_q3_right_down) > k->product_in_cos_q6) {
-      cos_q6_right_down = cos_q6_before_q6_of_q3_right_down; /* moved so that q3 has a solution */
-      sin_q6_right_down = sin_q6_before_q6_of_q3_right_down; /* moved so that q3 has a solution */
-    } else {
-      const double wrist_x_from_q1_fixed_right_down = ahead_q1_before_q1_for_q3_right
-          + radius_q6_right_times_r33_times_d5;
-      const double along_q6_of_q3_right_down = 2.0
-          *(product_in_along_q6_of_q3_left_down
-          + wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_down);
-      const double across_q6_of_q3_right_down = 2.0
-          *(product_in_across_q6_of_q3_left_down
-          + wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_down);
-      const double swing_q6_of_q3_right_down = sqrt(across_q6_of_q3_right_down*across_q6_of_q3_right_down
-          + along_q6_of_q3_right_down*along_q6_of_q3_right_down);
-      double highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down;
-      if (swing_q6_of_q3_right_down > k->size_q1_for_q3_times_rounding) {
-        const double level_q6_of_q3_right_down = value_q6_of_q3_right_down
-            - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
-            - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down;
-        const double quotient_in_highest_q6_of_q3_right_down = (k->size_q1_for_q3 - level_q6_of_q3_right_down)
-            /swing_q6_of_q3_right_down;
-        /* feasible arc: cosines of its ends */
-        highest_q6_of_q3_right_down = quotient_in_highest_q6_of_q3_right_down > 1.0 ? 1.0
-            : (quotient_in_highest_q6_of_q3_right_down < -1.0 ? -1.0
-            : quotient_in_highest_q6_of_q3_right_down);
-        const double quotient_in_lowest_q6_of_q3_right_down = (level_q6_of_q3_right_down + k->size_q1_for_q3)
-            /swing_q6_of_q3_right_down;
-        lowest_q6_of_q3_right_down = -quotient_in_lowest_q6_of_q3_right_down > 1.0 ? 1.0
-            : (-quotient_in_lowest_q6_of_q3_right_down < -1.0 ? -1.0
-            : -quotient_in_lowest_q6_of_q3_right_down);
-      } else {
-        highest_q6_of_q3_right_down = 1.0; /* feasible arc: cosines of its ends */
-        lowest_q6_of_q3_right_down = -1.0;
-      }
-      const double near_q6_of_q3_right_down = softkin_angle_of(softkin_root((1.0
-          - highest_q6_of_q3_right_down)*(1.0 + highest_q6_of_q3_right_down)), highest_q6_of_q3_right_down);
-      const double far_q6_of_q3_right_down = softkin_angle_of(softkin_root((1.0 - lowest_q6_of_q3_right_down)
-          *(1.0 + lowest_q6_of_q3_right_down)), lowest_q6_of_q3_right_down);
-      const double centre_q6_of_q3_right_down = softkin_angle_of(across_q6_of_q3_right_down,
-          along_q6_of_q3_right_down);
-      const double angle_q6_of_q3_right_down = softkin_angle_of(sin_q6_before_q6_of_q3_right_down,
-          cos_q6_before_q6_of_q3_right_down);
-      const double side_q6_of_q3_right_down = along_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
-          - across_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down >= 0.0 ? 1.0 : -1.0;
-      const double moved_q6_of_q3_right_down = softkin_nearest_on_arc(angle_q6_of_q3_right_down,
-          centre_q6_of_q3_right_down
-          + 0.5*(far_q6_of_q3_right_down + near_q6_of_q3_right_down)*side_q6_of_q3_right_down,
-          0.5*(far_q6_of_q3_right_down - near_q6_of_q3_right_down));
-      const double cos_q6_after_q6_of_q3_right_down = cos(moved_q6_of_q3_right_down);
-      const double sin_q6_after_q6_of_q3_right_down = sin(moved_q6_of_q3_right_down);
-      const double sum_in_cost_q6_of_q3_right_down = sin_q6_after_q6_of_q3_right_down
-          - sin_q6_before_q6_of_q3_right_down;
-      const double sum_in_cost_q6_of_q3_right_down_2 = cos_q6_after_q6_of_q3_right_down
-          - cos_q6_before_q6_of_q3_right_down;
-      /* change of the pose by this motion */
-      const double cost_q6_of_q3_right_down = sqrt(sum_in_cost_q6_of_q3_right_down
-          *sum_in_cost_q6_of_q3_right_down
-          + sum_in_cost_q6_of_q3_right_down_2*sum_in_cost_q6_of_q3_right_down_2)*radius_q6_right;
-      const bool stays_q6_of_q3_right_down = (cost_q6_of_q3_right_down > 1e-12) && (radius_q6_right > 1e-11);
-      if (stays_q6_of_q3_right_down) {
-        cos_q6_right_down = cos_q6_before_q6_of_q3_right_down; /* moved so that q3 has a solution */
-        sin_q6_right_down = sin_q6_before_q6_of_q3_right_down; /* moved so that q3 has a solution */
-      } else {
-        cos_q6_right_down = cos_q6_after_q6_of_q3_right_down; /* moved so that q3 has a solution */
-        sin_q6_right_down = sin_q6_after_q6_of_q3_right_down; /* moved so that q3 has a solution */
-      }
-    }
-    const double r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down;
-    r21_from_q1_before_q56_right_down = r21_from_q1_before_q6_right_down*cos_q5_right
-        - radius_q6_right_times_r33;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_x_from_q1_right_down = ahead_q1_before_q1_for_q3_right - k->d5*r21_from_q1_before_q56_right_down;
-    r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_y_from_q1_right_down = wrist_y_from_q1_fixed + k->d5*r22_from_q1_before_q6_right_down;
-  }
-  /* distance that the remaining links must span */
-  const double reach_right_down = sqrt(wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
-      + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down);
-  /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_right_down = (k->a2_plus_a3 + reach_right_down)
-      *(k->a2_plus_a3 - reach_right_down);
-  /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_right_down = (reach_right_down - k->a2_minus_a3)
-      *(k->a2_minus_a3 + reach_right_down);
-  const double cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)
-      *k->quotient_in_cos_q3;
   /* q3: out of reach */
   const int refusal_right_down = fabs(cos_q3_right_down) <= 1.0000000000005 ? 0 : 3;
-  const double axis_a1_right = k->offset_a1
-      + softkin_angle_of(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*SOFTKIN_RADIAN;
+  const double axis_a1_right = k->offset_a1 + softkin_angle_of(sin_q1_right, cos_q1_right)*SOFTKIN_RADIAN;
   /* sine squared, times the squared scale */
   const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
-  const double sin_q3_right_up_down = softkin_root(sine_square_q3_right_down)*k->quotient_in_sin_q3;
+  const double sin_q3_right_up_down = softkin_root(sine_square_q3_right_down)*k->quotient_in_closed_sin_q3;
   double angle_q2_right_up_down, angle_q2_right_down_down;
   if (reach_right_down > k->machine_scale_times_free_angle) {
     const double arm_along_q2_right_down = k->a2 + k->a3*cos_q3_right_down;
     const double arm_across_q2_right_up_down = k->a3*sin_q3_right_up_down;
     const double angle_of_arm_along_q2_right_up_down = softkin_angle_of(arm_across_q2_right_up_down,
         arm_along_q2_right_down);
-    const double angle_of_wrist_x_from_q1_right_down = softkin_angle_of(wrist_y_from_q1_right_down,
+    const double angle_of_wrist_x_from_q1_right_down = softkin_angle_of(wrist_z_from_q1_right_down,
         wrist_x_from_q1_right_down);
     angle_q2_right_up_down = angle_of_wrist_x_from_q1_right_down - angle_of_arm_along_q2_right_up_down;
     angle_q2_right_down_down = angle_of_arm_along_q2_right_up_down + angle_of_wrist_x_from_q1_right_down;
@@ -1542,149 +1368,24 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double angle_q3_right_up_down = softkin_angle_of(sin_q3_right_up_down, cos_q3_right_down);
   const double quotient_in_axis_a3_right_up_down = angle_q3_right_up_down*SOFTKIN_RADIAN;
   const double axis_a3_right_up_down = k->offset_a3 + quotient_in_axis_a3_right_up_down;
-  const double angle_with_q4_right_down = softkin_angle_of(r21_from_q1_before_q56_right_down,
-      r22_from_q1_before_q6_right_down);
   /* q4 from the sum q234 of angles about parallel axes */
   const double axis_a4_right_up_down = k->offset_a4
       + (angle_with_q4_right_down - angle_q2_right_up_down - angle_q3_right_up_down)*SOFTKIN_RADIAN;
   const double quotient_in_axis_a5_right_down = softkin_angle_of(radius_q6_right, cos_q5_right)
       *SOFTKIN_RADIAN;
   const double axis_a5_right_down = k->offset_a5 + quotient_in_axis_a5_right_down;
-  const double axis_a6_right_down = k->offset_a6
-      + softkin_angle_of(sin_q6_right_down, cos_q6_right_down)*SOFTKIN_RADIAN;
-  double r21_from_q1_before_q6_before_q6_of_q3_right_up, r21_from_q1_before_q56_before_q6_of_q3_right_up,
-      r22_from_q1_before_q6_before_q6_of_q3_right_up;
-  if (radius_q6_right > 1e-11) {
-    r21_from_q1_before_q6_before_q6_of_q3_right_up = -r21_from_q1_before_q6_before_q6_of_q3_right_down;
-    r21_from_q1_before_q56_before_q6_of_q3_right_up = -r21_from_q1_before_q56_before_q6_of_q3_right_down;
-    r22_from_q1_before_q6_before_q6_of_q3_right_up = -r22_from_q1_before_q6_before_q6_of_q3_right_down;
-  } else {
-    r21_from_q1_before_q6_before_q6_of_q3_right_up = r31*cos_q6_before_q6_of_q3_right_up
-        - r32*sin_q6_before_q6_of_q3_right_up;
-    r21_from_q1_before_q56_before_q6_of_q3_right_up = radius_q6_right_times_r33
-        + r21_from_q1_before_q6_before_q6_of_q3_right_up*cos_q5_right;
-    r22_from_q1_before_q6_before_q6_of_q3_right_up = r32*cos_q6_before_q6_of_q3_right_up
-        + r31*sin_q6_before_q6_of_q3_right_up;
-  }
-  const double wrist_x_from_q1_before_q6_of_q3_right_up = ahead_q1_before_q1_for_q3_right
-      - k->d5*r21_from_q1_before_q56_before_q6_of_q3_right_up;
-  const double wrist_y_from_q1_before_q6_of_q3_right_up = wrist_y_from_q1_fixed
-      + k->d5*r22_from_q1_before_q6_before_q6_of_q3_right_up;
-  /* q3 has solutions where this is within its bound */
-  const double value_q6_of_q3_right_up = wrist_x_from_q1_before_q6_of_q3_right_up
-      *wrist_x_from_q1_before_q6_of_q3_right_up
-      + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up
-      - k->a2_squared_plus_a3_squared;
-  double cos_q6_right_up, sin_q6_right_up, r21_from_q1_before_q56_right_up, wrist_x_from_q1_right_up,
-      r22_from_q1_before_q6_right_up, wrist_y_from_q1_right_up;
-  if (fabs(value_q6_of_q3_right_up) <= k->size_q1_for_q3) {
-    cos_q6_right_up = cos_q6_before_q6_of_q3_right_up; /* moved so that q3 has a solution */
-    sin_q6_right_up = sin_q6_before_q6_of_q3_right_up; /* moved so that q3 has a solution */
-    r21_from_q1_before_q56_right_up = r21_from_q1_before_q56_before_q6_of_q3_right_up;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_x_from_q1_right_up = wrist_x_from_q1_before_q6_of_q3_right_up;
-    r22_from_q1_before_q6_right_up = r22_from_q1_before_q6_before_q6_of_q3_right_up;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_y_from_q1_right_up = wrist_y_from_q1_before_q6_of_q3_right_up;
-  } else {
-    const double wrist_y_from_q1_along = k->d5*r32;
-    const double product_in_along_q6_of_q3_left_down = wrist_y_from_q1_along*wrist_y_from_q1_fixed;
-    const double wrist_y_from_q1_across = k->d5*r31;
-    const double product_in_across_q6_of_q3_left_down = wrist_y_from_q1_across*wrist_y_from_q1_fixed;
-    const double radius_q6_right_times_r33_times_d5 = k->d5*radius_q6_right_times_r33;
-    const double cos_q5_right_times_d5 = k->d5*cos_q5_right;
-    const double wrist_x_from_q1_along_right = -r31*cos_q5_right_times_d5;
-    const double wrist_x_from_q1_across_right = r32*cos_q5_right_times_d5;
-    if (radius_q6_right > 0.1 && fabs(value_q6_of_q3_right_up) > k->product_in_cos_q6) {
-      cos_q6_right_up = cos_q6_before_q6_of_q3_right_up; /* moved so that q3 has a solution */
-      sin_q6_right_up = sin_q6_before_q6_of_q3_right_up; /* moved so that q3 has a solution */
-    } else {
-      const double wrist_x_from_q1_fixed_right_up = ahead_q1_before_q1_for_q3_right
-          - radius_q6_right_times_r33_times_d5;
-      const double along_q6_of_q3_right_up = 2.0
-          *(product_in_along_q6_of_q3_left_down + wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up);
-      const double across_q6_of_q3_right_up = 2.0
-          *(product_in_across_q6_of_q3_left_down
-          + wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_up);
-      const double swing_q6_of_q3_right_up = sqrt(across_q6_of_q3_right_up*across_q6_of_q3_right_up
-          + along_q6_of_q3_right_up*along_q6_of_q3_right_up);
-      double highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up;
-      if (swing_q6_of_q3_right_up > k->size_q1_for_q3_times_rounding) {
-        const double level_q6_of_q3_right_up = value_q6_of_q3_right_up
-            - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
-            - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up;
-        const double quotient_in_highest_q6_of_q3_right_up = (k->size_q1_for_q3 - level_q6_of_q3_right_up)
-            /swing_q6_of_q3_right_up;
-        /* feasible arc: cosines of its ends */
-        highest_q6_of_q3_right_up = quotient_in_highest_q6_of_q3_right_up > 1.0 ? 1.0
-            : (quotient_in_highest_q6_of_q3_right_up < -1.0 ? -1.0 : quotient_in_highest_q6_of_q3_right_up);
-        const double quotient_in_lowest_q6_of_q3_right_up = (level_q6_of_q3_right_up + k->size_q1_for_q3)
-            /swing_q6_of_q3_right_up;
-        lowest_q6_of_q3_right_up = -quotient_in_lowest_q6_of_q3_right_up > 1.0 ? 1.0
-            : (-quotient_in_lowest_q6_of_q3_right_up < -1.0 ? -1.0 : -quotient_in_lowest_q6_of_q3_right_up);
-      } else {
-        highest_q6_of_q3_right_up = 1.0; /* feasible arc: cosines of its ends */
-        lowest_q6_of_q3_right_up = -1.0;
-      }
-      const double near_q6_of_q3_right_up = softkin_angle_of(softkin_root((1.0 - highest_q6_of_q3_right_up)
-          *(1.0 + highest_q6_of_q3_right_up)), highest_q6_of_q3_right_up);
-      const double far_q6_of_q3_right_up = softkin_angle_of(softkin_root((1.0 - lowest_q6_of_q3_right_up)
-          *(1.0 + lowest_q6_of_q3_right_up)), lowest_q6_of_q3_right_up);
-      const double centre_q6_of_q3_right_up = softkin_angle_of(across_q6_of_q3_right_up,
-          along_q6_of_q3_right_up);
-      const double angle_q6_of_q3_right_up = softkin_angle_of(sin_q6_before_q6_of_q3_right_up,
-          cos_q6_before_q6_of_q3_right_up);
-      const double side_q6_of_q3_right_up = along_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
-          - across_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up >= 0.0 ? 1.0 : -1.0;
-      const double moved_q6_of_q3_right_up = softkin_nearest_on_arc(angle_q6_of_q3_right_up,
-          centre_q6_of_q3_right_up + 0.5*(far_q6_of_q3_right_up + near_q6_of_q3_right_up)
-          *side_q6_of_q3_right_up, 0.5*(far_q6_of_q3_right_up - near_q6_of_q3_right_up));
-      const double cos_q6_after_q6_of_q3_right_up = cos(moved_q6_of_q3_right_up);
-      const double sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up);
-      const double sum_in_cost_q6_of_q3_right_up = sin_q6_after_q6_of_q3_right_up
-          - sin_q6_before_q6_of_q3_right_up;
-      const double sum_in_cost_q6_of_q3_right_up_2 = cos_q6_after_q6_of_q3_right_up
-          - cos_q6_before_q6_of_q3_right_up;
-      /* change of the pose by this motion */
-      const double cost_q6_of_q3_right_up = sqrt(sum_in_cost_q6_of_q3_right_up*sum_in_cost_q6_of_q3_right_up
-          + sum_in_cost_q6_of_q3_right_up_2*sum_in_cost_q6_of_q3_right_up_2)*radius_q6_right;
-      const bool stays_q6_of_q3_right_up = (cost_q6_of_q3_right_up > 1e-12) && (radius_q6_right > 1e-11);
-      if (stays_q6_of_q3_right_up) {
-        cos_q6_right_up = cos_q6_before_q6_of_q3_right_up; /* moved so that q3 has a solution */
-        sin_q6_right_up = sin_q6_before_q6_of_q3_right_up; /* moved so that q3 has a solution */
-      } else {
-        cos_q6_right_up = cos_q6_after_q6_of_q3_right_up; /* moved so that q3 has a solution */
-        sin_q6_right_up = sin_q6_after_q6_of_q3_right_up; /* moved so that q3 has a solution */
-      }
-    }
-    const double r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up;
-    r21_from_q1_before_q56_right_up = radius_q6_right_times_r33 + r21_from_q1_before_q6_right_up*cos_q5_right;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_x_from_q1_right_up = ahead_q1_before_q1_for_q3_right - k->d5*r21_from_q1_before_q56_right_up;
-    r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up;
-    /* coordinate of the point that the remaining links must reach */
-    wrist_y_from_q1_right_up = wrist_y_from_q1_fixed + k->d5*r22_from_q1_before_q6_right_up;
-  }
-  /* distance that the remaining links must span */
-  const double reach_right_up = sqrt(wrist_x_from_q1_right_up*wrist_x_from_q1_right_up
-      + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up);
-  /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_right_up = (k->a2_plus_a3 + reach_right_up)*(k->a2_plus_a3 - reach_right_up);
-  /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_right_up = (reach_right_up - k->a2_minus_a3)*(k->a2_minus_a3 + reach_right_up);
-  const double cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)*k->quotient_in_cos_q3;
   /* q3: out of reach */
   const int refusal_right_up = fabs(cos_q3_right_up) <= 1.0000000000005 ? 0 : 3;
   /* sine squared, times the squared scale */
   const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
-  const double sin_q3_right_up_up = softkin_root(sine_square_q3_right_up)*k->quotient_in_sin_q3;
+  const double sin_q3_right_up_up = softkin_root(sine_square_q3_right_up)*k->quotient_in_closed_sin_q3;
   double angle_q2_right_up_up, angle_q2_right_down_up;
   if (reach_right_up > k->machine_scale_times_free_angle) {
     const double arm_along_q2_right_up = k->a2 + k->a3*cos_q3_right_up;
     const double arm_across_q2_right_up_up = k->a3*sin_q3_right_up_up;
     const double angle_of_arm_along_q2_right_up_up = softkin_angle_of(arm_across_q2_right_up_up,
         arm_along_q2_right_up);
-    const double angle_of_wrist_x_from_q1_right_up = softkin_angle_of(wrist_y_from_q1_right_up,
+    const double angle_of_wrist_x_from_q1_right_up = softkin_angle_of(wrist_z_from_q1_right_up,
         wrist_x_from_q1_right_up);
     angle_q2_right_up_up = angle_of_wrist_x_from_q1_right_up - angle_of_arm_along_q2_right_up_up;
     angle_q2_right_down_up = angle_of_arm_along_q2_right_up_up + angle_of_wrist_x_from_q1_right_up;
@@ -1697,14 +1398,10 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double angle_q3_right_up_up = softkin_angle_of(sin_q3_right_up_up, cos_q3_right_up);
   const double quotient_in_axis_a3_right_up_up = angle_q3_right_up_up*SOFTKIN_RADIAN;
   const double axis_a3_right_up_up = k->offset_a3 + quotient_in_axis_a3_right_up_up;
-  const double angle_with_q4_right_up = softkin_angle_of(r21_from_q1_before_q56_right_up,
-      r22_from_q1_before_q6_right_up);
   /* q4 from the sum q234 of angles about parallel axes */
   const double axis_a4_right_up_up = k->offset_a4
       + (angle_with_q4_right_up - angle_q2_right_up_up - angle_q3_right_up_up)*SOFTKIN_RADIAN;
   const double axis_a5_right_up = k->offset_a5 - quotient_in_axis_a5_right_down;
-  const double axis_a6_right_up = k->offset_a6
-      + softkin_angle_of(sin_q6_right_up, cos_q6_right_up)*SOFTKIN_RADIAN;
   const double axis_a2_right_down_down = k->offset_a2 + angle_q2_right_down_down*SOFTKIN_RADIAN;
   const double axis_a3_right_down_down = k->offset_a3 - quotient_in_axis_a3_right_up_down;
   /* q4 from the sum q234 of angles about parallel axes */
@@ -1817,23 +1514,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale = fabs(p->a2) + fabs(p->a3); /* characteristic length of the machine */
   /* rounding error of a squared length */
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
-  const double size_q1_for_q3 = 2.0*fabs(p->a2*p->a3);
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
-  const double size_q1_for_q3_times_rounding = 1e-12*size_q1_for_q3;
-  const double product_in_divisor_q6_q1_for_q3 = 9.999999e-13*size_q1_for_q3;
-  const double product_in_highest_q6_q1_for_q3 = 0.9999999*size_q1_for_q3;
-  const double machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale;
-  const double machine_scale_times_rounding = 1e-12*machine_scale;
-  const double product_in_cos_q6 = 1.000000001*size_q1_for_q3;
+  const double product_in_lost_digits_37 = 0.01*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
-  const double a2_squared_plus_a3_squared = p->a2*p->a2 + p->a3*p->a3;
-  const double twice_d5 = 2.0*p->d5;
-  const double d1_times_d5_times_2 = 2.0*p->d1*p->d5;
-  const double product_in_follows_q1_for_q3 = 5e-13*size_q1_for_q3;
   const double a2_plus_a3 = p->a2 + p->a3;
   const double a2_minus_a3 = p->a2 - p->a3;
-  const double quotient_in_cos_q3 = 0.25/(p->a2*p->a3);
-  const double quotient_in_sin_q3 = 0.5/fabs(p->a2*p->a3);
+  const double quotient_in_closed_cos_q3 = 0.25/(p->a2*p->a3);
+  const double quotient_in_closed_sin_q3 = 0.5/fabs(p->a2*p->a3);
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1872,23 +1559,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a6 = p->offset_a6;
   made.machine_scale = machine_scale;
   made.rounding_q1 = rounding_q1;
-  made.size_q1_for_q3 = size_q1_for_q3;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
-  made.size_q1_for_q3_times_rounding = size_q1_for_q3_times_rounding;
-  made.product_in_divisor_q6_q1_for_q3 = product_in_divisor_q6_q1_for_q3;
-  made.product_in_highest_q6_q1_for_q3 = product_in_highest_q6_q1_for_q3;
-  made.machine_scale_squared_times_plane = machine_scale_squared_times_plane;
-  made.machine_scale_times_rounding = machine_scale_times_rounding;
-  made.product_in_cos_q6 = product_in_cos_q6;
+  made.product_in_lost_digits_37 = product_in_lost_digits_37;
   made.one_by_machine_scale = one_by_machine_scale;
-  made.a2_squared_plus_a3_squared = a2_squared_plus_a3_squared;
-  made.twice_d5 = twice_d5;
-  made.d1_times_d5_times_2 = d1_times_d5_times_2;
-  made.product_in_follows_q1_for_q3 = product_in_follows_q1_for_q3;
   made.a2_plus_a3 = a2_plus_a3;
   made.a2_minus_a3 = a2_minus_a3;
-  made.quotient_in_cos_q3 = quotient_in_cos_q3;
-  made.quotient_in_sin_q3 = quotient_in_sin_q3;
+  made.quotient_in_closed_cos_q3 = quotient_in_closed_cos_q3;
+  made.quotient_in_closed_sin_q3 = quotient_in_closed_sin_q3;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(ac6_threeparallel_machine *)machine = made;
   return SOFTKIN_OK;

@@ -132,6 +132,411 @@ static const int PERIOD_AXES[] = {0, 1, 2, 3, 4, 5};
 
 static const int DISTANCE_AXES[] = {0, 1, 2, 3, 4, 5};
 
+/* The axes that meet a pose, found by steps on the closure, and whether they do. */
+static softkin_status find_meet_pose(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  const articulatedrobot_6dof_machine *k = machine;
+  const double given_ref_a1 = given[0], given_ref_a2 = given[1], given_ref_a3 = given[2],
+      given_ref_a4 = given[3], given_ref_a5 = given[4], given_ref_a6 = given[5], goal_r11 = given[15],
+      goal_r12 = given[16], goal_r13 = given[17], goal_r21 = given[18], goal_r22 = given[19],
+      goal_r23 = given[20], goal_r31 = given[21], goal_r32 = given[22], goal_r33 = given[23],
+      goal_x = given[24], goal_y = given[25], goal_z = given[26], start_a1 = given[27], start_a2 = given[28],
+      start_a3 = given[29], start_a4 = given[30], start_a5 = given[31], start_a6 = given[32];
+  const int given_sigma_arm = (int)given[6], given_sigma_elbow = (int)given[7],
+      given_sigma_hand = (int)given[8], given_turn_a1 = (int)given[9], given_turn_a2 = (int)given[10],
+      given_turn_a3 = (int)given[11], given_turn_a4 = (int)given[12], given_turn_a5 = (int)given[13],
+      given_turn_a6 = (int)given[14];
+  const double closed_sign_arm = given_sigma_arm; /* arm: +1 front, -1 back */
+  const double closed_sign_elbow = given_sigma_elbow; /* elbow: +1 down, -1 up */
+  const double closed_sign_hand = given_sigma_hand; /* hand: +1 down, -1 up */
+  /* wrist centre: the last joints do not move this point */
+  const double closed_wrist_x = goal_x - k->d6*goal_r13;
+  const double closed_wrist_y = goal_y - k->d6*goal_r23;
+  /* distance of the point from the axis of q1 */
+  const double closed_distance_q1 = sqrt(closed_wrist_x*closed_wrist_x + closed_wrist_y*closed_wrist_y);
+  /* Pythagoras: square of the distance ahead of the axis */
+  const double closed_ahead_squared_q1 = (closed_distance_q1 + k->d3)*(closed_distance_q1 - k->d3);
+  /* how far ahead of the axis the point is; negative: behind it */
+  const double closed_ahead_q1 = softkin_root(closed_ahead_squared_q1)*closed_sign_arm;
+  /* A1: without a commanded turn, the value nearest to this */
+  const double closed_open_a1 = k->single_a1 ? k->mid_a1 : given_ref_a1;
+  const double closed_near_a1 = given_turn_a1 != 0
+      ? 360.0*(given_turn_a1 > 0 ? given_turn_a1 - 1 : given_turn_a1) : closed_open_a1;
+  /* coordinate of the point that the remaining links must reach */
+  const double closed_wrist_x_from_q1 = closed_ahead_q1 - k->a1;
+  const double closed_wrist_z = goal_z - k->d6*goal_r33;
+  /* coordinate of the point that the remaining links must reach */
+  const double closed_wrist_z_from_q1 = closed_wrist_z - k->d1;
+  /* distance that the remaining links must span */
+  const double closed_reach = sqrt(closed_wrist_x_from_q1*closed_wrist_x_from_q1
+      + closed_wrist_z_from_q1*closed_wrist_z_from_q1);
+  /* A2: without a commanded turn, the value nearest to this */
+  const double closed_open_a2 = k->single_a2 ? k->mid_a2 : given_ref_a2;
+  const double closed_near_a2 = given_turn_a2 != 0
+      ? 360.0*(given_turn_a2 > 0 ? given_turn_a2 - 1 : given_turn_a2) : closed_open_a2;
+  /* A3: without a commanded turn, the value nearest to this */
+  const double closed_open_a3 = k->single_a3 ? k->mid_a3 : given_ref_a3;
+  const double closed_near_a3 = given_turn_a3 != 0
+      ? 360.0*(given_turn_a3 > 0 ? given_turn_a3 - 1 : given_turn_a3) : closed_open_a3;
+  /* A4: without a commanded turn, the value nearest to this */
+  const double closed_open_a4 = k->single_a4 ? k->mid_a4 : given_ref_a4;
+  const double closed_near_a4 = given_turn_a4 != 0
+      ? 360.0*(given_turn_a4 > 0 ? given_turn_a4 - 1 : given_turn_a4) : closed_open_a4;
+  /* A5: without a commanded turn, the value nearest to this */
+  const double closed_open_a5 = k->single_a5 ? k->mid_a5 : given_ref_a5;
+  const double closed_near_a5 = given_turn_a5 != 0
+      ? 360.0*(given_turn_a5 > 0 ? given_turn_a5 - 1 : given_turn_a5) : closed_open_a5;
+  /* A6: without a commanded turn, the value nearest to this */
+  const double closed_open_a6 = k->single_a6 ? k->mid_a6 : given_ref_a6;
+  const double closed_near_a6 = given_turn_a6 != 0
+      ? 360.0*(given_turn_a6 > 0 ? given_turn_a6 - 1 : given_turn_a6) : closed_open_a6;
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double closed_one_less_cos_q3 = (k->a2_plus_effective_q3_2 + closed_reach)
+      *(k->a2_plus_effective_q3_2 - closed_reach);
+  /* 1 + cosine, times the scale */
+  const double closed_one_plus_cos_q3 = (closed_reach - k->a2_minus_effective_q3_2_2)
+      *(k->a2_minus_effective_q3_2_2 + closed_reach);
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
+  const double closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3;
+  const double closed_divisor_of_cos_q3 = closed_sum_q3 > 0.0 ? closed_sum_q3 : 1.0;
+  /* sine squared, times the squared scale */
+  const double closed_sine_square_q3 = closed_one_less_cos_q3*closed_one_plus_cos_q3;
+  const double closed_sin_swing_q3 = -2.0*softkin_root(closed_sine_square_q3)*closed_sign_elbow
+      /closed_divisor_of_cos_q3;
+  const double closed_arm_along_q2 = -closed_sin_swing_q3*k->effective_q3_2;
+  const double closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3)
+      /closed_divisor_of_cos_q3;
+  const double closed_arm_across_q2 = k->a2 + closed_cos_swing_q3*k->effective_q3_2;
+  /* rotation by q2 that takes the arm to its target point */
+  const double closed_along_q2 = closed_arm_across_q2*closed_wrist_z_from_q1
+      + closed_arm_along_q2*closed_wrist_x_from_q1;
+  const double closed_across_q2 = closed_arm_along_q2*closed_wrist_z_from_q1
+      - closed_arm_across_q2*closed_wrist_x_from_q1;
+  const double sum_in_closed_length_q2 = closed_across_q2*closed_across_q2 + closed_along_q2*closed_along_q2;
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double closed_cos_q3 = k->a3_by_effective_q3_2*closed_cos_swing_q3
+      - closed_sin_swing_q3*k->d4_by_effective_q3_2;
+  const double closed_sin_q3 = k->a3_by_effective_q3_2*closed_sin_swing_q3
+      + closed_cos_swing_q3*k->d4_by_effective_q3_2;
+  const double closed_axis_a3 = softkin_on_turn(k->offset_a3
+      + softkin_angle_of(closed_sin_q3, closed_cos_q3)*SOFTKIN_RADIAN, closed_near_a3);
+  /* steps of damped least squares on the closure, from one start after the other */
+  double tried_a1 = start_a1;
+  double tried_a2 = start_a2;
+  double tried_a3 = start_a3;
+  double tried_a4 = start_a4;
+  double tried_a5 = start_a5;
+  double tried_a6 = start_a6;
+  int passes_left = 40;
+  int attempt = 0;
+  double error_before = 9.0;
+  double q1, sin_q1, cos_q1, q2, q3, q2_plus_q3, cos_q23, r11_at_q23, sin_q23, r13_at_q23, q4, sin_q4,
+      cos_q4, r13_at_q4, q5, sin_q5, cos_q5, r11_at_q5, x_at_q2, sin_q2, r13_at_q2, x_at_q3, x_at_q4,
+      x_at_q5, d6_times_r11_at_q5, x, wrist_x, r21_at_q23, r23_at_q23, r23_at_q4, r21_at_q5, y_at_q2,
+      r23_at_q2, y_at_q3, y_at_q4, y_at_q5, d6_times_r21_at_q5, y, wrist_y, branch_arm, sin_q3, cos_q3,
+      branch_elbow, r33_at_q4, r31_at_q5, r12_at_q4, r13_at_q5, q6, sin_q6, cos_q6, r13_at_q6, r22_at_q4,
+      r23_at_q5, r23_at_q6, r32_at_q4, r33_at_q5, r33_at_q6, r12_at_q6, r22_at_q6, r32_at_q6, error_1,
+      error_2, cos_q2, z_at_q3, z_at_q4, z_at_q5, z, error_3, error_4, error_5, error_6, value_in_error,
+      error, free_angle, free_turn, closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1,
+      closed_cos_q1, closed_sin_q1, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1,
+      cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4,
+      y_minus_y_at_q4, rate_1_4, z_minus_z_at_q5, y_minus_y_at_q5, rate_1_5, rate_1_6, product_in_damping,
+      damping, product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, x_minus_x_at_q4, rate_2_4,
+      x_minus_x_at_q5, rate_2_5, rate_2_6, product_1_2, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6,
+      product_1_3, rate_1_2_plus_rate_1_3, product_1_4, product_1_5, product_1_6, product_2_2, product_2_3,
+      rate_2_2_plus_rate_2_3, product_2_4, product_2_5, product_2_6, product_3_3, rate_3_2_plus_rate_3_3,
+      product_3_4, product_3_5, product_3_6, product_4_4, product_4_5, product_4_6, product_5_5, product_5_6,
+      product_6_6, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6,
+      step_a1, sum_in_step_a2, step_a2, step_a3, step_a4, step_a5, step_a6, step_length, shrinking,
+      closed_reference_a2, closed_length_q2, closed_cos_q2, closed_sin_q2, closed_axis_a2,
+      closed_reference_a4, closed_r13_from_q1, closed_sin_q23, closed_cos_q23, closed_r33_from_q123,
+      closed_r23_from_q1, closed_radius_q4, closed_direction_x_q4, closed_direction_y_q4, closed_axis_a4,
+      closed_r13_from_q123, closed_q4_radius_of_q5, closed_axis_a5, closed_r22_from_q1, closed_r12_from_q1,
+      closed_r32_from_q123, closed_direction_x_q6, closed_r21_from_q1, closed_r11_from_q1,
+      closed_r31_from_q123, closed_direction_y_q6, closed_axis_a6, shared_quotient;
+  int next_attempt;
+  bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, mirrors;
+  for (int pass = 0;; pass += 1) {
+    if (pass == 164) {
+      return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
+    }
+    q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
+    sin_q1 = sin(q1);
+    cos_q1 = cos(q1);
+    q2 = (tried_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    q3 = (tried_a3 - k->offset_a3)*SOFTKIN_DEGREE;
+    q2_plus_q3 = q2 + q3;
+    cos_q23 = cos(q2_plus_q3);
+    r11_at_q23 = cos_q1*cos_q23;
+    sin_q23 = sin(q2_plus_q3);
+    r13_at_q23 = -cos_q1*sin_q23;
+    q4 = (tried_a4 - k->offset_a4)*SOFTKIN_DEGREE;
+    sin_q4 = sin(q4);
+    cos_q4 = cos(q4);
+    r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
+    q5 = (tried_a5 - k->offset_a5)*SOFTKIN_DEGREE;
+    sin_q5 = sin(q5);
+    cos_q5 = cos(q5);
+    r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
+    x_at_q2 = k->a1*cos_q1;
+    sin_q2 = sin(q2);
+    r13_at_q2 = -cos_q1*sin_q2;
+    x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+    x_at_q4 = x_at_q3 + k->a3*r13_at_q23 + k->d3*sin_q1;
+    x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
+    d6_times_r11_at_q5 = k->d6*r11_at_q5;
+    x = d6_times_r11_at_q5 + x_at_q5;
+    wrist_x = x - d6_times_r11_at_q5; /* wrist centre: the last joints do not move this point */
+    r21_at_q23 = cos_q23*sin_q1;
+    r23_at_q23 = -sin_q1*sin_q23;
+    r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
+    r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
+    y_at_q2 = k->a1*sin_q1;
+    r23_at_q2 = -sin_q1*sin_q2;
+    y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+    y_at_q4 = y_at_q3 + k->a3*r23_at_q23 - k->d3*cos_q1;
+    y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
+    d6_times_r21_at_q5 = k->d6*r21_at_q5;
+    y = d6_times_r21_at_q5 + y_at_q5;
+    wrist_y = y - d6_times_r21_at_q5;
+    branch_arm = k->one_by_machine_scale*(wrist_x*cos_q1 + wrist_y*sin_q1);
+    beside_arm = branch_arm*closed_sign_arm < -1e-6;
+    sin_q3 = sin(q3);
+    cos_q3 = cos(q3);
+    branch_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2;
+    beside_elbow = branch_elbow*closed_sign_elbow < -1e-6;
+    beside_hand = closed_sign_hand*sin_q5 < -1e-6;
+    r33_at_q4 = cos_q23*cos_q4;
+    r31_at_q5 = cos_q5*sin_q23 - r33_at_q4*sin_q5;
+    r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
+    r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5;
+    q6 = (tried_a6 - k->offset_a6)*SOFTKIN_DEGREE;
+    sin_q6 = sin(q6);
+    cos_q6 = cos(q6);
+    r13_at_q6 = r13_at_q5*cos_q6 - r12_at_q4*sin_q6;
+    r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
+    r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5;
+    r23_at_q6 = r23_at_q5*cos_q6 - r22_at_q4*sin_q6;
+    r32_at_q4 = cos_q23*sin_q4;
+    r33_at_q5 = r33_at_q4*cos_q5 + sin_q23*sin_q5;
+    r33_at_q6 = r33_at_q5*cos_q6 - r32_at_q4*sin_q6;
+    r12_at_q6 = r12_at_q4*cos_q6 + r13_at_q5*sin_q6;
+    r22_at_q6 = r22_at_q4*cos_q6 + r23_at_q5*sin_q6;
+    r32_at_q6 = r32_at_q4*cos_q6 + r33_at_q5*sin_q6;
+    error_1 = (goal_x - x)*k->one_by_machine_scale;
+    error_2 = (goal_y - y)*k->one_by_machine_scale;
+    cos_q2 = cos(q2);
+    z_at_q3 = k->d1 + k->a2*cos_q2;
+    z_at_q4 = z_at_q3 + k->a3*cos_q23;
+    z_at_q5 = z_at_q4 + k->d4*sin_q23;
+    z = z_at_q5 + k->d6*r31_at_q5;
+    error_3 = (goal_z - z)*k->one_by_machine_scale;
+    error_4 = 0.5*(goal_r22*r32_at_q6 + goal_r31*r23_at_q6 + goal_r33*r21_at_q5 - goal_r21*r33_at_q6
+        - goal_r23*r31_at_q5 - goal_r32*r22_at_q6);
+    error_5 = 0.5*(goal_r11*r33_at_q6 + goal_r13*r31_at_q5 + goal_r32*r12_at_q6 - goal_r12*r32_at_q6
+        - goal_r31*r13_at_q6 - goal_r33*r11_at_q5);
+    error_6 = 0.5*(goal_r12*r22_at_q6 + goal_r21*r13_at_q6 + goal_r23*r11_at_q5 - goal_r11*r23_at_q6
+        - goal_r13*r21_at_q5 - goal_r22*r12_at_q6);
+    value_in_error = goal_r11*r13_at_q6 + goal_r13*r11_at_q5 + goal_r21*r23_at_q6 + goal_r23*r21_at_q5
+        + goal_r31*r33_at_q6 + goal_r33*r31_at_q5 - 1.0 - goal_r12*r12_at_q6 - goal_r22*r22_at_q6
+        - goal_r32*r32_at_q6 > 0.0 ? 0.0 : 1.0;
+    /* error of the pose, in characteristic lengths and radians */
+    error = value_in_error + sqrt(error_1*error_1 + error_2*error_2 + error_3*error_3 + error_4*error_4
+        + error_5*error_5 + error_6*error_6);
+    another = passes_left <= 0;
+    /* the error is rounding, and steps make it no smaller */
+    pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
+    pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow) && (!beside_hand);
+    next_attempt = attempt + (another ? 1 : 0);
+    mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
+    free_angle = next_attempt > 0 ? 1e-6 : 1e-11;
+    free_turn = -137.5*(next_attempt > 1 ? 1 - next_attempt : 0);
+    closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
+    free_angle_times_machine_scale = free_angle*k->machine_scale;
+    closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? closed_distance_q1*closed_distance_q1 : 1.0;
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
+    closed_cos_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*closed_wrist_x - closed_wrist_y*k->d3)/closed_divisor_q1
+        : cos(closed_reference_a1);
+    closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*closed_wrist_y + closed_wrist_x*k->d3)/closed_divisor_q1
+        : sin(closed_reference_a1);
+    closed_axis_a1 = softkin_on_turn(k->offset_a1
+        + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
+    rate_1_1 = -k->one_by_machine_scale*y;
+    rate_2_1 = k->one_by_machine_scale*x;
+    z_minus_d1 = z - k->d1;
+    cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
+    rate_1_2 = -z_minus_d1*cos_q1_times_one_by_machine_scale;
+    z_minus_z_at_q3 = z - z_at_q3;
+    rate_1_3 = -z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
+    z_minus_z_at_q4 = z - z_at_q4;
+    y_minus_y_at_q4 = y - y_at_q4;
+    rate_1_4 = k->one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 - y_minus_y_at_q4*sin_q23);
+    z_minus_z_at_q5 = z - z_at_q5;
+    y_minus_y_at_q5 = y - y_at_q5;
+    rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5);
+    rate_1_6 = k->one_by_machine_scale*(r21_at_q5*z_minus_z_at_q5 - r31_at_q5*y_minus_y_at_q5);
+    product_in_damping = 0.001*error;
+    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
+    product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4
+        + rate_1_5*rate_1_5 + rate_1_6*rate_1_6;
+    sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
+    rate_2_2 = -z_minus_d1*sin_q1_times_one_by_machine_scale;
+    rate_2_3 = -z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
+    x_minus_x_at_q4 = x - x_at_q4;
+    rate_2_4 = (x_minus_x_at_q4*sin_q23 - r11_at_q23*z_minus_z_at_q4)*k->one_by_machine_scale;
+    x_minus_x_at_q5 = x - x_at_q5;
+    rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
+    rate_2_6 = (r31_at_q5*x_minus_x_at_q5 - r11_at_q5*z_minus_z_at_q5)*k->one_by_machine_scale;
+    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4
+        + rate_1_5*rate_2_5 + rate_1_6*rate_2_6;
+    rate_3_2 = -k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
+    rate_3_3 = -k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
+    rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
+    rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
+    rate_3_6 = k->one_by_machine_scale*(r11_at_q5*y_minus_y_at_q5 - r21_at_q5*x_minus_x_at_q5);
+    product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5
+        + rate_1_6*rate_3_6;
+    rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3;
+    product_1_4 = r11_at_q23*rate_1_4 + r11_at_q5*rate_1_6 + r12_at_q4*rate_1_5
+        + rate_1_2_plus_rate_1_3*sin_q1;
+    product_1_5 = r21_at_q23*rate_1_4 + r21_at_q5*rate_1_6 + r22_at_q4*rate_1_5
+        - rate_1_2_plus_rate_1_3*cos_q1;
+    product_1_6 = rate_1_1 + r31_at_q5*rate_1_6 + r32_at_q4*rate_1_5 + rate_1_4*sin_q23;
+    product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4
+        + rate_2_5*rate_2_5 + rate_2_6*rate_2_6;
+    product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5
+        + rate_2_6*rate_3_6;
+    rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3;
+    product_2_4 = r11_at_q23*rate_2_4 + r11_at_q5*rate_2_6 + r12_at_q4*rate_2_5
+        + rate_2_2_plus_rate_2_3*sin_q1;
+    product_2_5 = r21_at_q23*rate_2_4 + r21_at_q5*rate_2_6 + r22_at_q4*rate_2_5
+        - rate_2_2_plus_rate_2_3*cos_q1;
+    product_2_6 = rate_2_1 + r31_at_q5*rate_2_6 + r32_at_q4*rate_2_5 + rate_2_4*sin_q23;
+    product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5
+        + rate_3_6*rate_3_6;
+    rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3;
+    product_3_4 = r11_at_q23*rate_3_4 + r11_at_q5*rate_3_6 + r12_at_q4*rate_3_5
+        + rate_3_2_plus_rate_3_3*sin_q1;
+    product_3_5 = r21_at_q23*rate_3_4 + r21_at_q5*rate_3_6 + r22_at_q4*rate_3_5
+        - rate_3_2_plus_rate_3_3*cos_q1;
+    product_3_6 = r31_at_q5*rate_3_6 + r32_at_q4*rate_3_5 + rate_3_4*sin_q23;
+    product_4_4 = damping + r11_at_q23*r11_at_q23 + r11_at_q5*r11_at_q5 + r12_at_q4*r12_at_q4
+        + 2.0*sin_q1*sin_q1;
+    product_4_5 = r11_at_q23*r21_at_q23 + r11_at_q5*r21_at_q5 + r12_at_q4*r22_at_q4 - 2.0*cos_q1*sin_q1;
+    product_4_6 = r11_at_q23*sin_q23 + r11_at_q5*r31_at_q5 + r12_at_q4*r32_at_q4;
+    product_5_5 = damping + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r21_at_q5*r21_at_q5
+        + r22_at_q4*r22_at_q4;
+    product_5_6 = r21_at_q23*sin_q23 + r21_at_q5*r31_at_q5 + r22_at_q4*r32_at_q4;
+    product_6_6 = 1.0 + damping + r31_at_q5*r31_at_q5 + r32_at_q4*r32_at_q4 + sin_q23*sin_q23;
+    double system[6][7] = {{product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6,
+        error_1}, {product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6, error_2},
+        {product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6, error_3},
+        {product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6, error_4},
+        {product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6, error_5},
+        {product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6, error_6}};
+    softkin_solve(&system[0][0], 6, 1);
+    multiplier_1 = system[0][6];
+    multiplier_2 = system[1][6];
+    multiplier_3 = system[2][6];
+    multiplier_4 = system[3][6];
+    multiplier_5 = system[4][6];
+    multiplier_6 = system[5][6];
+    step_a1 = multiplier_6 + multiplier_1*rate_1_1 + multiplier_2*rate_2_1;
+    sum_in_step_a2 = multiplier_4*sin_q1 - multiplier_5*cos_q1;
+    step_a2 = sum_in_step_a2 + multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2;
+    step_a3 = sum_in_step_a2 + multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
+    step_a4 = multiplier_1*rate_1_4 + multiplier_2*rate_2_4 + multiplier_3*rate_3_4 + multiplier_4*r11_at_q23
+        + multiplier_5*r21_at_q23 + multiplier_6*sin_q23;
+    step_a5 = multiplier_1*rate_1_5 + multiplier_2*rate_2_5 + multiplier_3*rate_3_5 + multiplier_4*r12_at_q4
+        + multiplier_5*r22_at_q4 + multiplier_6*r32_at_q4;
+    step_a6 = multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6 + multiplier_4*r11_at_q5
+        + multiplier_5*r21_at_q5 + multiplier_6*r31_at_q5;
+    step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3 + step_a4*step_a4
+        + step_a5*step_a5 + step_a6*step_a6);
+    shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
+    closed_reference_a2 = SOFTKIN_DEGREE*(free_turn + given_ref_a2 - k->offset_a2);
+    closed_length_q2 = (closed_reach > free_angle_times_machine_scale) && (sum_in_closed_length_q2 > 0.0)
+        ? softkin_root(sum_in_closed_length_q2) : 1.0;
+    /* at a singularity: the angle of the reference */
+    closed_cos_q2 = closed_reach > free_angle_times_machine_scale ? closed_along_q2/closed_length_q2
+        : cos(closed_reference_a2);
+    closed_sin_q2 = closed_reach > free_angle_times_machine_scale ? closed_across_q2/closed_length_q2
+        : sin(closed_reference_a2);
+    closed_axis_a2 = softkin_on_turn(k->offset_a2
+        + softkin_angle_of(closed_sin_q2, closed_cos_q2)*SOFTKIN_RADIAN, closed_near_a2);
+    closed_reference_a4 = SOFTKIN_DEGREE*(free_turn + given_ref_a4 - k->offset_a4);
+    closed_r13_from_q1 = closed_cos_q1*goal_r13 + closed_sin_q1*goal_r23;
+    closed_sin_q23 = closed_cos_q2*closed_sin_q3 + closed_cos_q3*closed_sin_q2;
+    closed_cos_q23 = closed_cos_q2*closed_cos_q3 - closed_sin_q2*closed_sin_q3;
+    closed_r33_from_q123 = closed_cos_q23*goal_r33 - closed_r13_from_q1*closed_sin_q23;
+    closed_r23_from_q1 = closed_cos_q1*goal_r23 - closed_sin_q1*goal_r13;
+    /* polar coordinates: the radius at angle q4 */
+    closed_radius_q4 = sqrt(closed_r23_from_q1*closed_r23_from_q1
+        + closed_r33_from_q123*closed_r33_from_q123);
+    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
+     * reference */
+    closed_direction_x_q4 = closed_radius_q4 > free_angle ? -closed_r33_from_q123*closed_sign_hand
+        : cos(closed_reference_a4);
+    closed_direction_y_q4 = closed_radius_q4 > free_angle ? closed_r23_from_q1*closed_sign_hand
+        : sin(closed_reference_a4);
+    closed_axis_a4 = softkin_on_turn(k->offset_a4
+        + softkin_angle_of(closed_direction_y_q4, closed_direction_x_q4)*SOFTKIN_RADIAN, closed_near_a4);
+    closed_r13_from_q123 = closed_cos_q23*closed_r13_from_q1 + closed_sin_q23*goal_r33;
+    closed_q4_radius_of_q5 = closed_radius_q4*closed_sign_hand;
+    closed_axis_a5 = softkin_on_turn(k->offset_a5
+        + softkin_angle_of(closed_q4_radius_of_q5, closed_r13_from_q123)*SOFTKIN_RADIAN, closed_near_a5);
+    closed_r22_from_q1 = closed_cos_q1*goal_r22 - closed_sin_q1*goal_r12;
+    closed_r12_from_q1 = closed_cos_q1*goal_r12 + closed_sin_q1*goal_r22;
+    closed_r32_from_q123 = closed_cos_q23*goal_r32 - closed_r12_from_q1*closed_sin_q23;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    closed_direction_x_q6 = -closed_direction_x_q4*closed_r22_from_q1
+        - closed_direction_y_q4*closed_r32_from_q123;
+    closed_r21_from_q1 = closed_cos_q1*goal_r21 - closed_sin_q1*goal_r11;
+    closed_r11_from_q1 = closed_cos_q1*goal_r11 + closed_sin_q1*goal_r21;
+    closed_r31_from_q123 = closed_cos_q23*goal_r31 - closed_r11_from_q1*closed_sin_q23;
+    closed_direction_y_q6 = -closed_direction_x_q4*closed_r21_from_q1
+        - closed_direction_y_q4*closed_r31_from_q123;
+    closed_axis_a6 = softkin_on_turn(k->offset_a6
+        + softkin_angle_of(closed_direction_y_q6, closed_direction_x_q6)*SOFTKIN_RADIAN, closed_near_a6);
+    shared_quotient = shrinking*SOFTKIN_RADIAN;
+    if (pose_is_met || (another && (next_attempt >= 4))) {
+      break;
+    }
+    tried_a1 = (another ? closed_axis_a1
+        : (mirrors ? (beside_arm ? 2.0*closed_axis_a1 - tried_a1 : tried_a1) : tried_a1
+        + shared_quotient*step_a1));
+    tried_a2 = (another ? closed_axis_a2 : (mirrors ? tried_a2 : tried_a2 + shared_quotient*step_a2));
+    tried_a3 = (another ? closed_axis_a3
+        : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
+        + shared_quotient*step_a3));
+    tried_a4 = (another ? closed_axis_a4
+        : (mirrors ? (beside_hand ? 2.0*closed_axis_a4 - tried_a4 : tried_a4) : tried_a4
+        + shared_quotient*step_a4));
+    tried_a5 = (another ? closed_axis_a5 : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
+    tried_a6 = (another ? closed_axis_a6 : (mirrors ? tried_a6 : tried_a6 + shared_quotient*step_a6));
+    passes_left = (another ? 40 : passes_left - 1);
+    attempt = next_attempt;
+    error_before = (another || mirrors ? 9.0 : error);
+  }
+  const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
+  const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);
+  const double chosen_a3 = softkin_on_turn(tried_a3, closed_near_a3);
+  const double chosen_a4 = softkin_on_turn(tried_a4, closed_near_a4);
+  const double chosen_a5 = softkin_on_turn(tried_a5, closed_near_a5);
+  const double chosen_a6 = softkin_on_turn(tried_a6, closed_near_a6);
+  found[0] = pose_is_met;
+  found[1] = chosen_a1;
+  found[2] = chosen_a2;
+  found[3] = chosen_a3;
+  found[4] = chosen_a4;
+  found[5] = chosen_a5;
+  found[6] = chosen_a6;
+  return SOFTKIN_OK;
+}
+
 /* Position, rotation, and the signed margin of every branch. */
 static softkin_status find_forward(const void *machine, const double *axes, softkin_frame *frame,
     double *margins, softkin_refusal *why) {
@@ -149,76 +554,76 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double q3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
   const double q2_plus_q3 = q2 + q3;
   const double cos_q23 = cos(q2_plus_q3);
-  const double r12_at_q23 = -cos_q1*cos_q23;
+  const double r11_at_q23 = cos_q1*cos_q23;
   const double sin_q1 = sin(q1);
   const double sin_q23 = sin(q2_plus_q3);
-  const double r11_at_q23 = -cos_q1*sin_q23;
+  const double r13_at_q23 = -cos_q1*sin_q23;
   const double q4 = SOFTKIN_DEGREE*(axis_a4 - k->offset_a4);
   const double sin_q4 = sin(q4);
   const double cos_q4 = cos(q4);
-  const double r11_at_q4 = r11_at_q23*cos_q4 + sin_q1*sin_q4;
+  const double r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
   const double cos_q5 = cos(q5);
-  const double r12_at_q5 = -r12_at_q23*cos_q5 - r11_at_q4*sin_q5;
+  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
   const double x_at_q2 = k->a1*cos_q1;
   const double sin_q2 = sin(q2);
-  const double r11_at_q2 = -cos_q1*sin_q2;
-  const double x_at_q3 = x_at_q2 + k->a2*r11_at_q2;
-  const double x_at_q4 = x_at_q3 + k->a3*r11_at_q23 + k->d3*sin_q1;
-  const double x_at_q5 = x_at_q4 - k->d4*r12_at_q23;
-  const double d6_times_r12_at_q5 = k->d6*r12_at_q5;
-  const double x = d6_times_r12_at_q5 + x_at_q5;
-  const double r22_at_q23 = -cos_q23*sin_q1;
-  const double r21_at_q23 = -sin_q1*sin_q23;
-  const double r21_at_q4 = r21_at_q23*cos_q4 - cos_q1*sin_q4;
-  const double r22_at_q5 = -r22_at_q23*cos_q5 - r21_at_q4*sin_q5;
+  const double r13_at_q2 = -cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23 + k->d3*sin_q1;
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
+  const double d6_times_r11_at_q5 = k->d6*r11_at_q5;
+  const double x = d6_times_r11_at_q5 + x_at_q5;
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double r23_at_q23 = -sin_q1*sin_q23;
+  const double r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
+  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
   const double y_at_q2 = k->a1*sin_q1;
-  const double r21_at_q2 = -sin_q1*sin_q2;
-  const double y_at_q3 = y_at_q2 + k->a2*r21_at_q2;
-  const double y_at_q4 = y_at_q3 + k->a3*r21_at_q23 - k->d3*cos_q1;
-  const double y_at_q5 = y_at_q4 - k->d4*r22_at_q23;
-  const double d6_times_r22_at_q5 = k->d6*r22_at_q5;
-  const double y = d6_times_r22_at_q5 + y_at_q5;
-  const double r31_at_q4 = cos_q23*cos_q4;
-  const double r32_at_q5 = cos_q5*sin_q23 - r31_at_q4*sin_q5;
+  const double r23_at_q2 = -sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23 - k->d3*cos_q1;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
+  const double d6_times_r21_at_q5 = k->d6*r21_at_q5;
+  const double y = d6_times_r21_at_q5 + y_at_q5;
+  const double r33_at_q4 = cos_q23*cos_q4;
+  const double r31_at_q5 = cos_q5*sin_q23 - r33_at_q4*sin_q5;
   const double cos_q2 = cos(q2);
   const double z_at_q3 = k->d1 + k->a2*cos_q2;
   const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
   const double z_at_q5 = z_at_q4 + k->d4*sin_q23;
-  const double z = z_at_q5 + k->d6*r32_at_q5;
-  const double r12_at_q4 = cos_q4*sin_q1 - r11_at_q23*sin_q4;
-  const double r11_at_q5 = r11_at_q4*cos_q5 - r12_at_q23*sin_q5;
+  const double z = z_at_q5 + k->d6*r31_at_q5;
+  const double r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
+  const double r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5;
   const double q6 = SOFTKIN_DEGREE*(axis_a6 - k->offset_a6);
   const double sin_q6 = sin(q6);
   const double cos_q6 = cos(q6);
-  const double r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6;
-  const double r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6;
-  const double r22_at_q4 = -cos_q1*cos_q4 - r21_at_q23*sin_q4;
-  const double r21_at_q5 = r21_at_q4*cos_q5 - r22_at_q23*sin_q5;
-  const double r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6;
-  const double r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6;
-  const double r32_at_q4 = -cos_q23*sin_q4;
-  const double r31_at_q5 = r31_at_q4*cos_q5 + sin_q23*sin_q5;
-  const double r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6;
-  const double r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6;
+  const double r13_at_q6 = r13_at_q5*cos_q6 - r12_at_q4*sin_q6;
+  const double r12_at_q6 = r12_at_q4*cos_q6 + r13_at_q5*sin_q6;
+  const double r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
+  const double r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5;
+  const double r23_at_q6 = r23_at_q5*cos_q6 - r22_at_q4*sin_q6;
+  const double r22_at_q6 = r22_at_q4*cos_q6 + r23_at_q5*sin_q6;
+  const double r32_at_q4 = cos_q23*sin_q4;
+  const double r33_at_q5 = r33_at_q4*cos_q5 + sin_q23*sin_q5;
+  const double r33_at_q6 = r33_at_q5*cos_q6 - r32_at_q4*sin_q6;
+  const double r32_at_q6 = r32_at_q4*cos_q6 + r33_at_q5*sin_q6;
   /* wrist centre: the last joints do not move this point */
-  const double wrist_x = x - d6_times_r12_at_q5;
-  const double wrist_y = y - d6_times_r22_at_q5;
+  const double wrist_x = x - d6_times_r11_at_q5;
+  const double wrist_y = y - d6_times_r21_at_q5;
   const double branch_arm = k->one_by_machine_scale*(wrist_x*cos_q1 + wrist_y*sin_q1);
   const double sin_q3 = sin(q3);
   const double cos_q3 = cos(q3);
-  const double branch_elbow = k->d4_by_effective_q3*cos_q3 - k->a3_by_effective_q3*sin_q3;
+  const double branch_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2_2;
   frame->position[0] = x;
   frame->position[1] = y;
   frame->position[2] = z;
-  frame->rotation[0][0] = r11_at_q6;
-  frame->rotation[0][1] = r12_at_q6;
-  frame->rotation[0][2] = r12_at_q5;
-  frame->rotation[1][0] = r21_at_q6;
-  frame->rotation[1][1] = r22_at_q6;
-  frame->rotation[1][2] = r22_at_q5;
-  frame->rotation[2][0] = r31_at_q6;
-  frame->rotation[2][1] = r32_at_q6;
-  frame->rotation[2][2] = r32_at_q5;
+  frame->rotation[0][0] = r13_at_q6;
+  frame->rotation[0][1] = -r12_at_q6;
+  frame->rotation[0][2] = r11_at_q5;
+  frame->rotation[1][0] = r23_at_q6;
+  frame->rotation[1][1] = -r22_at_q6;
+  frame->rotation[1][2] = r21_at_q5;
+  frame->rotation[2][0] = r33_at_q6;
+  frame->rotation[2][1] = -r32_at_q6;
+  frame->rotation[2][2] = r31_at_q5;
   margins[0] = branch_arm;
   margins[1] = branch_elbow;
   margins[2] = sin_q5;
@@ -251,88 +656,42 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!(ahead_squared_q1 >= -1e-12*distance_q1_squared - k->rounding_q1)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: out of reach", "u", fabs(k->d3) - distance_q1, 0);
   }
-  const double wrist_z = z - k->d6*r33;
-  /* coordinate of the point that the remaining links must reach */
-  const double wrist_y_from_q1 = wrist_z - k->d1;
-  const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
   const double sign_arm = sigma_arm; /* arm: +1 front, -1 back */
   /* how far ahead of the axis the point is; negative: behind it */
-  const double ahead_q1_before_q1_for_q3 = softkin_root(ahead_squared_q1)*sign_arm;
-  double cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3;
-  if (distance_q1 > k->machine_scale_times_free_angle) {
-    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - k->d3*wrist_y)/distance_q1_squared;
-    sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + k->d3*wrist_x)/distance_q1_squared;
-  } else {
-    const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3 = cos(reference_a1);
-    sin_q1_before_q1_for_q3 = sin(reference_a1);
-  }
-  double ahead_q1, cos_q1, sin_q1;
-  if (ahead_squared_q1 > k->machine_scale_squared_times_plane) {
-    ahead_q1 = ahead_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-    cos_q1 = cos_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-    sin_q1 = sin_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-  } else {
-    const double wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - k->a1;
-    /* q3 has solutions where this is within its bound */
-    const double value_q1_for_q3 = wrist_y_from_q1_squared
-        + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
-        - k->a2_squared_plus_effective_q3_squared;
-    if (fabs(value_q1_for_q3) <= k->size_q1_for_q3) {
-      ahead_q1 = ahead_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-      cos_q1 = cos_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-      sin_q1 = sin_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-    } else {
-      /* its derivative by q1 */
-      const double rate_q1_for_q3 = -k->twice_d3*wrist_x_from_q1_before_q1_for_q3;
-      double turn_q1_for_q3;
-      if (fabs(rate_q1_for_q3) > k->size_q1_for_q3_times_rounding) {
-        const double excess_q1_for_q3 = value_q1_for_q3 > 0.0 ? value_q1_for_q3 - k->size_q1_for_q3
-            : k->size_q1_for_q3 + value_q1_for_q3;
-        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3; /* turn of q1 to first order */
-      } else {
-        turn_q1_for_q3 = 0.0; /* turn of q1 to first order */
-      }
-      const double turned_length_q1_for_q3 = softkin_root(1.0 + turn_q1_for_q3*turn_q1_for_q3);
-      const double one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3;
-      const double turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3
-          *(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3);
-      const double turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3
-          *(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3);
-      /* residual of the equation of q1 */
-      const double turned_cost_q1_for_q3 = fabs(k->d3 + turned_cos_q1_for_q3*wrist_y
-          - turned_sin_q1_for_q3*wrist_x);
-      if (turned_cost_q1_for_q3 > k->machine_scale_times_rounding) {
-        ahead_q1 = ahead_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-        cos_q1 = cos_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-        sin_q1 = sin_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-      } else {
-        /* turned so that q3 has a solution */
-        ahead_q1 = (ahead_q1_before_q1_for_q3 - k->d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3;
-        cos_q1 = turned_cos_q1_for_q3; /* turned so that q3 has a solution */
-        sin_q1 = turned_sin_q1_for_q3; /* turned so that q3 has a solution */
-      }
-    }
-  }
+  const double ahead_q1 = softkin_root(ahead_squared_q1)*sign_arm;
   /* coordinate of the point that the remaining links must reach */
   const double wrist_x_from_q1 = ahead_q1 - k->a1;
+  const double wrist_z = z - k->d6*r33;
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_z_from_q1 = wrist_z - k->d1;
   /* distance that the remaining links must span */
-  const double reach = softkin_root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1);
-  /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3 = (k->a2_plus_effective_q3 + reach)*(k->a2_plus_effective_q3 - reach);
+  const double reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_z_from_q1*wrist_z_from_q1);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double one_less_cos_q3 = (k->a2_plus_effective_q3_2_2 + reach)*(k->a2_plus_effective_q3_2_2 - reach);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3 = (reach - k->a2_minus_effective_q3)*(k->a2_minus_effective_q3 + reach);
+  const double one_plus_cos_q3 = (reach - k->a2_minus_effective_q3_2)*(k->a2_minus_effective_q3_2 + reach);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
   const double divisor_of_cos_q3 = sum_q3 > 0.0 ? sum_q3 : 1.0;
   const double cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3;
+  const bool within_23 = fabs(cos_swing_q3) <= 1.0;
+  const bool lost_digits_23 = (!within_23) && (fabs(ahead_q1) <= k->product_in_lost_digits_23);
   /* q3: out of reach */
-  if (!(fabs(cos_swing_q3) <= 1.0000000000005)) {
+  if (!(lost_digits_23 || (fabs(cos_swing_q3) <= 1.0000000000005))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        (reach - k->a2_plus_effective_q3 > fabs(k->a2_minus_effective_q3) - reach ? reach
-        - k->a2_plus_effective_q3 : fabs(k->a2_minus_effective_q3) - reach), 0);
+        (reach - k->a2_plus_effective_q3_2_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
+        - k->a2_plus_effective_q3_2_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
+  }
+  double cos_q1, sin_q1;
+  if (distance_q1 > k->machine_scale_times_free_angle) {
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
+    cos_q1 = (ahead_q1*wrist_x - k->d3*wrist_y)/distance_q1_squared;
+    sin_q1 = (ahead_q1*wrist_y + k->d3*wrist_x)/distance_q1_squared;
+  } else {
+    const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
+    cos_q1 = cos(reference_a1);
+    sin_q1 = sin(reference_a1);
   }
   /* A1: without a commanded turn, the value nearest to this */
   const double open_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
@@ -346,11 +705,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sin_swing_q3 = -2.0*softkin_root(sine_square_q3)*sign_elbow/divisor_of_cos_q3;
   double cos_q2, sin_q2;
   if (reach > k->machine_scale_times_free_angle) {
-    const double arm_along_q2 = -k->effective_q3*sin_swing_q3;
-    const double arm_across_q2 = k->a2 + k->effective_q3*cos_swing_q3;
+    const double arm_along_q2 = -k->effective_q3_2*sin_swing_q3;
+    const double arm_across_q2 = k->a2 + k->effective_q3_2*cos_swing_q3;
     /* rotation by q2 that takes the arm to its target point */
-    const double along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1;
-    const double across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1;
+    const double along_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
+    const double across_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
     const double across_q2_squared_plus_along_q2_squared = across_q2*across_q2 + along_q2*along_q2;
     const double length_q2 = across_q2_squared_plus_along_q2_squared > 0.0
         ? softkin_root(across_q2_squared_plus_along_q2_squared) : 1.0;
@@ -368,8 +727,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double axis_a2 = softkin_on_turn(k->offset_a2 + softkin_angle_of(sin_q2, cos_q2)*SOFTKIN_RADIAN,
       near_a2);
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3 = k->a3_by_effective_q3*cos_swing_q3 - k->d4_by_effective_q3*sin_swing_q3;
-  const double sin_q3 = k->a3_by_effective_q3*sin_swing_q3 + k->d4_by_effective_q3*cos_swing_q3;
+  const double cos_q3 = k->a3_by_effective_q3_2_2*cos_swing_q3 - k->d4_by_effective_q3_2_2*sin_swing_q3;
+  const double sin_q3 = k->a3_by_effective_q3_2_2*sin_swing_q3 + k->d4_by_effective_q3_2_2*cos_swing_q3;
   /* A3: without a commanded turn, the value nearest to this */
   const double open_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
   const double near_a3 = turn_a3 != 0 ? 360.0*(turn_a3 > 0 ? turn_a3 - 1 : turn_a3) : open_a3;
@@ -379,20 +738,20 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double r13_from_q1 = r13*cos_q1 + r23*sin_q1;
   const double sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2;
   const double cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3;
-  const double r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23;
+  const double r33_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23;
   const double r23_from_q1 = r23*cos_q1 - r13*sin_q1;
   /* polar coordinates: the radius at angle q4 */
-  const double radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1);
+  const double radius_q4 = sqrt(r23_from_q1*r23_from_q1 + r33_from_q123*r33_from_q123);
   const double sign_hand = sigma_hand; /* hand: +1 down, -1 up */
   double direction_x_q4, direction_y_q4;
   if (radius_q4 > 1e-11) {
-    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
-    direction_x_q4 = -r13_from_q123*sign_hand;
+    direction_x_q4 = -r33_from_q123*sign_hand;
     direction_y_q4 = r23_from_q1*sign_hand;
   } else {
     const double reference_a4 = (ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
-    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4 = cos(reference_a4);
     direction_y_q4 = sin(reference_a4);
@@ -403,35 +762,55 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* A4: whole turns added */
   const double axis_a4 = softkin_on_turn(k->offset_a4
       + softkin_angle_of(direction_y_q4, direction_x_q4)*SOFTKIN_RADIAN, near_a4);
+  const double r13_from_q123 = r13_from_q1*cos_q23 + r33*sin_q23;
   const double q4_radius_of_q5 = radius_q4*sign_hand;
-  /* cosine and sine of q5 from the q4 radius and r23 equations */
-  const double cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23;
   /* A5: without a commanded turn, the value nearest to this */
   const double open_a5 = k->single_a5 ? k->mid_a5 : ref_a5;
   const double near_a5 = turn_a5 != 0 ? 360.0*(turn_a5 > 0 ? turn_a5 - 1 : turn_a5) : open_a5;
   /* A5: whole turns added */
   const double axis_a5 = softkin_on_turn(k->offset_a5
-      + softkin_angle_of(q4_radius_of_q5, cos_q5)*SOFTKIN_RADIAN, near_a5);
-  const double r21_from_q1 = r21*cos_q1 - r11*sin_q1;
-  const double r11_from_q1 = r11*cos_q1 + r21*sin_q1;
-  const double r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23;
-  const double scaled_r21_from_q1234 = -direction_x_q4*r21_from_q1 - direction_y_q4*r11_from_q123;
+      + softkin_angle_of(q4_radius_of_q5, r13_from_q123)*SOFTKIN_RADIAN, near_a5);
   const double r22_from_q1 = r22*cos_q1 - r12*sin_q1;
   const double r12_from_q1 = r12*cos_q1 + r22*sin_q1;
-  const double r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23;
-  const double scaled_r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123;
+  const double r32_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23;
+  /* cosine and sine of q6 from the r22 and r23 equations */
+  const double direction_x_q6 = -direction_x_q4*r22_from_q1 - direction_y_q4*r32_from_q123;
+  const double r21_from_q1 = r21*cos_q1 - r11*sin_q1;
+  const double r11_from_q1 = r11*cos_q1 + r21*sin_q1;
+  const double r31_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23;
+  const double direction_y_q6 = -direction_x_q4*r21_from_q1 - direction_y_q4*r31_from_q123;
   /* A6: without a commanded turn, the value nearest to this */
   const double open_a6 = k->single_a6 ? k->mid_a6 : ref_a6;
   const double near_a6 = turn_a6 != 0 ? 360.0*(turn_a6 > 0 ? turn_a6 - 1 : turn_a6) : open_a6;
   /* A6: whole turns added */
   const double axis_a6 = softkin_on_turn(k->offset_a6
-      + softkin_angle_of(scaled_r21_from_q1234, scaled_r22_from_q1234)*SOFTKIN_RADIAN, near_a6);
-  axes[0] = axis_a1;
-  axes[1] = axis_a2;
-  axes[2] = axis_a3;
-  axes[3] = axis_a4;
-  axes[4] = axis_a5;
-  axes[5] = axis_a6;
+      + softkin_angle_of(direction_y_q6, direction_x_q6)*SOFTKIN_RADIAN, near_a6);
+  /* digits were lost: the pose is met by steps on the closure */
+  double results[7] = {0.0};
+  if (lost_digits_23) {
+    const double arguments[] = {ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, sigma_arm, sigma_elbow,
+        sigma_hand, turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6, r11, r12, r13, r21, r22, r23, r31,
+        r32, r33, x, y, z, axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6};
+    const softkin_status status = find_meet_pose(k, arguments, results, why);
+    if (status != SOFTKIN_OK) {
+      return status;
+    }
+  }
+  const double found_a1 = results[1], found_a2 = results[2], found_a3 = results[3], found_a4 = results[4],
+      found_a5 = results[5], found_a6 = results[6];
+  const bool met = results[0] != 0.0;
+  /* q3: out of reach */
+  if (!(met || (fabs(cos_swing_q3) <= 1.0000000000005))) {
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
+        (reach - k->a2_plus_effective_q3_2_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
+        - k->a2_plus_effective_q3_2_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
+  }
+  axes[0] = (met ? found_a1 : axis_a1);
+  axes[1] = (met ? found_a2 : axis_a2);
+  axes[2] = (met ? found_a3 : axis_a3);
+  axes[3] = (met ? found_a4 : axis_a4);
+  axes[4] = (met ? found_a5 : axis_a5);
+  axes[5] = (met ? found_a6 : axis_a6);
   return SOFTKIN_OK;
 }
 
@@ -599,41 +978,41 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double q3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
   const double q2_plus_q3 = q2 + q3;
   const double cos_q23 = cos(q2_plus_q3);
-  const double r12_at_q23 = -cos_q1*cos_q23;
+  const double r11_at_q23 = cos_q1*cos_q23;
   const double sin_q23 = sin(q2_plus_q3);
-  const double r11_at_q23 = -cos_q1*sin_q23;
+  const double r13_at_q23 = -cos_q1*sin_q23;
   const double q4 = SOFTKIN_DEGREE*(axis_a4 - k->offset_a4);
   const double sin_q4 = sin(q4);
   const double cos_q4 = cos(q4);
-  const double r11_at_q4 = r11_at_q23*cos_q4 + sin_q1*sin_q4;
+  const double r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
   const double cos_q5 = cos(q5);
-  const double r12_at_q5 = -r12_at_q23*cos_q5 - r11_at_q4*sin_q5;
-  const double d6_times_r12_at_q5 = k->d6*r12_at_q5;
+  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
+  const double d6_times_r11_at_q5 = k->d6*r11_at_q5;
   const double x_at_q2 = k->a1*cos_q1;
   const double sin_q2 = sin(q2);
-  const double r11_at_q2 = -cos_q1*sin_q2;
-  const double x_at_q3 = x_at_q2 + k->a2*r11_at_q2;
-  const double x_at_q4 = x_at_q3 + k->a3*r11_at_q23 + k->d3*sin_q1;
-  const double x_at_q5 = x_at_q4 - k->d4*r12_at_q23;
-  const double x = d6_times_r12_at_q5 + x_at_q5;
+  const double r13_at_q2 = -cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23 + k->d3*sin_q1;
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
+  const double x = d6_times_r11_at_q5 + x_at_q5;
   /* wrist centre: the last joints do not move this point */
-  const double wrist_x = x - d6_times_r12_at_q5;
-  const double r22_at_q23 = -cos_q23*sin_q1;
-  const double r21_at_q23 = -sin_q1*sin_q23;
-  const double r21_at_q4 = r21_at_q23*cos_q4 - cos_q1*sin_q4;
-  const double r22_at_q5 = -r22_at_q23*cos_q5 - r21_at_q4*sin_q5;
-  const double d6_times_r22_at_q5 = k->d6*r22_at_q5;
+  const double wrist_x = x - d6_times_r11_at_q5;
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double r23_at_q23 = -sin_q1*sin_q23;
+  const double r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
+  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
+  const double d6_times_r21_at_q5 = k->d6*r21_at_q5;
   const double y_at_q2 = k->a1*sin_q1;
-  const double r21_at_q2 = -sin_q1*sin_q2;
-  const double y_at_q3 = y_at_q2 + k->a2*r21_at_q2;
-  const double y_at_q4 = y_at_q3 + k->a3*r21_at_q23 - k->d3*cos_q1;
-  const double y_at_q5 = y_at_q4 - k->d4*r22_at_q23;
-  const double y = d6_times_r22_at_q5 + y_at_q5;
-  const double wrist_y = y - d6_times_r22_at_q5;
+  const double r23_at_q2 = -sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23 - k->d3*cos_q1;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
+  const double y = d6_times_r21_at_q5 + y_at_q5;
+  const double wrist_y = y - d6_times_r21_at_q5;
   const double margin_wrist_on_axis_1 = k->one_by_machine_scale*(wrist_x*cos_q1 + wrist_y*sin_q1);
   const double sin_q3 = sin(q3);
   const double cos_q3 = cos(q3);
-  const double margin_elbow = k->d4_by_effective_q3*cos_q3 - k->a3_by_effective_q3*sin_q3;
+  const double margin_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2_2;
   margins[0] = margin_wrist_on_axis_1;
   margins[1] = margin_elbow;
   margins[2] = sin_q5;
@@ -655,94 +1034,94 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double q3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
   const double q2_plus_q3 = q2 + q3;
   const double cos_q23 = cos(q2_plus_q3);
-  const double r22_at_q23 = -cos_q23*sin_q1;
+  const double r21_at_q23 = cos_q23*sin_q1;
   const double cos_q1 = cos(q1);
   const double y_at_q2 = k->a1*sin_q1;
   const double sin_q2 = sin(q2);
-  const double r21_at_q2 = -sin_q1*sin_q2;
-  const double y_at_q3 = y_at_q2 + k->a2*r21_at_q2;
+  const double r23_at_q2 = -sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
   const double sin_q23 = sin(q2_plus_q3);
-  const double r21_at_q23 = -sin_q1*sin_q23;
+  const double r23_at_q23 = -sin_q1*sin_q23;
   const double q4 = SOFTKIN_DEGREE*(axis_a4 - k->offset_a4);
   const double sin_q4 = sin(q4);
   const double cos_q4 = cos(q4);
-  const double r21_at_q4 = r21_at_q23*cos_q4 - cos_q1*sin_q4;
+  const double r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
   const double q5 = SOFTKIN_DEGREE*(axis_a5 - k->offset_a5);
   const double sin_q5 = sin(q5);
   const double cos_q5 = cos(q5);
-  const double r22_at_q5 = -r22_at_q23*cos_q5 - r21_at_q4*sin_q5;
-  const double y_at_q4 = y_at_q3 + k->a3*r21_at_q23 - k->d3*cos_q1;
-  const double y_at_q5 = y_at_q4 - k->d4*r22_at_q23;
-  const double y = y_at_q5 + k->d6*r22_at_q5;
-  const double r31_at_q4 = cos_q23*cos_q4;
-  const double r32_at_q5 = cos_q5*sin_q23 - r31_at_q4*sin_q5;
-  const double r22_at_q4 = -cos_q1*cos_q4 - r21_at_q23*sin_q4;
-  const double r32_at_q4 = -cos_q23*sin_q4;
-  const double r12_at_q23 = -cos_q1*cos_q23;
+  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
+  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23 - k->d3*cos_q1;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
+  const double y = y_at_q5 + k->d6*r21_at_q5;
+  const double r33_at_q4 = cos_q23*cos_q4;
+  const double r31_at_q5 = cos_q5*sin_q23 - r33_at_q4*sin_q5;
+  const double r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
+  const double r32_at_q4 = cos_q23*sin_q4;
+  const double r11_at_q23 = cos_q1*cos_q23;
   const double x_at_q2 = k->a1*cos_q1;
-  const double r11_at_q2 = -cos_q1*sin_q2;
-  const double x_at_q3 = x_at_q2 + k->a2*r11_at_q2;
-  const double r11_at_q23 = -cos_q1*sin_q23;
-  const double r11_at_q4 = r11_at_q23*cos_q4 + sin_q1*sin_q4;
-  const double r12_at_q5 = -r12_at_q23*cos_q5 - r11_at_q4*sin_q5;
-  const double x_at_q4 = x_at_q3 + k->a3*r11_at_q23 + k->d3*sin_q1;
-  const double x_at_q5 = x_at_q4 - k->d4*r12_at_q23;
-  const double x = x_at_q5 + k->d6*r12_at_q5;
-  const double r12_at_q4 = cos_q4*sin_q1 - r11_at_q23*sin_q4;
+  const double r13_at_q2 = -cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+  const double r13_at_q23 = -cos_q1*sin_q23;
+  const double r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
+  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
+  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23 + k->d3*sin_q1;
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
+  const double x = x_at_q5 + k->d6*r11_at_q5;
+  const double r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
   const double cos_q2 = cos(q2);
   const double z_at_q3 = k->d1 + k->a2*cos_q2;
   const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
   const double z_at_q5 = z_at_q4 + k->d4*sin_q23;
-  const double z = z_at_q5 + k->d6*r32_at_q5;
+  const double z = z_at_q5 + k->d6*r31_at_q5;
   const double z_minus_d1 = z - k->d1;
   const double z_minus_z_at_q3 = z - z_at_q3;
   const double z_minus_z_at_q4 = z - z_at_q4;
   const double y_minus_y_at_q4 = y - y_at_q4;
-  const double y_minus_y_at_q5 = y - y_at_q5;
   const double z_minus_z_at_q5 = z - z_at_q5;
+  const double y_minus_y_at_q5 = y - y_at_q5;
   const double x_minus_x_at_q4 = x - x_at_q4;
   const double x_minus_x_at_q5 = x - x_at_q5;
   rows[0] = -y;
   rows[1] = -z_minus_d1*cos_q1;
   rows[2] = -z_minus_z_at_q3*cos_q1;
-  rows[3] = -r22_at_q23*z_minus_z_at_q4 - y_minus_y_at_q4*sin_q23;
-  rows[4] = r32_at_q4*y_minus_y_at_q5 - r22_at_q4*z_minus_z_at_q5;
-  rows[5] = r22_at_q5*z_minus_z_at_q5 - r32_at_q5*y_minus_y_at_q5;
+  rows[3] = r21_at_q23*z_minus_z_at_q4 - y_minus_y_at_q4*sin_q23;
+  rows[4] = r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5;
+  rows[5] = r21_at_q5*z_minus_z_at_q5 - r31_at_q5*y_minus_y_at_q5;
   rows[6] = x;
   rows[7] = -z_minus_d1*sin_q1;
   rows[8] = -z_minus_z_at_q3*sin_q1;
-  rows[9] = r12_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23;
-  rows[10] = r12_at_q4*z_minus_z_at_q5 - r32_at_q4*x_minus_x_at_q5;
-  rows[11] = r32_at_q5*x_minus_x_at_q5 - r12_at_q5*z_minus_z_at_q5;
+  rows[9] = x_minus_x_at_q4*sin_q23 - r11_at_q23*z_minus_z_at_q4;
+  rows[10] = r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5;
+  rows[11] = r31_at_q5*x_minus_x_at_q5 - r11_at_q5*z_minus_z_at_q5;
   rows[12] = 0.0;
   rows[13] = (x - x_at_q2)*cos_q1 + (y - y_at_q2)*sin_q1;
   rows[14] = (x - x_at_q3)*cos_q1 + (y - y_at_q3)*sin_q1;
-  rows[15] = r22_at_q23*x_minus_x_at_q4 - r12_at_q23*y_minus_y_at_q4;
-  rows[16] = r22_at_q4*x_minus_x_at_q5 - r12_at_q4*y_minus_y_at_q5;
-  rows[17] = r12_at_q5*y_minus_y_at_q5 - r22_at_q5*x_minus_x_at_q5;
+  rows[15] = r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4;
+  rows[16] = r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5;
+  rows[17] = r11_at_q5*y_minus_y_at_q5 - r21_at_q5*x_minus_x_at_q5;
   rows[18] = 0.0;
   rows[19] = sin_q1;
   rows[20] = sin_q1;
-  rows[21] = -r12_at_q23;
-  rows[22] = -r12_at_q4;
-  rows[23] = r12_at_q5;
+  rows[21] = r11_at_q23;
+  rows[22] = r12_at_q4;
+  rows[23] = r11_at_q5;
   rows[24] = 0.0;
   rows[25] = -cos_q1;
   rows[26] = -cos_q1;
-  rows[27] = -r22_at_q23;
-  rows[28] = -r22_at_q4;
-  rows[29] = r22_at_q5;
+  rows[27] = r21_at_q23;
+  rows[28] = r22_at_q4;
+  rows[29] = r21_at_q5;
   rows[30] = 1.0;
   rows[31] = 0.0;
   rows[32] = 0.0;
   rows[33] = sin_q23;
-  rows[34] = -r32_at_q4;
-  rows[35] = r32_at_q5;
+  rows[34] = r32_at_q4;
+  rows[35] = r31_at_q5;
   return SOFTKIN_OK;
 }
 
-/* Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an
- * answer. */
+/* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
+ * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
     softkin_status *statuses, double *axes) {
   const articulatedrobot_6dof_machine *k = machine;
@@ -752,83 +1131,101 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       r31 = frame->rotation[2][0], r32 = frame->rotation[2][1], r33 = frame->rotation[2][2],
       ref_a1 = reference[0], ref_a2 = reference[1], ref_a3 = reference[2], ref_a4 = reference[3],
       ref_a5 = reference[4], ref_a6 = reference[5];
-  const double angle_of_a3_by_effective_q3 = softkin_angle_of(k->d4_by_effective_q3, k->a3_by_effective_q3);
+  const double angle_of_a3_by_effective_q3_2_2 = softkin_angle_of(k->d4_by_effective_q3_2_2,
+      k->a3_by_effective_q3_2_2);
   const double wrist_x = x - k->d6*r13; /* wrist centre: the last joints do not move this point */
   const double wrist_y = y - k->d6*r23;
   /* distance of the point from the axis of q1 */
   const double distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y);
   /* Pythagoras: square of the distance ahead of the axis */
   const double ahead_squared_q1 = (distance_q1 - k->d3)*(k->d3 + distance_q1);
-  if (!(ahead_squared_q1 > k->machine_scale_squared_times_plane)) {
-    return false;
-  }
   const double distance_q1_squared = distance_q1*distance_q1;
   if (!(ahead_squared_q1 >= -1e-12*distance_q1_squared - k->rounding_q1)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
   }
   /* how far ahead of the axis the point is; negative: behind it */
-  const double ahead_q1_before_q1_for_q3_front = softkin_root(ahead_squared_q1);
+  const double ahead_q1_front = softkin_root(ahead_squared_q1);
   /* coordinate of the point that the remaining links must reach */
-  const double wrist_x_from_q1_front = ahead_q1_before_q1_for_q3_front - k->a1;
+  const double wrist_x_from_q1_front = ahead_q1_front - k->a1;
   const double wrist_z = z - k->d6*r33;
   /* coordinate of the point that the remaining links must reach */
-  const double wrist_y_from_q1 = wrist_z - k->d1;
-  const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
+  const double wrist_z_from_q1 = wrist_z - k->d1;
+  const double wrist_z_from_q1_squared = wrist_z_from_q1*wrist_z_from_q1;
   /* distance that the remaining links must span */
-  const double reach_front = softkin_root(wrist_y_from_q1_squared
+  const double reach_front = softkin_root(wrist_z_from_q1_squared
       + wrist_x_from_q1_front*wrist_x_from_q1_front);
-  /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_front = (k->a2_plus_effective_q3 + reach_front)
-      *(k->a2_plus_effective_q3 - reach_front);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double one_less_cos_q3_front = (k->a2_plus_effective_q3_2_2 + reach_front)
+      *(k->a2_plus_effective_q3_2_2 - reach_front);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_front = (reach_front - k->a2_minus_effective_q3)
-      *(k->a2_minus_effective_q3 + reach_front);
+  const double one_plus_cos_q3_front = (reach_front - k->a2_minus_effective_q3_2_2)
+      *(k->a2_minus_effective_q3_2_2 + reach_front);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
   const double divisor_of_cos_q3_front = sum_q3_front > 0.0 ? sum_q3_front : 1.0;
   const double cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/divisor_of_cos_q3_front;
+  const bool within_23_front = fabs(cos_swing_q3_front) <= 1.0;
+  const bool lost_digits_23_front = (!within_23_front)
+      && (fabs(ahead_q1_front) <= k->product_in_lost_digits_23);
+  if (!(!lost_digits_23_front)) {
+    return false;
+  }
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_x_from_q1_back = -k->a1 - ahead_q1_front;
+  /* distance that the remaining links must span */
+  const double reach_back = softkin_root(wrist_z_from_q1_squared + wrist_x_from_q1_back*wrist_x_from_q1_back);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double one_less_cos_q3_back = (k->a2_plus_effective_q3_2_2 + reach_back)
+      *(k->a2_plus_effective_q3_2_2 - reach_back);
+  /* 1 + cosine, times the scale */
+  const double one_plus_cos_q3_back = (reach_back - k->a2_minus_effective_q3_2_2)
+      *(k->a2_minus_effective_q3_2_2 + reach_back);
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
+  const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
+  const double divisor_of_cos_q3_back = sum_q3_back > 0.0 ? sum_q3_back : 1.0;
+  const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back;
+  const bool within_23_back = fabs(cos_swing_q3_back) <= 1.0;
+  const bool lost_digits_23_back = (!within_23_back)
+      && (fabs(ahead_q1_front) <= k->product_in_lost_digits_23);
+  if (!(!lost_digits_23_back)) {
+    return false;
+  }
   /* q3: out of reach */
   const int refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
-  double cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back,
-      sin_q1_before_q1_for_q3_back;
+  double cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     const double d3_times_wrist_y = k->d3*wrist_y;
-    const double product_in_cos_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front*wrist_x;
+    const double ahead_q1_front_times_wrist_x = ahead_q1_front*wrist_x;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3_front = (product_in_cos_q1_before_q1_for_q3_front - d3_times_wrist_y)
-        /distance_q1_squared;
+    cos_q1_front = (ahead_q1_front_times_wrist_x - d3_times_wrist_y)/distance_q1_squared;
     const double d3_times_wrist_x = k->d3*wrist_x;
-    const double product_in_sin_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front*wrist_y;
-    sin_q1_before_q1_for_q3_front = (d3_times_wrist_x + product_in_sin_q1_before_q1_for_q3_front)
-        /distance_q1_squared;
+    const double ahead_q1_front_times_wrist_y = ahead_q1_front*wrist_y;
+    sin_q1_front = (ahead_q1_front_times_wrist_y + d3_times_wrist_x)/distance_q1_squared;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - product_in_cos_q1_before_q1_for_q3_front)
-        /distance_q1_squared;
-    sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - product_in_sin_q1_before_q1_for_q3_front)
-        /distance_q1_squared;
+    cos_q1_back = (-ahead_q1_front_times_wrist_x - d3_times_wrist_y)/distance_q1_squared;
+    sin_q1_back = (d3_times_wrist_x - ahead_q1_front_times_wrist_y)/distance_q1_squared;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3_front = cos(reference_a1);
-    sin_q1_before_q1_for_q3_front = sin(reference_a1);
+    cos_q1_front = cos(reference_a1);
+    sin_q1_front = sin(reference_a1);
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front;
-    sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front;
+    cos_q1_back = cos_q1_front;
+    sin_q1_back = sin_q1_front;
   }
-  const double axis_a1_front = k->offset_a1
-      + softkin_angle_of(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*SOFTKIN_RADIAN;
+  const double axis_a1_front = k->offset_a1 + softkin_angle_of(sin_q1_front, cos_q1_front)*SOFTKIN_RADIAN;
   /* sine squared, times the squared scale */
   const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
   const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
   double angle_q2_front_down, angle_q2_front_up;
   if (reach_front > k->machine_scale_times_free_angle) {
-    const double arm_along_q2_front_down = k->effective_q3*sin_swing_q3_front_up;
-    const double arm_across_q2_front = k->a2 + k->effective_q3*cos_swing_q3_front;
+    const double arm_along_q2_front_down = k->effective_q3_2*sin_swing_q3_front_up;
+    const double arm_across_q2_front = k->a2 + k->effective_q3_2*cos_swing_q3_front;
     const double angle_of_arm_across_q2_front_down = softkin_angle_of(arm_along_q2_front_down,
         arm_across_q2_front);
-    const double angle_of_wrist_y_from_q1_front = softkin_angle_of(wrist_x_from_q1_front, wrist_y_from_q1);
-    angle_q2_front_down = angle_of_arm_across_q2_front_down - angle_of_wrist_y_from_q1_front;
-    angle_q2_front_up = -angle_of_arm_across_q2_front_down - angle_of_wrist_y_from_q1_front;
+    const double angle_of_wrist_z_from_q1_front = softkin_angle_of(wrist_x_from_q1_front, wrist_z_from_q1);
+    angle_q2_front_down = angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
+    angle_q2_front_up = -angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
     angle_q2_front_down = reference_a2;
@@ -836,90 +1233,92 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double axis_a2_front_down = k->offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
   const double angle_of_swing_q3_front_down = -softkin_angle_of(sin_swing_q3_front_up, cos_swing_q3_front);
-  const double angle_q3_front_down = angle_of_a3_by_effective_q3 + angle_of_swing_q3_front_down;
+  const double angle_q3_front_down = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_front_down;
   const double axis_a3_front_down = k->offset_a3 + angle_q3_front_down*SOFTKIN_RADIAN;
-  const double r13_from_q1_front = r13*cos_q1_before_q1_for_q3_front + r23*sin_q1_before_q1_for_q3_front;
+  const double r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front;
   const double angle_q23_front_down = angle_q2_front_down + angle_q3_front_down;
   const double sin_q23_front_down = sin(angle_q23_front_down);
   const double cos_q23_front_down = cos(angle_q23_front_down);
-  const double r13_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down;
-  const double r23_from_q1_front = r23*cos_q1_before_q1_for_q3_front - r13*sin_q1_before_q1_for_q3_front;
+  const double r33_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down;
+  const double r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front;
   const double r23_from_q1_front_squared = r23_from_q1_front*r23_from_q1_front;
   /* polar coordinates: the radius at angle q4 */
   const double radius_q4_front_down = softkin_root(r23_from_q1_front_squared
-      + r13_from_q123_front_down*r13_from_q123_front_down);
-  const double r11_from_q1_front = r11*cos_q1_before_q1_for_q3_front + r21*sin_q1_before_q1_for_q3_front;
-  const double r12_from_q1_front = r12*cos_q1_before_q1_for_q3_front + r22*sin_q1_before_q1_for_q3_front;
-  double direction_x_q4_front_down_down, direction_y_q4_front_down_down,
-      scaled_r21_from_q1234_front_down_down, scaled_r22_from_q1234_front_down_down,
-      direction_x_q4_front_down_up, direction_y_q4_front_down_up, scaled_r21_from_q1234_front_down_up,
-      scaled_r22_from_q1234_front_down_up;
+      + r33_from_q123_front_down*r33_from_q123_front_down);
+  const double r12_from_q1_front = r12*cos_q1_front + r22*sin_q1_front;
+  const double r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front;
+  double direction_x_q4_front_down_down, direction_y_q4_front_down_down, direction_x_q6_front_down_down,
+      direction_y_q6_front_down_down, direction_x_q4_front_down_up, direction_y_q4_front_down_up,
+      direction_x_q6_front_down_up, direction_y_q6_front_down_up;
   if (radius_q4_front_down > 0.1) {
-    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
-    direction_x_q4_front_down_down = -r13_from_q123_front_down;
+    direction_x_q4_front_down_down = -r33_from_q123_front_down;
     direction_y_q4_front_down_down = r23_from_q1_front;
-    const double sum_in_scaled_r21_from_q1234_front_down_down = r12_from_q1_front*cos_q23_front_down
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    direction_x_q6_front_down_down = r11_from_q1_front*cos_q23_front_down + r31*sin_q23_front_down;
+    const double sum_in_direction_y_q6_front_down_down = r12_from_q1_front*cos_q23_front_down
         + r32*sin_q23_front_down;
-    scaled_r21_from_q1234_front_down_down = -sum_in_scaled_r21_from_q1234_front_down_down;
-    scaled_r22_from_q1234_front_down_down = r11_from_q1_front*cos_q23_front_down + r31*sin_q23_front_down;
-    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+    direction_y_q6_front_down_down = -sum_in_direction_y_q6_front_down_down;
+    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4_front_down_up = -direction_x_q4_front_down_down;
     direction_y_q4_front_down_up = -r23_from_q1_front;
-    scaled_r21_from_q1234_front_down_up = -scaled_r21_from_q1234_front_down_down;
-    scaled_r22_from_q1234_front_down_up = -scaled_r22_from_q1234_front_down_down;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    direction_x_q6_front_down_up = -direction_x_q6_front_down_down;
+    direction_y_q6_front_down_up = -direction_y_q6_front_down_down;
   } else {
     const double reference_a4 = (ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
     const double cos_of_reference_a4 = cos(reference_a4);
     const double sin_of_reference_a4 = sin(reference_a4);
-    const double r21_from_q1_front = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front;
-    const double r22_from_q1_front = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front;
+    const double r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front;
+    const double r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front;
     if (radius_q4_front_down > 1e-11) {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
-      direction_x_q4_front_down_down = -r13_from_q123_front_down;
+      direction_x_q4_front_down_down = -r33_from_q123_front_down;
       direction_y_q4_front_down_down = r23_from_q1_front;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_down_up = -direction_x_q4_front_down_down;
       direction_y_q4_front_down_up = -r23_from_q1_front;
     } else {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_down_down = cos_of_reference_a4;
       direction_y_q4_front_down_down = sin_of_reference_a4;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_down_up = cos_of_reference_a4;
       direction_y_q4_front_down_up = sin_of_reference_a4;
     }
-    const double r11_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down;
-    scaled_r21_from_q1234_front_down_down = -direction_x_q4_front_down_down*r21_from_q1_front
-        - direction_y_q4_front_down_down*r11_from_q123_front_down;
-    const double r12_from_q123_front_down = r32*cos_q23_front_down - r12_from_q1_front*sin_q23_front_down;
-    scaled_r22_from_q1234_front_down_down = -direction_x_q4_front_down_down*r22_from_q1_front
-        - direction_y_q4_front_down_down*r12_from_q123_front_down;
+    const double r32_from_q123_front_down = r32*cos_q23_front_down - r12_from_q1_front*sin_q23_front_down;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    direction_x_q6_front_down_down = -direction_x_q4_front_down_down*r22_from_q1_front
+        - direction_y_q4_front_down_down*r32_from_q123_front_down;
+    const double r31_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down;
+    direction_y_q6_front_down_down = -direction_x_q4_front_down_down*r21_from_q1_front
+        - direction_y_q4_front_down_down*r31_from_q123_front_down;
     if (radius_q4_front_down > 1e-11) {
-      scaled_r21_from_q1234_front_down_up = -scaled_r21_from_q1234_front_down_down;
-      scaled_r22_from_q1234_front_down_up = -scaled_r22_from_q1234_front_down_down;
+      /* cosine and sine of q6 from the r22 and r23 equations */
+      direction_x_q6_front_down_up = -direction_x_q6_front_down_down;
+      direction_y_q6_front_down_up = -direction_y_q6_front_down_down;
     } else {
-      scaled_r21_from_q1234_front_down_up = -direction_x_q4_front_down_up*r21_from_q1_front
-          - direction_y_q4_front_down_up*r11_from_q123_front_down;
-      scaled_r22_from_q1234_front_down_up = -direction_x_q4_front_down_up*r22_from_q1_front
-          - direction_y_q4_front_down_up*r12_from_q123_front_down;
+      /* cosine and sine of q6 from the r22 and r23 equations */
+      direction_x_q6_front_down_up = -direction_x_q4_front_down_up*r22_from_q1_front
+          - direction_y_q4_front_down_up*r32_from_q123_front_down;
+      direction_y_q6_front_down_up = -direction_x_q4_front_down_up*r21_from_q1_front
+          - direction_y_q4_front_down_up*r31_from_q123_front_down;
     }
   }
   const double axis_a4_front_down_down = k->offset_a4
       + softkin_angle_of(direction_y_q4_front_down_down, direction_x_q4_front_down_down)*SOFTKIN_RADIAN;
-  /* cosine and sine of q5 from the q4 radius and r23 equations */
-  const double cos_q5_front_down = r13_from_q1_front*cos_q23_front_down + r33*sin_q23_front_down;
-  const double quotient_in_axis_a5_front_down_down = softkin_angle_of(radius_q4_front_down, cos_q5_front_down)
-      *SOFTKIN_RADIAN;
+  const double r13_from_q123_front_down = r13_from_q1_front*cos_q23_front_down + r33*sin_q23_front_down;
+  const double quotient_in_axis_a5_front_down_down = softkin_angle_of(radius_q4_front_down,
+      r13_from_q123_front_down)*SOFTKIN_RADIAN;
   const double axis_a5_front_down_down = k->offset_a5 + quotient_in_axis_a5_front_down_down;
   const double axis_a6_front_down_down = k->offset_a6
-      + softkin_angle_of(scaled_r21_from_q1234_front_down_down, scaled_r22_from_q1234_front_down_down)
-      *SOFTKIN_RADIAN;
+      + softkin_angle_of(direction_y_q6_front_down_down, direction_x_q6_front_down_down)*SOFTKIN_RADIAN;
   double axis_a4_front_down_up, axis_a6_front_down_up;
   if (radius_q4_front_down > 1e-11) {
     axis_a4_front_down_up = 180.0 + axis_a4_front_down_down;
@@ -928,89 +1327,91 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     axis_a4_front_down_up = k->offset_a4
         + softkin_angle_of(direction_y_q4_front_down_up, direction_x_q4_front_down_up)*SOFTKIN_RADIAN;
     axis_a6_front_down_up = k->offset_a6
-        + softkin_angle_of(scaled_r21_from_q1234_front_down_up, scaled_r22_from_q1234_front_down_up)
-        *SOFTKIN_RADIAN;
+        + softkin_angle_of(direction_y_q6_front_down_up, direction_x_q6_front_down_up)*SOFTKIN_RADIAN;
   }
   const double axis_a5_front_down_up = k->offset_a5 - quotient_in_axis_a5_front_down_down;
   const double axis_a2_front_up = k->offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
-  const double angle_q3_front_up = angle_of_a3_by_effective_q3 - angle_of_swing_q3_front_down;
+  const double angle_q3_front_up = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_front_down;
   const double axis_a3_front_up = k->offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
   const double angle_q23_front_up = angle_q2_front_up + angle_q3_front_up;
   const double sin_q23_front_up = sin(angle_q23_front_up);
   const double cos_q23_front_up = cos(angle_q23_front_up);
-  const double r13_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up;
+  const double r33_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up;
   /* polar coordinates: the radius at angle q4 */
   const double radius_q4_front_up = softkin_root(r23_from_q1_front_squared
-      + r13_from_q123_front_up*r13_from_q123_front_up);
-  double direction_x_q4_front_up_down, direction_y_q4_front_up_down, scaled_r21_from_q1234_front_up_down,
-      scaled_r22_from_q1234_front_up_down, direction_x_q4_front_up_up, direction_y_q4_front_up_up,
-      scaled_r21_from_q1234_front_up_up, scaled_r22_from_q1234_front_up_up;
+      + r33_from_q123_front_up*r33_from_q123_front_up);
+  double direction_x_q4_front_up_down, direction_y_q4_front_up_down, direction_x_q6_front_up_down,
+      direction_y_q6_front_up_down, direction_x_q4_front_up_up, direction_y_q4_front_up_up,
+      direction_x_q6_front_up_up, direction_y_q6_front_up_up;
   if (radius_q4_front_up > 0.1) {
-    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
-    direction_x_q4_front_up_down = -r13_from_q123_front_up;
+    direction_x_q4_front_up_down = -r33_from_q123_front_up;
     direction_y_q4_front_up_down = r23_from_q1_front;
-    const double sum_in_scaled_r21_from_q1234_front_up_down = r12_from_q1_front*cos_q23_front_up
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    direction_x_q6_front_up_down = r11_from_q1_front*cos_q23_front_up + r31*sin_q23_front_up;
+    const double sum_in_direction_y_q6_front_up_down = r12_from_q1_front*cos_q23_front_up
         + r32*sin_q23_front_up;
-    scaled_r21_from_q1234_front_up_down = -sum_in_scaled_r21_from_q1234_front_up_down;
-    scaled_r22_from_q1234_front_up_down = r11_from_q1_front*cos_q23_front_up + r31*sin_q23_front_up;
-    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+    direction_y_q6_front_up_down = -sum_in_direction_y_q6_front_up_down;
+    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4_front_up_up = -direction_x_q4_front_up_down;
     direction_y_q4_front_up_up = -r23_from_q1_front;
-    scaled_r21_from_q1234_front_up_up = -scaled_r21_from_q1234_front_up_down;
-    scaled_r22_from_q1234_front_up_up = -scaled_r22_from_q1234_front_up_down;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    direction_x_q6_front_up_up = -direction_x_q6_front_up_down;
+    direction_y_q6_front_up_up = -direction_y_q6_front_up_down;
   } else {
     const double reference_a4 = (ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
     const double cos_of_reference_a4 = cos(reference_a4);
     const double sin_of_reference_a4 = sin(reference_a4);
-    const double r21_from_q1_front = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front;
-    const double r22_from_q1_front = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front;
+    const double r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front;
+    const double r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front;
     if (radius_q4_front_up > 1e-11) {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
-      direction_x_q4_front_up_down = -r13_from_q123_front_up;
+      direction_x_q4_front_up_down = -r33_from_q123_front_up;
       direction_y_q4_front_up_down = r23_from_q1_front;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_up_up = -direction_x_q4_front_up_down;
       direction_y_q4_front_up_up = -r23_from_q1_front;
     } else {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_up_down = cos_of_reference_a4;
       direction_y_q4_front_up_down = sin_of_reference_a4;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_up_up = cos_of_reference_a4;
       direction_y_q4_front_up_up = sin_of_reference_a4;
     }
-    const double r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up;
-    scaled_r21_from_q1234_front_up_down = -direction_x_q4_front_up_down*r21_from_q1_front
-        - direction_y_q4_front_up_down*r11_from_q123_front_up;
-    const double r12_from_q123_front_up = r32*cos_q23_front_up - r12_from_q1_front*sin_q23_front_up;
-    scaled_r22_from_q1234_front_up_down = -direction_x_q4_front_up_down*r22_from_q1_front
-        - direction_y_q4_front_up_down*r12_from_q123_front_up;
+    const double r32_from_q123_front_up = r32*cos_q23_front_up - r12_from_q1_front*sin_q23_front_up;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    direction_x_q6_front_up_down = -direction_x_q4_front_up_down*r22_from_q1_front
+        - direction_y_q4_front_up_down*r32_from_q123_front_up;
+    const double r31_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up;
+    direction_y_q6_front_up_down = -direction_x_q4_front_up_down*r21_from_q1_front
+        - direction_y_q4_front_up_down*r31_from_q123_front_up;
     if (radius_q4_front_up > 1e-11) {
-      scaled_r21_from_q1234_front_up_up = -scaled_r21_from_q1234_front_up_down;
-      scaled_r22_from_q1234_front_up_up = -scaled_r22_from_q1234_front_up_down;
+      /* cosine and sine of q6 from the r22 and r23 equations */
+      direction_x_q6_front_up_up = -direction_x_q6_front_up_down;
+      direction_y_q6_front_up_up = -direction_y_q6_front_up_down;
     } else {
-      scaled_r21_from_q1234_front_up_up = -direction_x_q4_front_up_up*r21_from_q1_front
-          - direction_y_q4_front_up_up*r11_from_q123_front_up;
-      scaled_r22_from_q1234_front_up_up = -direction_x_q4_front_up_up*r22_from_q1_front
-          - direction_y_q4_front_up_up*r12_from_q123_front_up;
+      /* cosine and sine of q6 from the r22 and r23 equations */
+      direction_x_q6_front_up_up = -direction_x_q4_front_up_up*r22_from_q1_front
+          - direction_y_q4_front_up_up*r32_from_q123_front_up;
+      direction_y_q6_front_up_up = -direction_x_q4_front_up_up*r21_from_q1_front
+          - direction_y_q4_front_up_up*r31_from_q123_front_up;
     }
   }
   const double axis_a4_front_up_down = k->offset_a4
       + softkin_angle_of(direction_y_q4_front_up_down, direction_x_q4_front_up_down)*SOFTKIN_RADIAN;
-  /* cosine and sine of q5 from the q4 radius and r23 equations */
-  const double cos_q5_front_up = r13_from_q1_front*cos_q23_front_up + r33*sin_q23_front_up;
-  const double quotient_in_axis_a5_front_up_down = softkin_angle_of(radius_q4_front_up, cos_q5_front_up)
-      *SOFTKIN_RADIAN;
+  const double r13_from_q123_front_up = r13_from_q1_front*cos_q23_front_up + r33*sin_q23_front_up;
+  const double quotient_in_axis_a5_front_up_down = softkin_angle_of(radius_q4_front_up,
+      r13_from_q123_front_up)*SOFTKIN_RADIAN;
   const double axis_a5_front_up_down = k->offset_a5 + quotient_in_axis_a5_front_up_down;
   const double axis_a6_front_up_down = k->offset_a6
-      + softkin_angle_of(scaled_r21_from_q1234_front_up_down, scaled_r22_from_q1234_front_up_down)
-      *SOFTKIN_RADIAN;
+      + softkin_angle_of(direction_y_q6_front_up_down, direction_x_q6_front_up_down)*SOFTKIN_RADIAN;
   double axis_a4_front_up_up, axis_a6_front_up_up;
   if (radius_q4_front_up > 1e-11) {
     axis_a4_front_up_up = 180.0 + axis_a4_front_up_down;
@@ -1019,39 +1420,23 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     axis_a4_front_up_up = k->offset_a4
         + softkin_angle_of(direction_y_q4_front_up_up, direction_x_q4_front_up_up)*SOFTKIN_RADIAN;
     axis_a6_front_up_up = k->offset_a6
-        + softkin_angle_of(scaled_r21_from_q1234_front_up_up, scaled_r22_from_q1234_front_up_up)
-        *SOFTKIN_RADIAN;
+        + softkin_angle_of(direction_y_q6_front_up_up, direction_x_q6_front_up_up)*SOFTKIN_RADIAN;
   }
   const double axis_a5_front_up_up = k->offset_a5 - quotient_in_axis_a5_front_up_down;
-  /* coordinate of the point that the remaining links must reach */
-  const double wrist_x_from_q1_back = -k->a1 - ahead_q1_before_q1_for_q3_front;
-  /* distance that the remaining links must span */
-  const double reach_back = softkin_root(wrist_y_from_q1_squared + wrist_x_from_q1_back*wrist_x_from_q1_back);
-  /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_back = (k->a2_plus_effective_q3 + reach_back)
-      *(k->a2_plus_effective_q3 - reach_back);
-  /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_back = (reach_back - k->a2_minus_effective_q3)
-      *(k->a2_minus_effective_q3 + reach_back);
-  /* sum of both, twice the scale: cosine² + sine² is then 1 */
-  const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
-  const double divisor_of_cos_q3_back = sum_q3_back > 0.0 ? sum_q3_back : 1.0;
-  const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back;
   const int refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3; /* q3: out of reach */
-  const double axis_a1_back = k->offset_a1
-      + softkin_angle_of(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*SOFTKIN_RADIAN;
+  const double axis_a1_back = k->offset_a1 + softkin_angle_of(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
   /* sine squared, times the squared scale */
   const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
   const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
   double angle_q2_back_down, angle_q2_back_up;
   if (reach_back > k->machine_scale_times_free_angle) {
-    const double arm_along_q2_back_down = k->effective_q3*sin_swing_q3_back_up;
-    const double arm_across_q2_back = k->a2 + k->effective_q3*cos_swing_q3_back;
+    const double arm_along_q2_back_down = k->effective_q3_2*sin_swing_q3_back_up;
+    const double arm_across_q2_back = k->a2 + k->effective_q3_2*cos_swing_q3_back;
     const double angle_of_arm_across_q2_back_down = softkin_angle_of(arm_along_q2_back_down,
         arm_across_q2_back);
-    const double angle_of_wrist_y_from_q1_back = softkin_angle_of(wrist_x_from_q1_back, wrist_y_from_q1);
-    angle_q2_back_down = angle_of_arm_across_q2_back_down - angle_of_wrist_y_from_q1_back;
-    angle_q2_back_up = -angle_of_arm_across_q2_back_down - angle_of_wrist_y_from_q1_back;
+    const double angle_of_wrist_z_from_q1_back = softkin_angle_of(wrist_x_from_q1_back, wrist_z_from_q1);
+    angle_q2_back_down = angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
+    angle_q2_back_up = -angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
     angle_q2_back_down = reference_a2;
@@ -1059,89 +1444,92 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double axis_a2_back_down = k->offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
   const double angle_of_swing_q3_back_down = -softkin_angle_of(sin_swing_q3_back_up, cos_swing_q3_back);
-  const double angle_q3_back_down = angle_of_a3_by_effective_q3 + angle_of_swing_q3_back_down;
+  const double angle_q3_back_down = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_back_down;
   const double axis_a3_back_down = k->offset_a3 + angle_q3_back_down*SOFTKIN_RADIAN;
-  const double r13_from_q1_back = r13*cos_q1_before_q1_for_q3_back + r23*sin_q1_before_q1_for_q3_back;
+  const double r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back;
   const double angle_q23_back_down = angle_q2_back_down + angle_q3_back_down;
   const double sin_q23_back_down = sin(angle_q23_back_down);
   const double cos_q23_back_down = cos(angle_q23_back_down);
-  const double r13_from_q123_back_down = r33*cos_q23_back_down - r13_from_q1_back*sin_q23_back_down;
-  const double r23_from_q1_back = r23*cos_q1_before_q1_for_q3_back - r13*sin_q1_before_q1_for_q3_back;
+  const double r33_from_q123_back_down = r33*cos_q23_back_down - r13_from_q1_back*sin_q23_back_down;
+  const double r23_from_q1_back = r23*cos_q1_back - r13*sin_q1_back;
   const double r23_from_q1_back_squared = r23_from_q1_back*r23_from_q1_back;
   /* polar coordinates: the radius at angle q4 */
   const double radius_q4_back_down = softkin_root(r23_from_q1_back_squared
-      + r13_from_q123_back_down*r13_from_q123_back_down);
-  const double r11_from_q1_back = r11*cos_q1_before_q1_for_q3_back + r21*sin_q1_before_q1_for_q3_back;
-  const double r12_from_q1_back = r12*cos_q1_before_q1_for_q3_back + r22*sin_q1_before_q1_for_q3_back;
-  double direction_x_q4_back_down_down, direction_y_q4_back_down_down, scaled_r21_from_q1234_back_down_down,
-      scaled_r22_from_q1234_back_down_down, direction_x_q4_back_down_up, direction_y_q4_back_down_up,
-      scaled_r21_from_q1234_back_down_up, scaled_r22_from_q1234_back_down_up;
+      + r33_from_q123_back_down*r33_from_q123_back_down);
+  const double r12_from_q1_back = r12*cos_q1_back + r22*sin_q1_back;
+  const double r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back;
+  double direction_x_q4_back_down_down, direction_y_q4_back_down_down, direction_x_q6_back_down_down,
+      direction_y_q6_back_down_down, direction_x_q4_back_down_up, direction_y_q4_back_down_up,
+      direction_x_q6_back_down_up, direction_y_q6_back_down_up;
   if (radius_q4_back_down > 0.1) {
-    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
-    direction_x_q4_back_down_down = -r13_from_q123_back_down;
+    direction_x_q4_back_down_down = -r33_from_q123_back_down;
     direction_y_q4_back_down_down = r23_from_q1_back;
-    const double sum_in_scaled_r21_from_q1234_back_down_down = r12_from_q1_back*cos_q23_back_down
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    direction_x_q6_back_down_down = r11_from_q1_back*cos_q23_back_down + r31*sin_q23_back_down;
+    const double sum_in_direction_y_q6_back_down_down = r12_from_q1_back*cos_q23_back_down
         + r32*sin_q23_back_down;
-    scaled_r21_from_q1234_back_down_down = -sum_in_scaled_r21_from_q1234_back_down_down;
-    scaled_r22_from_q1234_back_down_down = r11_from_q1_back*cos_q23_back_down + r31*sin_q23_back_down;
-    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+    direction_y_q6_back_down_down = -sum_in_direction_y_q6_back_down_down;
+    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4_back_down_up = -direction_x_q4_back_down_down;
     direction_y_q4_back_down_up = -r23_from_q1_back;
-    scaled_r21_from_q1234_back_down_up = -scaled_r21_from_q1234_back_down_down;
-    scaled_r22_from_q1234_back_down_up = -scaled_r22_from_q1234_back_down_down;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    direction_x_q6_back_down_up = -direction_x_q6_back_down_down;
+    direction_y_q6_back_down_up = -direction_y_q6_back_down_down;
   } else {
     const double reference_a4 = (ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
     const double cos_of_reference_a4 = cos(reference_a4);
     const double sin_of_reference_a4 = sin(reference_a4);
-    const double r21_from_q1_back = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back;
-    const double r22_from_q1_back = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back;
+    const double r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back;
+    const double r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back;
     if (radius_q4_back_down > 1e-11) {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
-      direction_x_q4_back_down_down = -r13_from_q123_back_down;
+      direction_x_q4_back_down_down = -r33_from_q123_back_down;
       direction_y_q4_back_down_down = r23_from_q1_back;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_down_up = -direction_x_q4_back_down_down;
       direction_y_q4_back_down_up = -r23_from_q1_back;
     } else {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_down_down = cos_of_reference_a4;
       direction_y_q4_back_down_down = sin_of_reference_a4;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_down_up = cos_of_reference_a4;
       direction_y_q4_back_down_up = sin_of_reference_a4;
     }
-    const double r11_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down;
-    scaled_r21_from_q1234_back_down_down = -direction_x_q4_back_down_down*r21_from_q1_back
-        - direction_y_q4_back_down_down*r11_from_q123_back_down;
-    const double r12_from_q123_back_down = r32*cos_q23_back_down - r12_from_q1_back*sin_q23_back_down;
-    scaled_r22_from_q1234_back_down_down = -direction_x_q4_back_down_down*r22_from_q1_back
-        - direction_y_q4_back_down_down*r12_from_q123_back_down;
+    const double r32_from_q123_back_down = r32*cos_q23_back_down - r12_from_q1_back*sin_q23_back_down;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    direction_x_q6_back_down_down = -direction_x_q4_back_down_down*r22_from_q1_back
+        - direction_y_q4_back_down_down*r32_from_q123_back_down;
+    const double r31_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down;
+    direction_y_q6_back_down_down = -direction_x_q4_back_down_down*r21_from_q1_back
+        - direction_y_q4_back_down_down*r31_from_q123_back_down;
     if (radius_q4_back_down > 1e-11) {
-      scaled_r21_from_q1234_back_down_up = -scaled_r21_from_q1234_back_down_down;
-      scaled_r22_from_q1234_back_down_up = -scaled_r22_from_q1234_back_down_down;
+      /* cosine and sine of q6 from the r22 and r23 equations */
+      direction_x_q6_back_down_up = -direction_x_q6_back_down_down;
+      direction_y_q6_back_down_up = -direction_y_q6_back_down_down;
     } else {
-      scaled_r21_from_q1234_back_down_up = -direction_x_q4_back_down_up*r21_from_q1_back
-          - direction_y_q4_back_down_up*r11_from_q123_back_down;
-      scaled_r22_from_q1234_back_down_up = -direction_x_q4_back_down_up*r22_from_q1_back
-          - direction_y_q4_back_down_up*r12_from_q123_back_down;
+      /* cosine and sine of q6 from the r22 and r23 equations */
+      direction_x_q6_back_down_up = -direction_x_q4_back_down_up*r22_from_q1_back
+          - direction_y_q4_back_down_up*r32_from_q123_back_down;
+      direction_y_q6_back_down_up = -direction_x_q4_back_down_up*r21_from_q1_back
+          - direction_y_q4_back_down_up*r31_from_q123_back_down;
     }
   }
   const double axis_a4_back_down_down = k->offset_a4
       + softkin_angle_of(direction_y_q4_back_down_down, direction_x_q4_back_down_down)*SOFTKIN_RADIAN;
-  /* cosine and sine of q5 from the q4 radius and r23 equations */
-  const double cos_q5_back_down = r13_from_q1_back*cos_q23_back_down + r33*sin_q23_back_down;
-  const double quotient_in_axis_a5_back_down_down = softkin_angle_of(radius_q4_back_down, cos_q5_back_down)
-      *SOFTKIN_RADIAN;
+  const double r13_from_q123_back_down = r13_from_q1_back*cos_q23_back_down + r33*sin_q23_back_down;
+  const double quotient_in_axis_a5_back_down_down = softkin_angle_of(radius_q4_back_down,
+      r13_from_q123_back_down)*SOFTKIN_RADIAN;
   const double axis_a5_back_down_down = k->offset_a5 + quotient_in_axis_a5_back_down_down;
   const double axis_a6_back_down_down = k->offset_a6
-      + softkin_angle_of(scaled_r21_from_q1234_back_down_down, scaled_r22_from_q1234_back_down_down)
-      *SOFTKIN_RADIAN;
+      + softkin_angle_of(direction_y_q6_back_down_down, direction_x_q6_back_down_down)*SOFTKIN_RADIAN;
   double axis_a4_back_down_up, axis_a6_back_down_up;
   if (radius_q4_back_down > 1e-11) {
     axis_a4_back_down_up = 180.0 + axis_a4_back_down_down;
@@ -1150,89 +1538,90 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     axis_a4_back_down_up = k->offset_a4
         + softkin_angle_of(direction_y_q4_back_down_up, direction_x_q4_back_down_up)*SOFTKIN_RADIAN;
     axis_a6_back_down_up = k->offset_a6
-        + softkin_angle_of(scaled_r21_from_q1234_back_down_up, scaled_r22_from_q1234_back_down_up)
-        *SOFTKIN_RADIAN;
+        + softkin_angle_of(direction_y_q6_back_down_up, direction_x_q6_back_down_up)*SOFTKIN_RADIAN;
   }
   const double axis_a5_back_down_up = k->offset_a5 - quotient_in_axis_a5_back_down_down;
   const double axis_a2_back_up = k->offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
-  const double angle_q3_back_up = angle_of_a3_by_effective_q3 - angle_of_swing_q3_back_down;
+  const double angle_q3_back_up = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_back_down;
   const double axis_a3_back_up = k->offset_a3 + angle_q3_back_up*SOFTKIN_RADIAN;
   const double angle_q23_back_up = angle_q2_back_up + angle_q3_back_up;
   const double sin_q23_back_up = sin(angle_q23_back_up);
   const double cos_q23_back_up = cos(angle_q23_back_up);
-  const double r13_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up;
+  const double r33_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up;
   /* polar coordinates: the radius at angle q4 */
   const double radius_q4_back_up = softkin_root(r23_from_q1_back_squared
-      + r13_from_q123_back_up*r13_from_q123_back_up);
-  double direction_x_q4_back_up_down, direction_y_q4_back_up_down, scaled_r21_from_q1234_back_up_down,
-      scaled_r22_from_q1234_back_up_down, direction_x_q4_back_up_up, direction_y_q4_back_up_up,
-      scaled_r21_from_q1234_back_up_up, scaled_r22_from_q1234_back_up_up;
+      + r33_from_q123_back_up*r33_from_q123_back_up);
+  double direction_x_q4_back_up_down, direction_y_q4_back_up_down, direction_x_q6_back_up_down,
+      direction_y_q6_back_up_down, direction_x_q4_back_up_up, direction_y_q4_back_up_up,
+      direction_x_q6_back_up_up, direction_y_q6_back_up_up;
   if (radius_q4_back_up > 0.1) {
-    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
-    direction_x_q4_back_up_down = -r13_from_q123_back_up;
+    direction_x_q4_back_up_down = -r33_from_q123_back_up;
     direction_y_q4_back_up_down = r23_from_q1_back;
-    const double sum_in_scaled_r21_from_q1234_back_up_down = r12_from_q1_back*cos_q23_back_up
-        + r32*sin_q23_back_up;
-    scaled_r21_from_q1234_back_up_down = -sum_in_scaled_r21_from_q1234_back_up_down;
-    scaled_r22_from_q1234_back_up_down = r11_from_q1_back*cos_q23_back_up + r31*sin_q23_back_up;
-    /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    direction_x_q6_back_up_down = r11_from_q1_back*cos_q23_back_up + r31*sin_q23_back_up;
+    const double sum_in_direction_y_q6_back_up_down = r12_from_q1_back*cos_q23_back_up + r32*sin_q23_back_up;
+    direction_y_q6_back_up_down = -sum_in_direction_y_q6_back_up_down;
+    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4_back_up_up = -direction_x_q4_back_up_down;
     direction_y_q4_back_up_up = -r23_from_q1_back;
-    scaled_r21_from_q1234_back_up_up = -scaled_r21_from_q1234_back_up_down;
-    scaled_r22_from_q1234_back_up_up = -scaled_r22_from_q1234_back_up_down;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    direction_x_q6_back_up_up = -direction_x_q6_back_up_down;
+    direction_y_q6_back_up_up = -direction_y_q6_back_up_down;
   } else {
     const double reference_a4 = (ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
     const double cos_of_reference_a4 = cos(reference_a4);
     const double sin_of_reference_a4 = sin(reference_a4);
-    const double r21_from_q1_back = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back;
-    const double r22_from_q1_back = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back;
+    const double r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back;
+    const double r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back;
     if (radius_q4_back_up > 1e-11) {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
-      direction_x_q4_back_up_down = -r13_from_q123_back_up;
+      direction_x_q4_back_up_down = -r33_from_q123_back_up;
       direction_y_q4_back_up_down = r23_from_q1_back;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_up_up = -direction_x_q4_back_up_down;
       direction_y_q4_back_up_up = -r23_from_q1_back;
     } else {
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_up_down = cos_of_reference_a4;
       direction_y_q4_back_up_down = sin_of_reference_a4;
-      /* polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+      /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_up_up = cos_of_reference_a4;
       direction_y_q4_back_up_up = sin_of_reference_a4;
     }
-    const double r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up;
-    scaled_r21_from_q1234_back_up_down = -direction_x_q4_back_up_down*r21_from_q1_back
-        - direction_y_q4_back_up_down*r11_from_q123_back_up;
-    const double r12_from_q123_back_up = r32*cos_q23_back_up - r12_from_q1_back*sin_q23_back_up;
-    scaled_r22_from_q1234_back_up_down = -direction_x_q4_back_up_down*r22_from_q1_back
-        - direction_y_q4_back_up_down*r12_from_q123_back_up;
+    const double r32_from_q123_back_up = r32*cos_q23_back_up - r12_from_q1_back*sin_q23_back_up;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    direction_x_q6_back_up_down = -direction_x_q4_back_up_down*r22_from_q1_back
+        - direction_y_q4_back_up_down*r32_from_q123_back_up;
+    const double r31_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up;
+    direction_y_q6_back_up_down = -direction_x_q4_back_up_down*r21_from_q1_back
+        - direction_y_q4_back_up_down*r31_from_q123_back_up;
     if (radius_q4_back_up > 1e-11) {
-      scaled_r21_from_q1234_back_up_up = -scaled_r21_from_q1234_back_up_down;
-      scaled_r22_from_q1234_back_up_up = -scaled_r22_from_q1234_back_up_down;
+      /* cosine and sine of q6 from the r22 and r23 equations */
+      direction_x_q6_back_up_up = -direction_x_q6_back_up_down;
+      direction_y_q6_back_up_up = -direction_y_q6_back_up_down;
     } else {
-      scaled_r21_from_q1234_back_up_up = -direction_x_q4_back_up_up*r21_from_q1_back
-          - direction_y_q4_back_up_up*r11_from_q123_back_up;
-      scaled_r22_from_q1234_back_up_up = -direction_x_q4_back_up_up*r22_from_q1_back
-          - direction_y_q4_back_up_up*r12_from_q123_back_up;
+      /* cosine and sine of q6 from the r22 and r23 equations */
+      direction_x_q6_back_up_up = -direction_x_q4_back_up_up*r22_from_q1_back
+          - direction_y_q4_back_up_up*r32_from_q123_back_up;
+      direction_y_q6_back_up_up = -direction_x_q4_back_up_up*r21_from_q1_back
+          - direction_y_q4_back_up_up*r31_from_q123_back_up;
     }
   }
   const double axis_a4_back_up_down = k->offset_a4
       + softkin_angle_of(direction_y_q4_back_up_down, direction_x_q4_back_up_down)*SOFTKIN_RADIAN;
-  /* cosine and sine of q5 from the q4 radius and r23 equations */
-  const double cos_q5_back_up = r13_from_q1_back*cos_q23_back_up + r33*sin_q23_back_up;
-  const double quotient_in_axis_a5_back_up_down = softkin_angle_of(radius_q4_back_up, cos_q5_back_up)
+  const double r13_from_q123_back_up = r13_from_q1_back*cos_q23_back_up + r33*sin_q23_back_up;
+  const double quotient_in_axis_a5_back_up_down = softkin_angle_of(radius_q4_back_up, r13_from_q123_back_up)
       *SOFTKIN_RADIAN;
   const double axis_a5_back_up_down = k->offset_a5 + quotient_in_axis_a5_back_up_down;
   const double axis_a6_back_up_down = k->offset_a6
-      + softkin_angle_of(scaled_r21_from_q1234_back_up_down, scaled_r22_from_q1234_back_up_down)
-      *SOFTKIN_RADIAN;
+      + softkin_angle_of(direction_y_q6_back_up_down, direction_x_q6_back_up_down)*SOFTKIN_RADIAN;
   double axis_a4_back_up_up, axis_a6_back_up_up;
   if (radius_q4_back_up > 1e-11) {
     axis_a4_back_up_up = 180.0 + axis_a4_back_up_down;
@@ -1241,7 +1630,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     axis_a4_back_up_up = k->offset_a4
         + softkin_angle_of(direction_y_q4_back_up_up, direction_x_q4_back_up_up)*SOFTKIN_RADIAN;
     axis_a6_back_up_up = k->offset_a6
-        + softkin_angle_of(scaled_r21_from_q1234_back_up_up, scaled_r22_from_q1234_back_up_up)*SOFTKIN_RADIAN;
+        + softkin_angle_of(direction_y_q6_back_up_up, direction_x_q6_back_up_up)*SOFTKIN_RADIAN;
   }
   const double axis_a5_back_up_up = k->offset_a5 - quotient_in_axis_a5_back_up_down;
   const double near_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
@@ -1346,21 +1735,22 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* characteristic length of the machine */
   const double machine_scale = p->a1 + p->a2 + p->a3 + p->d4;
   /* effective length of the arm that q3 turns */
-  const double effective_q3 = sqrt(p->a3*p->a3 + p->d4*p->d4);
+  const double effective_q3_2 = sqrt(p->a3*p->a3 + p->d4*p->d4);
   /* rounding error of a squared length */
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
-  const double size_q1_for_q3 = 2.0*fabs(effective_q3)*p->a2;
-  const double size_q1_for_q3_times_rounding = 1e-12*size_q1_for_q3;
+  const double product_in_lost_digits_23 = 0.01*machine_scale;
+  const double a2_minus_effective_q3_2 = p->a2 - effective_q3_2;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
-  const double machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale;
-  const double machine_scale_times_rounding = 1e-12*machine_scale;
-  const double a2_minus_effective_q3 = p->a2 - effective_q3;
   const double one_by_machine_scale = 1.0/machine_scale;
-  const double d4_by_effective_q3 = p->d4/effective_q3;
-  const double a3_by_effective_q3 = p->a3/effective_q3;
-  const double a2_squared_plus_effective_q3_squared = p->a2*p->a2 + effective_q3*effective_q3;
-  const double twice_d3 = 2.0*p->d3;
-  const double a2_plus_effective_q3 = p->a2 + effective_q3;
+  const double one_by_effective_q3_2 = 1.0/effective_q3_2;
+  const double a2_plus_effective_q3_2 = p->a2 + effective_q3_2;
+  const double a2_minus_effective_q3_2_2 = p->a2 - effective_q3_2;
+  const double d4_by_effective_q3_2 = p->d4/effective_q3_2;
+  const double a3_by_effective_q3_2 = p->a3/effective_q3_2;
+  const double one_by_effective_q3_2_2 = 1.0/effective_q3_2;
+  const double a2_plus_effective_q3_2_2 = p->a2 + effective_q3_2;
+  const double d4_by_effective_q3_2_2 = p->d4/effective_q3_2;
+  const double a3_by_effective_q3_2_2 = p->a3/effective_q3_2;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1398,20 +1788,22 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a4 = p->offset_a4;
   made.offset_a5 = p->offset_a5;
   made.offset_a6 = p->offset_a6;
-  made.effective_q3 = effective_q3;
+  made.machine_scale = machine_scale;
+  made.effective_q3_2 = effective_q3_2;
   made.rounding_q1 = rounding_q1;
-  made.size_q1_for_q3 = size_q1_for_q3;
-  made.size_q1_for_q3_times_rounding = size_q1_for_q3_times_rounding;
+  made.product_in_lost_digits_23 = product_in_lost_digits_23;
+  made.a2_minus_effective_q3_2 = a2_minus_effective_q3_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
-  made.machine_scale_squared_times_plane = machine_scale_squared_times_plane;
-  made.machine_scale_times_rounding = machine_scale_times_rounding;
-  made.a2_minus_effective_q3 = a2_minus_effective_q3;
   made.one_by_machine_scale = one_by_machine_scale;
-  made.d4_by_effective_q3 = d4_by_effective_q3;
-  made.a3_by_effective_q3 = a3_by_effective_q3;
-  made.a2_squared_plus_effective_q3_squared = a2_squared_plus_effective_q3_squared;
-  made.twice_d3 = twice_d3;
-  made.a2_plus_effective_q3 = a2_plus_effective_q3;
+  made.one_by_effective_q3_2 = one_by_effective_q3_2;
+  made.a2_plus_effective_q3_2 = a2_plus_effective_q3_2;
+  made.a2_minus_effective_q3_2_2 = a2_minus_effective_q3_2_2;
+  made.d4_by_effective_q3_2 = d4_by_effective_q3_2;
+  made.a3_by_effective_q3_2 = a3_by_effective_q3_2;
+  made.one_by_effective_q3_2_2 = one_by_effective_q3_2_2;
+  made.a2_plus_effective_q3_2_2 = a2_plus_effective_q3_2_2;
+  made.d4_by_effective_q3_2_2 = d4_by_effective_q3_2_2;
+  made.a3_by_effective_q3_2_2 = a3_by_effective_q3_2_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(articulatedrobot_6dof_machine *)machine = made;
   return SOFTKIN_OK;

@@ -116,14 +116,14 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double r11_at_b = cos_b*cos_c;
   const double sin_b = sin(b);
   const double r13_at_b = cos_c*sin_b;
-  const double joint_x = axis_x - k->offset_x;
   const double joint_y = axis_y - k->offset_y;
-  const double x_at_b = joint_x*cos_c + joint_y*sin_c;
-  const double x = x_at_b + k->head_offset*r11_at_b - k->pivot_length*r13_at_b;
+  const double joint_x = axis_x - k->offset_x;
+  const double x_at_b = joint_x*cos_c;
+  const double x = x_at_b + k->head_offset*r11_at_b + joint_y*sin_c - k->pivot_length*r13_at_b;
   const double r21_at_b = -cos_b*sin_c;
   const double r23_at_b = -sin_b*sin_c;
-  const double y_at_b = joint_y*cos_c - joint_x*sin_c;
-  const double y = y_at_b + k->head_offset*r21_at_b - k->pivot_length*r23_at_b;
+  const double y_at_b = -joint_x*sin_c;
+  const double y = y_at_b + joint_y*cos_c + k->head_offset*r21_at_b - k->pivot_length*r23_at_b;
   const double joint_z = axis_z - k->offset_z;
   const double z = joint_z - k->pivot_length*cos_b - k->head_offset*sin_b;
   frame->position[0] = x;
@@ -301,16 +301,16 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double b = SOFTKIN_DEGREE*(axis_b - k->offset_b);
   const double sin_b = sin(b);
   const double joint_x = axis_x - k->offset_x;
-  const double joint_y = axis_y - k->offset_y;
-  const double y_at_b = joint_y*cos_c - joint_x*sin_c;
+  const double y_at_b = -joint_x*sin_c;
   const double cos_b = cos(b);
   const double r21_at_b = -cos_b*sin_c;
+  const double joint_y = axis_y - k->offset_y;
   const double r23_at_b = -sin_b*sin_c;
-  const double y = y_at_b + k->head_offset*r21_at_b - k->pivot_length*r23_at_b;
-  const double x_at_b = joint_x*cos_c + joint_y*sin_c;
+  const double y = y_at_b + joint_y*cos_c + k->head_offset*r21_at_b - k->pivot_length*r23_at_b;
+  const double x_at_b = joint_x*cos_c;
   const double r11_at_b = cos_b*cos_c;
   const double r13_at_b = cos_c*sin_b;
-  const double x = x_at_b + k->head_offset*r11_at_b - k->pivot_length*r13_at_b;
+  const double x = x_at_b + k->head_offset*r11_at_b + joint_y*sin_c - k->pivot_length*r13_at_b;
   const double joint_z = axis_z - k->offset_z;
   const double z = joint_z - k->pivot_length*cos_b - k->head_offset*sin_b;
   const double z_minus_joint_z = z - joint_z;
@@ -342,8 +342,8 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
-/* Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an
- * answer. */
+/* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
+ * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
     softkin_status *statuses, double *axes) {
   const headtable_bc_machine *k = machine;

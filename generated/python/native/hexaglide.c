@@ -264,6 +264,11 @@ static const softkin_parameter PARAMETERS[] = {
       false, 0, 0.001, 0.001,
       "min_type2_margin must be at least 0 and at most 1 (least distance from a type 2 "
       "singularity, a number without a unit; 0: off)", offsetof(hexaglide_parameters, min_type2_margin)},
+  {"check_forward", "flag", "",
+      "inverse kinematics refuses a pose that forward kinematics from the home pose " "does not find again",
+      0.0, 1.0, false, false, true, 0, 1.0, 1.0,
+      "check_forward must be 0 or 1 (inverse kinematics refuses a pose that forward "
+      "kinematics from the home pose does not find again)", offsetof(hexaglide_parameters, check_forward)},
   {"check_limits", "flag", "", "inverse kinematics tests the limits", 0.0, 1.0, false, false, true, 0, 1.0,
       1.0, "check_limits must be 0 or 1 (inverse kinematics tests the limits)",
       offsetof(hexaglide_parameters, check_limits)},
@@ -303,50 +308,50 @@ static softkin_status find_platform(const void *machine, const double *given, do
     softkin_refusal *why) {
   const hexaglide_machine *k = machine;
   const double axis_a1 = given[0], axis_a2 = given[1], axis_a3 = given[2], axis_a4 = given[3],
-      axis_a5 = given[4], axis_a6 = given[5], start_r11 = given[6], start_r12 = given[7],
-      start_r13 = given[8], start_r21 = given[9], start_r22 = given[10], start_r23 = given[11],
-      start_r31 = given[12], start_r32 = given[13], start_r33 = given[14], start_x = given[15],
-      start_y = given[16], start_z = given[17];
+      axis_a5 = given[4], axis_a6 = given[5], begin_r11 = given[6], begin_r12 = given[7],
+      begin_r13 = given[8], begin_r21 = given[9], begin_r22 = given[10], begin_r23 = given[11],
+      begin_r31 = given[12], begin_r32 = given[13], begin_r33 = given[14], begin_x = given[15],
+      begin_y = given[16], begin_z = given[17];
   if (!softkin_are_reasonable((const double[]){axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6}, 6)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
   /* joints of the platform, seen from its origin, in the orientation of the start */
-  const double start_arm_1_x = k->platform_1_x*start_r11 + k->platform_1_y*start_r12
-      + k->platform_1_z*start_r13;
-  const double start_arm_1_y = k->platform_1_x*start_r21 + k->platform_1_y*start_r22
-      + k->platform_1_z*start_r23;
-  const double start_arm_1_z = k->platform_1_x*start_r31 + k->platform_1_y*start_r32
-      + k->platform_1_z*start_r33;
-  const double start_arm_2_x = k->platform_2_x*start_r11 + k->platform_2_y*start_r12
-      + k->platform_2_z*start_r13;
-  const double start_arm_2_y = k->platform_2_x*start_r21 + k->platform_2_y*start_r22
-      + k->platform_2_z*start_r23;
-  const double start_arm_2_z = k->platform_2_x*start_r31 + k->platform_2_y*start_r32
-      + k->platform_2_z*start_r33;
-  const double start_arm_3_x = k->platform_3_x*start_r11 + k->platform_3_y*start_r12
-      + k->platform_3_z*start_r13;
-  const double start_arm_3_y = k->platform_3_x*start_r21 + k->platform_3_y*start_r22
-      + k->platform_3_z*start_r23;
-  const double start_arm_3_z = k->platform_3_x*start_r31 + k->platform_3_y*start_r32
-      + k->platform_3_z*start_r33;
-  const double start_arm_4_x = k->platform_4_x*start_r11 + k->platform_4_y*start_r12
-      + k->platform_4_z*start_r13;
-  const double start_arm_4_y = k->platform_4_x*start_r21 + k->platform_4_y*start_r22
-      + k->platform_4_z*start_r23;
-  const double start_arm_4_z = k->platform_4_x*start_r31 + k->platform_4_y*start_r32
-      + k->platform_4_z*start_r33;
-  const double start_arm_5_x = k->platform_5_x*start_r11 + k->platform_5_y*start_r12
-      + k->platform_5_z*start_r13;
-  const double start_arm_5_y = k->platform_5_x*start_r21 + k->platform_5_y*start_r22
-      + k->platform_5_z*start_r23;
-  const double start_arm_5_z = k->platform_5_x*start_r31 + k->platform_5_y*start_r32
-      + k->platform_5_z*start_r33;
-  const double start_arm_6_x = k->platform_6_x*start_r11 + k->platform_6_y*start_r12
-      + k->platform_6_z*start_r13;
-  const double start_arm_6_y = k->platform_6_x*start_r21 + k->platform_6_y*start_r22
-      + k->platform_6_z*start_r23;
-  const double start_arm_6_z = k->platform_6_x*start_r31 + k->platform_6_y*start_r32
-      + k->platform_6_z*start_r33;
+  const double start_arm_1_x = begin_r11*k->platform_1_x + begin_r12*k->platform_1_y
+      + begin_r13*k->platform_1_z;
+  const double start_arm_1_y = begin_r21*k->platform_1_x + begin_r22*k->platform_1_y
+      + begin_r23*k->platform_1_z;
+  const double start_arm_1_z = begin_r31*k->platform_1_x + begin_r32*k->platform_1_y
+      + begin_r33*k->platform_1_z;
+  const double start_arm_2_x = begin_r11*k->platform_2_x + begin_r12*k->platform_2_y
+      + begin_r13*k->platform_2_z;
+  const double start_arm_2_y = begin_r21*k->platform_2_x + begin_r22*k->platform_2_y
+      + begin_r23*k->platform_2_z;
+  const double start_arm_2_z = begin_r31*k->platform_2_x + begin_r32*k->platform_2_y
+      + begin_r33*k->platform_2_z;
+  const double start_arm_3_x = begin_r11*k->platform_3_x + begin_r12*k->platform_3_y
+      + begin_r13*k->platform_3_z;
+  const double start_arm_3_y = begin_r21*k->platform_3_x + begin_r22*k->platform_3_y
+      + begin_r23*k->platform_3_z;
+  const double start_arm_3_z = begin_r31*k->platform_3_x + begin_r32*k->platform_3_y
+      + begin_r33*k->platform_3_z;
+  const double start_arm_4_x = begin_r11*k->platform_4_x + begin_r12*k->platform_4_y
+      + begin_r13*k->platform_4_z;
+  const double start_arm_4_y = begin_r21*k->platform_4_x + begin_r22*k->platform_4_y
+      + begin_r23*k->platform_4_z;
+  const double start_arm_4_z = begin_r31*k->platform_4_x + begin_r32*k->platform_4_y
+      + begin_r33*k->platform_4_z;
+  const double start_arm_5_x = begin_r11*k->platform_5_x + begin_r12*k->platform_5_y
+      + begin_r13*k->platform_5_z;
+  const double start_arm_5_y = begin_r21*k->platform_5_x + begin_r22*k->platform_5_y
+      + begin_r23*k->platform_5_z;
+  const double start_arm_5_z = begin_r31*k->platform_5_x + begin_r32*k->platform_5_y
+      + begin_r33*k->platform_5_z;
+  const double start_arm_6_x = begin_r11*k->platform_6_x + begin_r12*k->platform_6_y
+      + begin_r13*k->platform_6_z;
+  const double start_arm_6_y = begin_r21*k->platform_6_x + begin_r22*k->platform_6_y
+      + begin_r23*k->platform_6_z;
+  const double start_arm_6_z = begin_r31*k->platform_6_x + begin_r32*k->platform_6_y
+      + begin_r33*k->platform_6_z;
   const double a1 = axis_a1 - k->offset_a1;
   const double a2 = axis_a2 - k->offset_a2;
   const double a3 = axis_a3 - k->offset_a3;
@@ -354,9 +359,9 @@ static softkin_status find_platform(const void *machine, const double *given, do
   const double a5 = axis_a5 - k->offset_a5;
   const double a6 = axis_a6 - k->offset_a6;
   /* Newton's method: every pass improves the pose until all legs fit */
-  double x = start_x;
-  double y = start_y;
-  double z = start_z;
+  double x = begin_x;
+  double y = begin_y;
+  double z = begin_z;
   double roll = 0.0;
   double pitch = 0.0;
   double yaw = 0.0;
@@ -559,42 +564,42 @@ static softkin_status find_platform(const void *machine, const double *given, do
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the other assembly mode", "", 0.0, 0);
   }
   /* orientation of the platform */
-  const double r11 = start_r11*turned_11 + start_r21*turned_12 + start_r31*turned_13;
-  const double r12 = start_r12*turned_11 + start_r22*turned_12 + start_r32*turned_13;
-  const double r13 = start_r13*turned_11 + start_r23*turned_12 + start_r33*turned_13;
+  const double found_r11 = begin_r11*turned_11 + begin_r21*turned_12 + begin_r31*turned_13;
+  const double found_r12 = begin_r12*turned_11 + begin_r22*turned_12 + begin_r32*turned_13;
+  const double found_r13 = begin_r13*turned_11 + begin_r23*turned_12 + begin_r33*turned_13;
   /* the mirror that the machine does not have */
-  if (!(-(k->platform_1_x*r11 + k->platform_1_y*r12 + k->platform_1_z*r13 - a1_minus_x)
-      *k->carriage_side_1 >= 0.0
-      && -(k->platform_2_x*r11 + k->platform_2_y*r12 + k->platform_2_z*r13 - a2_minus_x)
-      *k->carriage_side_2 >= 0.0
-      && -(k->platform_3_x*r11 + k->platform_3_y*r12 + k->platform_3_z*r13 - a3_minus_x)
-      *k->carriage_side_3 >= 0.0
-      && -(k->platform_4_x*r11 + k->platform_4_y*r12 + k->platform_4_z*r13 - a4_minus_x)
-      *k->carriage_side_4 >= 0.0
-      && -(k->platform_5_x*r11 + k->platform_5_y*r12 + k->platform_5_z*r13 - a5_minus_x)
-      *k->carriage_side_5 >= 0.0
-      && -(k->platform_6_x*r11 + k->platform_6_y*r12 + k->platform_6_z*r13 - a6_minus_x)
-      *k->carriage_side_6 >= 0.0)) {
+  if (!(-(found_r11*k->platform_1_x + found_r12*k->platform_1_y + found_r13*k->platform_1_z - a1_minus_x)
+      *k->carriage_side_1 >= -k->machine_scale_times_plane
+      && -(found_r11*k->platform_2_x + found_r12*k->platform_2_y + found_r13*k->platform_2_z - a2_minus_x)
+      *k->carriage_side_2 >= -k->machine_scale_times_plane
+      && -(found_r11*k->platform_3_x + found_r12*k->platform_3_y + found_r13*k->platform_3_z - a3_minus_x)
+      *k->carriage_side_3 >= -k->machine_scale_times_plane
+      && -(found_r11*k->platform_4_x + found_r12*k->platform_4_y + found_r13*k->platform_4_z - a4_minus_x)
+      *k->carriage_side_4 >= -k->machine_scale_times_plane
+      && -(found_r11*k->platform_5_x + found_r12*k->platform_5_y + found_r13*k->platform_5_z - a5_minus_x)
+      *k->carriage_side_5 >= -k->machine_scale_times_plane
+      && -(found_r11*k->platform_6_x + found_r12*k->platform_6_y + found_r13*k->platform_6_z - a6_minus_x)
+      *k->carriage_side_6 >= -k->machine_scale_times_plane)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the mirror that the machine does not have", "", 0.0, 0);
   }
-  const double r21 = start_r11*turned_21 + start_r21*turned_22 + start_r31*turned_23;
-  const double r22 = start_r12*turned_21 + start_r22*turned_22 + start_r32*turned_23;
-  const double r23 = start_r13*turned_21 + start_r23*turned_22 + start_r33*turned_23;
-  const double r31 = start_r21*turned_32 + start_r31*turned_33 - start_r11*sin_pitch;
-  const double r32 = start_r22*turned_32 + start_r32*turned_33 - start_r12*sin_pitch;
-  const double r33 = start_r23*turned_32 + start_r33*turned_33 - start_r13*sin_pitch;
+  const double found_r21 = begin_r11*turned_21 + begin_r21*turned_22 + begin_r31*turned_23;
+  const double found_r22 = begin_r12*turned_21 + begin_r22*turned_22 + begin_r32*turned_23;
+  const double found_r23 = begin_r13*turned_21 + begin_r23*turned_22 + begin_r33*turned_23;
+  const double found_r31 = begin_r21*turned_32 + begin_r31*turned_33 - begin_r11*sin_pitch;
+  const double found_r32 = begin_r22*turned_32 + begin_r32*turned_33 - begin_r12*sin_pitch;
+  const double found_r33 = begin_r23*turned_32 + begin_r33*turned_33 - begin_r13*sin_pitch;
   found[0] = x;
   found[1] = y;
   found[2] = z;
-  found[3] = r11;
-  found[4] = r12;
-  found[5] = r13;
-  found[6] = r21;
-  found[7] = r22;
-  found[8] = r23;
-  found[9] = r31;
-  found[10] = r32;
-  found[11] = r33;
+  found[3] = found_r11;
+  found[4] = found_r12;
+  found[5] = found_r13;
+  found[6] = found_r21;
+  found[7] = found_r22;
+  found[8] = found_r23;
+  found[9] = found_r31;
+  found[10] = found_r32;
+  found[11] = found_r33;
   found[12] = determinant;
   found[13] = along_1_x;
   found[14] = along_1_y;
@@ -642,30 +647,33 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const hexaglide_machine *k = machine;
   const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3], axis_a5 = axes[4],
       axis_a6 = axes[5];
-  /* pose of the platform, by Newton's method from the home pose */
-  const double arguments[] = {axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, k->home_r11, k->home_r12,
-      k->home_r13, k->home_r21, k->home_r22, k->home_r23, k->home_r31, k->home_r32, k->home_r33, k->home_x,
-      k->home_y, k->home_z};
+  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y, k->start_z}, 3)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  /* pose of the platform, by Newton's method from the start */
   double results[49];
+  const double arguments[] = {axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, k->start_r11,
+      k->start_r12, k->start_r13, k->start_r21, k->start_r22, k->start_r23, k->start_r31, k->start_r32,
+      k->start_r33, k->start_x, k->start_y, k->start_z};
   const softkin_status status = find_platform(k, arguments, results, why);
   if (status != SOFTKIN_OK) {
     return status;
   }
-  const double x = results[0], y = results[1], z = results[2], r11 = results[3], r12 = results[4],
-      r13 = results[5], r21 = results[6], r22 = results[7], r23 = results[8], r31 = results[9],
-      r32 = results[10], r33 = results[11];
-  frame->position[0] = x;
-  frame->position[1] = y;
-  frame->position[2] = z;
-  frame->rotation[0][0] = r11;
-  frame->rotation[0][1] = r12;
-  frame->rotation[0][2] = r13;
-  frame->rotation[1][0] = r21;
-  frame->rotation[1][1] = r22;
-  frame->rotation[1][2] = r23;
-  frame->rotation[2][0] = r31;
-  frame->rotation[2][1] = r32;
-  frame->rotation[2][2] = r33;
+  const double found_x = results[0], found_y = results[1], found_z = results[2], found_r11 = results[3],
+      found_r12 = results[4], found_r13 = results[5], found_r21 = results[6], found_r22 = results[7],
+      found_r23 = results[8], found_r31 = results[9], found_r32 = results[10], found_r33 = results[11];
+  frame->position[0] = found_x;
+  frame->position[1] = found_y;
+  frame->position[2] = found_z;
+  frame->rotation[0][0] = found_r11;
+  frame->rotation[0][1] = found_r12;
+  frame->rotation[0][2] = found_r13;
+  frame->rotation[1][0] = found_r21;
+  frame->rotation[1][1] = found_r22;
+  frame->rotation[1][2] = found_r23;
+  frame->rotation[2][0] = found_r31;
+  frame->rotation[2][1] = found_r32;
+  frame->rotation[2][2] = found_r33;
   return SOFTKIN_OK;
 }
 
@@ -969,6 +977,32 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double axis_a4 = a4 + k->offset_a4;
   const double axis_a5 = a5 + k->offset_a5;
   const double axis_a6 = a6 + k->offset_a6;
+  /* pose of the platform, by Newton's method from the home pose */
+  double results[49] = {0.0};
+  if (k->check_forward) {
+    const double arguments[] = {axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, k->home_r11,
+        k->home_r12, k->home_r13, k->home_r21, k->home_r22, k->home_r23, k->home_r31, k->home_r32,
+        k->home_r33, k->home_x, k->home_y, k->home_z};
+    const softkin_status status = find_platform(k, arguments, results, NULL);
+    if (status != SOFTKIN_OK) {
+      return softkin_refuse(why, SOFTKIN_UNREACHABLE,
+          "forward kinematics from the home pose does not find this pose again", "", 0.0, 0);
+    }
+  }
+  const double found_x = results[0], found_y = results[1], found_z = results[2], found_r11 = results[3],
+      found_r12 = results[4], found_r13 = results[5], found_r21 = results[6], found_r22 = results[7],
+      found_r23 = results[8], found_r31 = results[9], found_r32 = results[10], found_r33 = results[11];
+  /* forward kinematics from the home pose does not find this pose again */
+  if (!((!k->check_forward) || ((fabs(found_r11 - r11) <= 1e-6) && (fabs(found_r12 - r12) <= 1e-6)
+      && (fabs(found_r13 - r13) <= 1e-6) && (fabs(found_r21 - r21) <= 1e-6)
+      && (fabs(found_r22 - r22) <= 1e-6) && (fabs(found_r23 - r23) <= 1e-6)
+      && (fabs(found_r31 - r31) <= 1e-6) && (fabs(found_r32 - r32) <= 1e-6)
+      && (fabs(found_r33 - r33) <= 1e-6) && (fabs(found_x - x) <= k->machine_scale_times_plane)
+      && (fabs(found_y - y) <= k->machine_scale_times_plane)
+      && (fabs(found_z - z) <= k->machine_scale_times_plane)))) {
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE,
+        "forward kinematics from the home pose does not find this pose again", "", 0.0, 0);
+  }
   axes[0] = axis_a1;
   axes[1] = axis_a2;
   axes[2] = axis_a3;
@@ -1046,40 +1080,49 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const hexaglide_machine *k = machine;
   const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3], axis_a5 = axes[4],
       axis_a6 = axes[5];
-  /* pose of the platform, by Newton's method from the home pose */
-  const double arguments[] = {axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, k->home_r11, k->home_r12,
-      k->home_r13, k->home_r21, k->home_r22, k->home_r23, k->home_r31, k->home_r32, k->home_r33, k->home_x,
-      k->home_y, k->home_z};
+  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y, k->start_z}, 3)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  /* pose of the platform, by Newton's method from the start */
   double results[49];
+  const double arguments[] = {axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, k->start_r11,
+      k->start_r12, k->start_r13, k->start_r21, k->start_r22, k->start_r23, k->start_r31, k->start_r32,
+      k->start_r33, k->start_x, k->start_y, k->start_z};
   const softkin_status status = find_platform(k, arguments, results, why);
   if (status != SOFTKIN_OK) {
     return status;
   }
-  const double x = results[0], r11 = results[3], r12 = results[4], r13 = results[5],
+  const double found_x = results[0], found_r11 = results[3], found_r12 = results[4], found_r13 = results[5],
       determinant = results[12];
   const double a1 = axis_a1 - k->offset_a1;
   /* rod 1: known part of its vector */
-  const double span_1_x = x + k->platform_1_x*r11 + k->platform_1_y*r12 + k->platform_1_z*r13;
+  const double span_1_x = found_x + found_r11*k->platform_1_x + found_r12*k->platform_1_y
+      + found_r13*k->platform_1_z;
   const double margin_meet_a1 = 2.0*(a1 - span_1_x)*k->half_by_rod_length_1;
   const double a2 = axis_a2 - k->offset_a2;
   /* rod 2: known part of its vector */
-  const double span_2_x = x + k->platform_2_x*r11 + k->platform_2_y*r12 + k->platform_2_z*r13;
+  const double span_2_x = found_x + found_r11*k->platform_2_x + found_r12*k->platform_2_y
+      + found_r13*k->platform_2_z;
   const double margin_meet_a2 = 2.0*(a2 - span_2_x)*k->half_by_rod_length_2;
   const double a3 = axis_a3 - k->offset_a3;
   /* rod 3: known part of its vector */
-  const double span_3_x = x + k->platform_3_x*r11 + k->platform_3_y*r12 + k->platform_3_z*r13;
+  const double span_3_x = found_x + found_r11*k->platform_3_x + found_r12*k->platform_3_y
+      + found_r13*k->platform_3_z;
   const double margin_meet_a3 = 2.0*(a3 - span_3_x)*k->half_by_rod_length_3;
   const double a4 = axis_a4 - k->offset_a4;
   /* rod 4: known part of its vector */
-  const double span_4_x = x + k->platform_4_x*r11 + k->platform_4_y*r12 + k->platform_4_z*r13;
+  const double span_4_x = found_x + found_r11*k->platform_4_x + found_r12*k->platform_4_y
+      + found_r13*k->platform_4_z;
   const double margin_meet_a4 = 2.0*(a4 - span_4_x)*k->half_by_rod_length_4;
   const double a5 = axis_a5 - k->offset_a5;
   /* rod 5: known part of its vector */
-  const double span_5_x = x + k->platform_5_x*r11 + k->platform_5_y*r12 + k->platform_5_z*r13;
+  const double span_5_x = found_x + found_r11*k->platform_5_x + found_r12*k->platform_5_y
+      + found_r13*k->platform_5_z;
   const double margin_meet_a5 = 2.0*(a5 - span_5_x)*k->half_by_rod_length_5;
   const double a6 = axis_a6 - k->offset_a6;
   /* rod 6: known part of its vector */
-  const double span_6_x = x + k->platform_6_x*r11 + k->platform_6_y*r12 + k->platform_6_z*r13;
+  const double span_6_x = found_x + found_r11*k->platform_6_x + found_r12*k->platform_6_y
+      + found_r13*k->platform_6_z;
   const double margin_meet_a6 = 2.0*(a6 - span_6_x)*k->half_by_rod_length_6;
   margins[0] = margin_meet_a1;
   margins[1] = margin_meet_a2;
@@ -1097,11 +1140,14 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const hexaglide_machine *k = machine;
   const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3], axis_a5 = axes[4],
       axis_a6 = axes[5];
-  /* pose of the platform, by Newton's method from the home pose */
-  const double arguments[] = {axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, k->home_r11, k->home_r12,
-      k->home_r13, k->home_r21, k->home_r22, k->home_r23, k->home_r31, k->home_r32, k->home_r33, k->home_x,
-      k->home_y, k->home_z};
+  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y, k->start_z}, 3)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  /* pose of the platform, by Newton's method from the start */
   double results[49];
+  const double arguments[] = {axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, k->start_r11,
+      k->start_r12, k->start_r13, k->start_r21, k->start_r22, k->start_r23, k->start_r31, k->start_r32,
+      k->start_r33, k->start_x, k->start_y, k->start_z};
   const softkin_status status = find_platform(k, arguments, results, why);
   if (status != SOFTKIN_OK) {
     return status;
@@ -1181,44 +1227,30 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
-/* Position, rotation and margins, found from a given start. */
+/* The machine with another start of forward kinematics. */
+static void start_at(const void *machine, const softkin_frame *start, void *moved) {
+  hexaglide_machine *k = moved;
+  *k = *(const hexaglide_machine *)machine;
+  k->start_x = start->position[0];
+  k->start_y = start->position[1];
+  k->start_z = start->position[2];
+  k->start_r11 = start->rotation[0][0];
+  k->start_r12 = start->rotation[0][1];
+  k->start_r13 = start->rotation[0][2];
+  k->start_r21 = start->rotation[1][0];
+  k->start_r22 = start->rotation[1][1];
+  k->start_r23 = start->rotation[1][2];
+  k->start_r31 = start->rotation[2][0];
+  k->start_r32 = start->rotation[2][1];
+  k->start_r33 = start->rotation[2][2];
+}
+
+/* Forward kinematics from a given start. */
 static softkin_status find_forward_from(const void *machine, const double *axes, const softkin_frame *start,
     softkin_frame *frame, double *margins, softkin_refusal *why) {
-  (void)margins;
-  const hexaglide_machine *k = machine;
-  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3], axis_a5 = axes[4],
-      axis_a6 = axes[5], start_x = start->position[0], start_y = start->position[1],
-      start_z = start->position[2], start_r11 = start->rotation[0][0], start_r12 = start->rotation[0][1],
-      start_r13 = start->rotation[0][2], start_r21 = start->rotation[1][0],
-      start_r22 = start->rotation[1][1], start_r23 = start->rotation[1][2],
-      start_r31 = start->rotation[2][0], start_r32 = start->rotation[2][1], start_r33 = start->rotation[2][2];
-  if (!softkin_are_reasonable((const double[]){start_x, start_y, start_z}, 3)) {
-    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
-  }
-  /* pose of the platform, by Newton's method from the given start */
-  const double arguments[] = {axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, start_r11, start_r12,
-      start_r13, start_r21, start_r22, start_r23, start_r31, start_r32, start_r33, start_x, start_y, start_z};
-  double results[49];
-  const softkin_status status = find_platform(k, arguments, results, why);
-  if (status != SOFTKIN_OK) {
-    return status;
-  }
-  const double x = results[0], y = results[1], z = results[2], r11 = results[3], r12 = results[4],
-      r13 = results[5], r21 = results[6], r22 = results[7], r23 = results[8], r31 = results[9],
-      r32 = results[10], r33 = results[11];
-  frame->position[0] = x;
-  frame->position[1] = y;
-  frame->position[2] = z;
-  frame->rotation[0][0] = r11;
-  frame->rotation[0][1] = r12;
-  frame->rotation[0][2] = r13;
-  frame->rotation[1][0] = r21;
-  frame->rotation[1][1] = r22;
-  frame->rotation[1][2] = r23;
-  frame->rotation[2][0] = r31;
-  frame->rotation[2][1] = r32;
-  frame->rotation[2][2] = r33;
-  return SOFTKIN_OK;
+  hexaglide_machine moved;
+  start_at(machine, start, &moved);
+  return find_forward(&moved, axes, frame, margins, why);
 }
 
 /* The values that depend on the parameters alone, or why the parameters are refused. */
@@ -1526,6 +1558,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double least_cos_plate = cos(SOFTKIN_DEGREE*p->max_angle_platform_joint) > -0.999999999999
       ? cos(SOFTKIN_DEGREE*p->max_angle_platform_joint) - 1e-12 : -2.0;
   const double machine_scale_times_shortest_link = 1e-9*machine_scale;
+  const double machine_scale_times_plane = 1e-6*machine_scale;
   const double rod_length_1_squared = p->rod_length_1*p->rod_length_1;
   const double rod_length_1_squared_times_rounding = 1e-12*p->rod_length_1*p->rod_length_1;
   const double rod_length_2_squared = p->rod_length_2*p->rod_length_2;
@@ -1624,6 +1657,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a5 = p->offset_a5;
   made.offset_a6 = p->offset_a6;
   made.min_type2_margin = p->min_type2_margin;
+  made.check_forward = (p->check_forward != 0.0);
   made.home_r11 = home_r11;
   made.home_r12 = home_r12;
   made.home_r13 = home_r13;
@@ -1634,6 +1668,18 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.home_r32 = home_r32;
   made.home_r33 = home_r33;
   made.assembly_sign = assembly_sign;
+  made.start_x = p->home_x;
+  made.start_y = p->home_y;
+  made.start_z = p->home_z;
+  made.start_r11 = home_r11;
+  made.start_r12 = home_r12;
+  made.start_r13 = home_r13;
+  made.start_r21 = home_r21;
+  made.start_r22 = home_r22;
+  made.start_r23 = home_r23;
+  made.start_r31 = home_r31;
+  made.start_r32 = home_r32;
+  made.start_r33 = home_r33;
   made.home_along_1_x = along_1_x;
   made.home_along_1_y = along_1_y;
   made.home_along_1_z = along_1_z;
@@ -1674,6 +1720,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.least_cos_base = least_cos_base;
   made.least_cos_plate = least_cos_plate;
   made.machine_scale_times_shortest_link = machine_scale_times_shortest_link;
+  made.machine_scale_times_plane = machine_scale_times_plane;
   made.rod_length_1_squared = rod_length_1_squared;
   made.rod_length_1_squared_times_rounding = rod_length_1_squared_times_rounding;
   made.rod_length_2_squared = rod_length_2_squared;
@@ -1724,7 +1771,7 @@ const softkin_mechanism hexaglide_mechanism = {
     .row_count = 6,
     .margin_count = 7,
     .limit_count = 6,
-    .parameter_count = 71,
+    .parameter_count = 72,
     .quantity_count = 0,
     .distance_count = 6,
     .side_count = 0,
@@ -1744,6 +1791,7 @@ const softkin_mechanism hexaglide_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .start_at = start_at,
     .forward_from = find_forward_from,
 };
 
@@ -1764,6 +1812,26 @@ softkin_status hexaglide_forward(const hexaglide_machine *machine, const double 
 softkin_status hexaglide_forward_from(const hexaglide_machine *machine, const double *axes,
     const softkin_frame *start, softkin_frame *frame, int8_t *configuration, softkin_refusal *why) {
   return softkin_forward(&hexaglide_mechanism, machine, axes, start, frame, configuration, NULL, why);
+}
+
+softkin_status hexaglide_start_at(const hexaglide_machine *machine, const softkin_frame *start,
+    hexaglide_machine *moved, softkin_refusal *why) {
+  return softkin_start_at(&hexaglide_mechanism, machine, start, moved, why);
+}
+
+softkin_status hexaglide_jacobian_from(const hexaglide_machine *machine, const double *axes,
+    const softkin_frame *start, double *rows, softkin_refusal *why) {
+  hexaglide_machine moved;
+  const softkin_status status = softkin_start_at(&hexaglide_mechanism, machine, start, &moved, why);
+  return status == SOFTKIN_OK ? softkin_jacobian(&hexaglide_mechanism, &moved, axes, rows, why) : status;
+}
+
+softkin_status hexaglide_singularity_from(const hexaglide_machine *machine, const double *axes,
+    const softkin_frame *start, double *margins, bool *is_singular, softkin_refusal *why) {
+  hexaglide_machine moved;
+  const softkin_status status = softkin_start_at(&hexaglide_mechanism, machine, start, &moved, why);
+  return status == SOFTKIN_OK
+      ? softkin_singularity(&hexaglide_mechanism, &moved, axes, margins, is_singular, why) : status;
 }
 
 softkin_status hexaglide_inverse(const hexaglide_machine *machine, const softkin_frame *frame,

@@ -30,6 +30,12 @@
  * is about the rod at the home pose. It does not test whether rods touch each other: exclude that by
  * the limits.
  *
+ * Forward kinematics starts at the home pose. Measured with nominal parameters, it finds 92 % of the
+ * poses again that the inverse reaches within 45 degrees of home about each axis and half the mean leg
+ * and platform radius, and 42 % within twice as much. The inverse refuses the others, because a
+ * controller that asks for the pose at power-up would get another one; without check_forward it
+ * accepts them, for callers that give forward kinematics a start.
+ *
  * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
  * and
  * its statuses, at the call of the same name. Every `why` may be NULL.
@@ -225,6 +231,9 @@ typedef struct {
   /** least distance from a type 2 singularity, a number without a unit; 0: off [1]: at least 0 and at most 1;
    * default 0.001 */
   double min_type2_margin;
+  /** inverse kinematics refuses a pose that forward kinematics from the home pose does not find again: 0 or
+   * 1; default 1 */
+  double check_forward;
   /** inverse kinematics tests the limits: 0 or 1; default 1 */
   double check_limits;
   /** poses count as singular where a margin (a number without a unit) is smaller than this [1]: at least 0
@@ -246,18 +255,19 @@ typedef struct {
       rod_length_6, carriage_side_1, carriage_side_2, carriage_side_3, carriage_side_4, carriage_side_5,
       carriage_side_6, home_x, home_y, home_z, offset_a1, offset_a2, offset_a3, offset_a4, offset_a5,
       offset_a6, min_type2_margin, home_r11, home_r12, home_r13, home_r21, home_r22, home_r23, home_r31,
-      home_r32, home_r33, assembly_sign, home_along_1_x, home_along_1_y, home_along_1_z, plate_axis_1_x,
-      plate_axis_1_y, plate_axis_1_z, home_along_2_x, home_along_2_y, home_along_2_z, plate_axis_2_x,
-      plate_axis_2_y, plate_axis_2_z, home_along_3_x, home_along_3_y, home_along_3_z, plate_axis_3_x,
-      plate_axis_3_y, plate_axis_3_z, home_along_4_x, home_along_4_y, home_along_4_z, plate_axis_4_x,
-      plate_axis_4_y, plate_axis_4_z, home_along_5_x, home_along_5_y, home_along_5_z, plate_axis_5_x,
-      plate_axis_5_y, plate_axis_5_z, home_along_6_x, home_along_6_y, home_along_6_z, plate_axis_6_x,
-      plate_axis_6_y, plate_axis_6_z, within, least_cos_base, least_cos_plate,
-      machine_scale_times_shortest_link, rod_length_1_squared, rod_length_1_squared_times_rounding,
-      rod_length_2_squared, rod_length_2_squared_times_rounding, rod_length_3_squared,
-      rod_length_3_squared_times_rounding, rod_length_4_squared, rod_length_4_squared_times_rounding,
-      rod_length_5_squared, rod_length_5_squared_times_rounding, rod_length_6_squared,
-      rod_length_6_squared_times_rounding, least_cos_base_times_rod_length_1,
+      home_r32, home_r33, assembly_sign, start_x, start_y, start_z, start_r11, start_r12, start_r13,
+      start_r21, start_r22, start_r23, start_r31, start_r32, start_r33, home_along_1_x, home_along_1_y,
+      home_along_1_z, plate_axis_1_x, plate_axis_1_y, plate_axis_1_z, home_along_2_x, home_along_2_y,
+      home_along_2_z, plate_axis_2_x, plate_axis_2_y, plate_axis_2_z, home_along_3_x, home_along_3_y,
+      home_along_3_z, plate_axis_3_x, plate_axis_3_y, plate_axis_3_z, home_along_4_x, home_along_4_y,
+      home_along_4_z, plate_axis_4_x, plate_axis_4_y, plate_axis_4_z, home_along_5_x, home_along_5_y,
+      home_along_5_z, plate_axis_5_x, plate_axis_5_y, plate_axis_5_z, home_along_6_x, home_along_6_y,
+      home_along_6_z, plate_axis_6_x, plate_axis_6_y, plate_axis_6_z, within, least_cos_base,
+      least_cos_plate, machine_scale_times_shortest_link, machine_scale_times_plane, rod_length_1_squared,
+      rod_length_1_squared_times_rounding, rod_length_2_squared, rod_length_2_squared_times_rounding,
+      rod_length_3_squared, rod_length_3_squared_times_rounding, rod_length_4_squared,
+      rod_length_4_squared_times_rounding, rod_length_5_squared, rod_length_5_squared_times_rounding,
+      rod_length_6_squared, rod_length_6_squared_times_rounding, least_cos_base_times_rod_length_1,
       least_cos_base_times_rod_length_2, least_cos_base_times_rod_length_3,
       least_cos_base_times_rod_length_4, least_cos_base_times_rod_length_5,
       least_cos_base_times_rod_length_6, least_cos_plate_times_rod_length_1,
@@ -266,6 +276,7 @@ typedef struct {
       least_cos_plate_times_rod_length_6, one_by_platform_radius, one_by_machine_scale_squared,
       quotient_in_determinant, half_by_rod_length_1, half_by_rod_length_2, half_by_rod_length_3,
       half_by_rod_length_4, half_by_rod_length_5, half_by_rod_length_6;
+  bool check_forward;
 } hexaglide_machine;
 
 /** The machine as data, for code that works with any machine. */
@@ -285,6 +296,10 @@ softkin_status hexaglide_init(hexaglide_machine *machine, const hexaglide_parame
  */
 softkin_status hexaglide_forward(const hexaglide_machine *machine, const double *axes, softkin_frame *frame,
     int8_t *configuration, softkin_refusal *why);
+
+/** The machine whose forward kinematics begins at `start`: the frame that axis values have, or one nearby. */
+softkin_status hexaglide_start_at(const hexaglide_machine *machine, const softkin_frame *start,
+    hexaglide_machine *moved, softkin_refusal *why);
 
 /** The same call, whose iteration begins at `start`, for example at the previous frame of a path. */
 softkin_status hexaglide_forward_from(const hexaglide_machine *machine, const double *axes,
@@ -330,6 +345,12 @@ softkin_status hexaglide_branches(const hexaglide_machine *machine, const softki
 /** The Jacobian, per radian: 6 rows of 6. */
 softkin_status hexaglide_jacobian(const hexaglide_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
+
+/** The same calls at the frame that the axis values have, or from one nearby. */
+softkin_status hexaglide_jacobian_from(const hexaglide_machine *machine, const double *axes,
+    const softkin_frame *start, double *rows, softkin_refusal *why);
+softkin_status hexaglide_singularity_from(const hexaglide_machine *machine, const double *axes,
+    const softkin_frame *start, double *margins, bool *is_singular, softkin_refusal *why);
 
 /** 7 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status hexaglide_singularity(const hexaglide_machine *machine, const double *axes, double *margins,

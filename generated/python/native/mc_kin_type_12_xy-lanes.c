@@ -13,18 +13,18 @@ void mc_kin_type_12_xy_regular(const void *machine, const softkin_lanes *given,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
       link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
       link_length_1_times_shortest_link = k->link_length_1_times_shortest_link,
+      link_length_2 = k->link_length_2, link_length_2_by_link_length_3 = k->link_length_2_by_link_length_3,
       link_length_3_by_link_length_2 = k->link_length_3_by_link_length_2,
       link_length_4_plus_link_length_5 = k->link_length_4_plus_link_length_5,
+      link_length_5 = k->link_length_5,
       link_length_5_minus_link_length_4 = k->link_length_5_minus_link_length_4,
       link_length_5_times_shortest_link = k->link_length_5_times_shortest_link,
       machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
-      quotient_in_along_a2 = k->quotient_in_along_a2,
-      quotient_in_scaled_pivot_rear_y = k->quotient_in_scaled_pivot_rear_y,
-      quotient_in_scaled_pivot_rear_y_2 = k->quotient_in_scaled_pivot_rear_y_2,
+      one_by_link_length_2 = k->one_by_link_length_2, product_in_branch_w = k->product_in_branch_w,
       quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
-      swap_xy = k->swap_xy ? 1.0 : 0.0;
+      sum_in_pivot_rear_x = k->sum_in_pivot_rear_x, swap_xy = k->swap_xy ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         sigma_t = given->signs[0][lane], sigma_w = given->signs[1][lane], ref_a1 = given->reference[0][lane],
@@ -57,11 +57,11 @@ void mc_kin_type_12_xy_regular(const void *machine, const softkin_lanes *given,
     const double sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1;
     /* rod rear: known part of its vector */
     const double span_rear_x = -link_length_3_by_link_length_2*span_upper_x;
-    const double along_a2 = span_rear_x - quotient_in_along_a2*sin_a1;
+    const double along_a2 = (link_length_2*span_rear_x - product_in_branch_w*sin_a1)*one_by_link_length_2;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/effective_a1;
     const double span_rear_y = -link_length_3_by_link_length_2*span_upper_y;
-    const double across_a2 = quotient_in_along_a2*cos_a1 - span_rear_y;
+    const double across_a2 = one_by_link_length_2*(product_in_branch_w*cos_a1 - link_length_2*span_rear_y);
     /* effective length of the arm that a2 turns */
     const double effective_a2 = softkin_lane_root(across_a2*across_a2 + along_a2*along_a2);
     /* a2: its effective length is too short */
@@ -91,14 +91,12 @@ void mc_kin_type_12_xy_regular(const void *machine, const softkin_lanes *given,
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2;
     /* rod rear: centre about which it swings */
-    const double scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y*sin_a1
-        - quotient_in_scaled_pivot_rear_y_2*cos_a2;
+    const double pivot_rear_x = sum_in_pivot_rear_x*sin_a1 - link_length_5*cos_a2;
     const double sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/effective_a2;
-    const double scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y*cos_a1
-        + quotient_in_scaled_pivot_rear_y_2*sin_a2;
-    const double centre_2_x = swap_xy ? -scaled_pivot_rear_y : -scaled_pivot_rear_x;
+    const double pivot_rear_y = sum_in_pivot_rear_x*cos_a1 + link_length_5*sin_a2;
+    const double centre_2_x = (swap_xy ? -pivot_rear_y : -pivot_rear_x)*link_length_2_by_link_length_3;
     const double rod_2_x = x - centre_2_x;
-    const double centre_2_y = swap_xy ? -scaled_pivot_rear_x : -scaled_pivot_rear_y;
+    const double centre_2_y = (swap_xy ? -pivot_rear_x : -pivot_rear_y)*link_length_2_by_link_length_3;
     const double rod_2_y = y - centre_2_y;
     const double type2_arms_aligned = quotient_in_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x);
     /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
@@ -122,19 +120,18 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
       link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
       link_length_1_times_shortest_link = k->link_length_1_times_shortest_link,
-      link_length_2 = k->link_length_2, link_length_3 = k->link_length_3,
+      link_length_2 = k->link_length_2, link_length_2_by_link_length_3 = k->link_length_2_by_link_length_3,
       link_length_3_by_link_length_2 = k->link_length_3_by_link_length_2,
       link_length_4_plus_link_length_5 = k->link_length_4_plus_link_length_5,
+      link_length_5 = k->link_length_5,
       link_length_5_minus_link_length_4 = k->link_length_5_minus_link_length_4,
       link_length_5_times_shortest_link = k->link_length_5_times_shortest_link,
       machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
-      quotient_in_scaled_pivot_rear_y_2 = k->quotient_in_scaled_pivot_rear_y_2,
+      one_by_link_length_2 = k->one_by_link_length_2, product_in_branch_w = k->product_in_branch_w,
       quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       sum_in_pivot_rear_x = k->sum_in_pivot_rear_x, swap_xy = k->swap_xy ? 1.0 : 0.0;
-  const double quotient_in_along_a2_left = link_length_1*(link_length_2 + link_length_3)/link_length_2;
-  const double quotient_in_scaled_pivot_rear_y_left_left = link_length_2*sum_in_pivot_rear_x/link_length_3;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane];
@@ -168,14 +165,18 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
         /effective_a1;
     /* rod rear: known part of its vector */
     const double span_rear_x = -link_length_3_by_link_length_2*span_upper_x;
-    const double along_a2_left = span_rear_x - quotient_in_along_a2_left*sin_a1_left;
+    const double link_length_2_times_span_rear_x = link_length_2*span_rear_x;
+    const double along_a2_left = (link_length_2_times_span_rear_x - product_in_branch_w*sin_a1_left)
+        *one_by_link_length_2;
     const double cos_swing_a1_times_span_upper_y = span_upper_y*cos_swing_a1;
     const double sin_swing_a1_right_times_span_upper_x = span_upper_x*sin_swing_a1_right;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_a1_left = (cos_swing_a1_times_span_upper_y + sin_swing_a1_right_times_span_upper_x)
         /effective_a1;
     const double span_rear_y = -link_length_3_by_link_length_2*span_upper_y;
-    const double across_a2_left = quotient_in_along_a2_left*cos_a1_left - span_rear_y;
+    const double link_length_2_times_span_rear_y = link_length_2*span_rear_y;
+    const double across_a2_left = one_by_link_length_2
+        *(product_in_branch_w*cos_a1_left - link_length_2_times_span_rear_y);
     /* effective length of the arm that a2 turns */
     const double effective_a2_left = softkin_lane_root(across_a2_left*across_a2_left
         + along_a2_left*along_a2_left);
@@ -191,11 +192,13 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     missed += sum_a2_left > 0.0 ? 0.0 : 1.0;
     const double sin_a1_right = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y)
         /effective_a1;
-    const double along_a2_right = span_rear_x - quotient_in_along_a2_left*sin_a1_right;
+    const double along_a2_right = (link_length_2_times_span_rear_x - product_in_branch_w*sin_a1_right)
+        *one_by_link_length_2;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_a1_right = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x)
         /effective_a1;
-    const double across_a2_right = quotient_in_along_a2_left*cos_a1_right - span_rear_y;
+    const double across_a2_right = one_by_link_length_2
+        *(product_in_branch_w*cos_a1_right - link_length_2_times_span_rear_y);
     /* effective length of the arm that a2 turns */
     const double effective_a2_right = softkin_lane_root(across_a2_right*across_a2_right
         + along_a2_right*along_a2_right);
@@ -228,24 +231,22 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_a2_left_left = (along_a2_left_times_cos_swing_a2_left + product_in_cos_a2_left_left)
         /effective_a2_left;
-    const double product_in_scaled_pivot_rear_x_left_left = quotient_in_scaled_pivot_rear_y_left_left
-        *sin_a1_left;
+    const double sum_in_pivot_rear_x_times_sin_a1_left = sum_in_pivot_rear_x*sin_a1_left;
     /* rod rear: centre about which it swings */
-    const double scaled_pivot_rear_x_left_left = product_in_scaled_pivot_rear_x_left_left
-        - quotient_in_scaled_pivot_rear_y_2*cos_a2_left_left;
+    const double pivot_rear_x_left_left = sum_in_pivot_rear_x_times_sin_a1_left
+        - link_length_5*cos_a2_left_left;
     const double product_in_sin_a2_left_left = along_a2_left*sin_swing_a2_left_right;
     const double across_a2_left_times_cos_swing_a2_left = across_a2_left*cos_swing_a2_left;
     const double sin_a2_left_left = (across_a2_left_times_cos_swing_a2_left - product_in_sin_a2_left_left)
         /effective_a2_left;
-    const double product_in_scaled_pivot_rear_y_left_left = quotient_in_scaled_pivot_rear_y_left_left
-        *cos_a1_left;
-    const double scaled_pivot_rear_y_left_left = product_in_scaled_pivot_rear_y_left_left
-        + quotient_in_scaled_pivot_rear_y_2*sin_a2_left_left;
-    const double centre_2_x_left_left = swap_xy ? -scaled_pivot_rear_y_left_left
-        : -scaled_pivot_rear_x_left_left;
+    const double sum_in_pivot_rear_x_times_cos_a1_left = sum_in_pivot_rear_x*cos_a1_left;
+    const double pivot_rear_y_left_left = sum_in_pivot_rear_x_times_cos_a1_left
+        + link_length_5*sin_a2_left_left;
+    const double centre_2_x_left_left = (swap_xy ? -pivot_rear_y_left_left : -pivot_rear_x_left_left)
+        *link_length_2_by_link_length_3;
     const double rod_2_x_left_left = x - centre_2_x_left_left;
-    const double centre_2_y_left_left = swap_xy ? -scaled_pivot_rear_x_left_left
-        : -scaled_pivot_rear_y_left_left;
+    const double centre_2_y_left_left = (swap_xy ? -pivot_rear_x_left_left : -pivot_rear_y_left_left)
+        *link_length_2_by_link_length_3;
     const double rod_2_y_left_left = y - centre_2_y_left_left;
     const double type2_arms_aligned_left_left = quotient_in_type2_arms_aligned
         *(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left);
@@ -259,17 +260,17 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     const double cos_a2_left_right = (along_a2_left_times_cos_swing_a2_left - product_in_cos_a2_left_left)
         /effective_a2_left;
     /* rod rear: centre about which it swings */
-    const double scaled_pivot_rear_x_left_right = product_in_scaled_pivot_rear_x_left_left
-        - quotient_in_scaled_pivot_rear_y_2*cos_a2_left_right;
+    const double pivot_rear_x_left_right = sum_in_pivot_rear_x_times_sin_a1_left
+        - link_length_5*cos_a2_left_right;
     const double sin_a2_left_right = (across_a2_left_times_cos_swing_a2_left + product_in_sin_a2_left_left)
         /effective_a2_left;
-    const double scaled_pivot_rear_y_left_right = product_in_scaled_pivot_rear_y_left_left
-        + quotient_in_scaled_pivot_rear_y_2*sin_a2_left_right;
-    const double centre_2_x_left_right = swap_xy ? -scaled_pivot_rear_y_left_right
-        : -scaled_pivot_rear_x_left_right;
+    const double pivot_rear_y_left_right = sum_in_pivot_rear_x_times_cos_a1_left
+        + link_length_5*sin_a2_left_right;
+    const double centre_2_x_left_right = (swap_xy ? -pivot_rear_y_left_right : -pivot_rear_x_left_right)
+        *link_length_2_by_link_length_3;
     const double rod_2_x_left_right = x - centre_2_x_left_right;
-    const double centre_2_y_left_right = swap_xy ? -scaled_pivot_rear_x_left_right
-        : -scaled_pivot_rear_y_left_right;
+    const double centre_2_y_left_right = (swap_xy ? -pivot_rear_x_left_right : -pivot_rear_y_left_right)
+        *link_length_2_by_link_length_3;
     const double rod_2_y_left_right = y - centre_2_y_left_right;
     const double type2_arms_aligned_left_right = quotient_in_type2_arms_aligned
         *(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right);
@@ -297,24 +298,22 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_a2_right_left = (along_a2_right_times_cos_swing_a2_right + product_in_cos_a2_right_left)
         /effective_a2_right;
-    const double product_in_scaled_pivot_rear_x_right_left = quotient_in_scaled_pivot_rear_y_left_left
-        *sin_a1_right;
+    const double sum_in_pivot_rear_x_times_sin_a1_right = sum_in_pivot_rear_x*sin_a1_right;
     /* rod rear: centre about which it swings */
-    const double scaled_pivot_rear_x_right_left = product_in_scaled_pivot_rear_x_right_left
-        - quotient_in_scaled_pivot_rear_y_2*cos_a2_right_left;
+    const double pivot_rear_x_right_left = sum_in_pivot_rear_x_times_sin_a1_right
+        - link_length_5*cos_a2_right_left;
     const double product_in_sin_a2_right_left = along_a2_right*sin_swing_a2_right_right;
     const double across_a2_right_times_cos_swing_a2_right = across_a2_right*cos_swing_a2_right;
     const double sin_a2_right_left = (across_a2_right_times_cos_swing_a2_right - product_in_sin_a2_right_left)
         /effective_a2_right;
-    const double product_in_scaled_pivot_rear_y_right_left = quotient_in_scaled_pivot_rear_y_left_left
-        *cos_a1_right;
-    const double scaled_pivot_rear_y_right_left = product_in_scaled_pivot_rear_y_right_left
-        + quotient_in_scaled_pivot_rear_y_2*sin_a2_right_left;
-    const double centre_2_x_right_left = swap_xy ? -scaled_pivot_rear_y_right_left
-        : -scaled_pivot_rear_x_right_left;
+    const double sum_in_pivot_rear_x_times_cos_a1_right = sum_in_pivot_rear_x*cos_a1_right;
+    const double pivot_rear_y_right_left = sum_in_pivot_rear_x_times_cos_a1_right
+        + link_length_5*sin_a2_right_left;
+    const double centre_2_x_right_left = (swap_xy ? -pivot_rear_y_right_left : -pivot_rear_x_right_left)
+        *link_length_2_by_link_length_3;
     const double rod_2_x_right_left = x - centre_2_x_right_left;
-    const double centre_2_y_right_left = swap_xy ? -scaled_pivot_rear_x_right_left
-        : -scaled_pivot_rear_y_right_left;
+    const double centre_2_y_right_left = (swap_xy ? -pivot_rear_x_right_left : -pivot_rear_y_right_left)
+        *link_length_2_by_link_length_3;
     const double rod_2_y_right_left = y - centre_2_y_right_left;
     const double type2_arms_aligned_right_left = quotient_in_type2_arms_aligned
         *(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left);
@@ -328,17 +327,17 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     const double cos_a2_right_right = (along_a2_right_times_cos_swing_a2_right - product_in_cos_a2_right_left)
         /effective_a2_right;
     /* rod rear: centre about which it swings */
-    const double scaled_pivot_rear_x_right_right = product_in_scaled_pivot_rear_x_right_left
-        - quotient_in_scaled_pivot_rear_y_2*cos_a2_right_right;
+    const double pivot_rear_x_right_right = sum_in_pivot_rear_x_times_sin_a1_right
+        - link_length_5*cos_a2_right_right;
     const double sin_a2_right_right = (across_a2_right_times_cos_swing_a2_right
         + product_in_sin_a2_right_left)/effective_a2_right;
-    const double scaled_pivot_rear_y_right_right = product_in_scaled_pivot_rear_y_right_left
-        + quotient_in_scaled_pivot_rear_y_2*sin_a2_right_right;
-    const double centre_2_x_right_right = swap_xy ? -scaled_pivot_rear_y_right_right
-        : -scaled_pivot_rear_x_right_right;
+    const double pivot_rear_y_right_right = sum_in_pivot_rear_x_times_cos_a1_right
+        + link_length_5*sin_a2_right_right;
+    const double centre_2_x_right_right = (swap_xy ? -pivot_rear_y_right_right : -pivot_rear_x_right_right)
+        *link_length_2_by_link_length_3;
     const double rod_2_x_right_right = x - centre_2_x_right_right;
-    const double centre_2_y_right_right = swap_xy ? -scaled_pivot_rear_x_right_right
-        : -scaled_pivot_rear_y_right_right;
+    const double centre_2_y_right_right = (swap_xy ? -pivot_rear_x_right_right : -pivot_rear_y_right_right)
+        *link_length_2_by_link_length_3;
     const double rod_2_y_right_right = y - centre_2_y_right_right;
     const double type2_arms_aligned_right_right = quotient_in_type2_arms_aligned
         *(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right);

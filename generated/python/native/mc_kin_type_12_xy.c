@@ -102,27 +102,23 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double pivot_upper_x = -k->link_length_1*sin_a1; /* rod upper: centre about which it swings */
   const double cos_a1 = cos(a1);
   const double pivot_upper_y = -k->link_length_1*cos_a1;
+  double centre_1_x, centre_1_y;
+  if (k->swap_xy) {
+    centre_1_x = pivot_upper_y;
+    centre_1_y = pivot_upper_x;
+  } else {
+    centre_1_x = pivot_upper_x;
+    centre_1_y = pivot_upper_y;
+  }
   const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double cos_a2 = cos(a2);
   /* rod rear: centre about which it swings */
-  const double scaled_pivot_rear_x = k->quotient_in_scaled_pivot_rear_y*sin_a1
-      - k->quotient_in_scaled_pivot_rear_y_2*cos_a2;
+  const double pivot_rear_x = k->sum_in_pivot_rear_x*sin_a1 - k->link_length_5*cos_a2;
   const double sin_a2 = sin(a2);
-  const double scaled_pivot_rear_y = k->quotient_in_scaled_pivot_rear_y*cos_a1
-      + k->quotient_in_scaled_pivot_rear_y_2*sin_a2;
-  double centre_1_x, centre_2_x, centre_1_y, centre_2_y;
-  if (k->swap_xy) {
-    centre_1_x = pivot_upper_y;
-    centre_2_x = -scaled_pivot_rear_y;
-    centre_1_y = pivot_upper_x;
-    centre_2_y = -scaled_pivot_rear_x;
-  } else {
-    centre_1_x = pivot_upper_x;
-    centre_2_x = -scaled_pivot_rear_x;
-    centre_1_y = pivot_upper_y;
-    centre_2_y = -scaled_pivot_rear_y;
-  }
+  const double pivot_rear_y = k->sum_in_pivot_rear_x*cos_a1 + k->link_length_5*sin_a2;
+  const double centre_2_x = -(k->swap_xy ? pivot_rear_y : pivot_rear_x)*k->link_length_2_by_link_length_3;
   const double centre_1_to_2_x = centre_2_x - centre_1_x; /* vector from centre 1 to centre 2 */
+  const double centre_2_y = -(k->swap_xy ? pivot_rear_x : pivot_rear_y)*k->link_length_2_by_link_length_3;
   const double centre_1_to_2_y = centre_2_y - centre_1_y;
   /* squared length of the normal */
   const double normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y;
@@ -227,47 +223,13 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1;
   const double pivot_upper_x = -k->link_length_1*sin_a1; /* rod upper: centre about which it swings */
   const double pivot_upper_y = -k->link_length_1*cos_a1;
-  /* rod rear: known part of its vector */
-  const double span_rear_x = -k->link_length_3_by_link_length_2*span_upper_x;
-  const double along_a2 = span_rear_x - k->quotient_in_along_a2*sin_a1;
-  const double span_rear_y = -k->link_length_3_by_link_length_2*span_upper_y;
-  const double across_a2 = k->quotient_in_along_a2*cos_a1 - span_rear_y;
-  /* effective length of the arm that a2 turns */
-  const double effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2);
-  const double divisor_a2 = effective_a2 > k->link_length_5_times_shortest_link ? effective_a2 : 1.0;
-  /* law of cosines for a2 (rod rear): 1 - cosine, times a scale */
-  const double one_less_cos_a2 = (divisor_a2 + k->link_length_4_plus_link_length_5)
-      *(divisor_a2 + k->link_length_5_minus_link_length_4);
-  /* 1 + cosine, times the scale */
-  const double one_plus_cos_a2 = (k->link_length_4_plus_link_length_5 - divisor_a2)
-      *(divisor_a2 - k->link_length_5_minus_link_length_4);
-  /* sum of both, twice the scale: cosine² + sine² is then 1 */
-  const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
-  const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
-  const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2;
-  const double sign_w = sigma_w; /* w: +1 left, -1 right */
-  /* sine squared, times the squared scale */
-  const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
-  const double sin_swing_a2 = -2.0*softkin_root(sine_square_a2)*sign_w/divisor_of_cos_a2;
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/divisor_a2;
-  /* rod rear: centre about which it swings */
-  const double scaled_pivot_rear_x = k->quotient_in_scaled_pivot_rear_y*sin_a1
-      - k->quotient_in_scaled_pivot_rear_y_2*cos_a2;
-  const double sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/divisor_a2;
-  const double scaled_pivot_rear_y = k->quotient_in_scaled_pivot_rear_y*cos_a1
-      + k->quotient_in_scaled_pivot_rear_y_2*sin_a2;
-  double centre_1_x, centre_1_y, centre_2_x, centre_2_y;
+  double centre_1_x, centre_1_y;
   if (k->swap_xy) {
     centre_1_x = pivot_upper_y;
     centre_1_y = pivot_upper_x;
-    centre_2_x = -scaled_pivot_rear_y;
-    centre_2_y = -scaled_pivot_rear_x;
   } else {
     centre_1_x = pivot_upper_x;
     centre_1_y = pivot_upper_y;
-    centre_2_x = -scaled_pivot_rear_x;
-    centre_2_y = -scaled_pivot_rear_y;
   }
   /* a1: its effective length is too short */
   if (!(effective_a1 > k->link_length_1_times_shortest_link)) {
@@ -279,19 +241,51 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         - divisor_a1 ? divisor_a1 - k->link_length_1_plus_link_length_2
         : fabs(k->link_length_1_minus_link_length_2) - divisor_a1), 0);
   }
+  /* rod rear: known part of its vector */
+  const double span_rear_x = -k->link_length_3_by_link_length_2*span_upper_x;
+  const double along_a2 = (k->link_length_2*span_rear_x - k->product_in_branch_w*sin_a1)
+      *k->one_by_link_length_2;
+  const double span_rear_y = -k->link_length_3_by_link_length_2*span_upper_y;
+  const double across_a2 = k->one_by_link_length_2
+      *(k->product_in_branch_w*cos_a1 - k->link_length_2*span_rear_y);
+  /* effective length of the arm that a2 turns */
+  const double effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2);
   /* a2: its effective length is too short */
   if (!(effective_a2 > k->link_length_5_times_shortest_link)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: its effective length is too short", "", 0.0, 0);
   }
+  /* law of cosines for a2 (rod rear): 1 - cosine, times a scale */
+  const double one_less_cos_a2 = (effective_a2 + k->link_length_4_plus_link_length_5)
+      *(effective_a2 + k->link_length_5_minus_link_length_4);
+  /* 1 + cosine, times the scale */
+  const double one_plus_cos_a2 = (k->link_length_4_plus_link_length_5 - effective_a2)
+      *(effective_a2 - k->link_length_5_minus_link_length_4);
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
+  const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
+  const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
+  const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2;
+  /* a2: out of reach */
   if (!(fabs(cos_swing_a2) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "u",
-        (divisor_a2 - k->link_length_4_plus_link_length_5 > fabs(k->link_length_5_minus_link_length_4)
-        - divisor_a2 ? divisor_a2 - k->link_length_4_plus_link_length_5
-        : fabs(k->link_length_5_minus_link_length_4) - divisor_a2), 0);
+        (effective_a2 - k->link_length_4_plus_link_length_5 > fabs(k->link_length_5_minus_link_length_4)
+        - effective_a2 ? effective_a2 - k->link_length_4_plus_link_length_5
+        : fabs(k->link_length_5_minus_link_length_4) - effective_a2), 0);
   }
   const double rod_1_x = x - centre_1_x;
   const double rod_1_y = y - centre_1_y;
+  const double sign_w = sigma_w; /* w: +1 left, -1 right */
+  /* sine squared, times the squared scale */
+  const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
+  const double sin_swing_a2 = -2.0*softkin_root(sine_square_a2)*sign_w/divisor_of_cos_a2;
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2;
+  /* rod rear: centre about which it swings */
+  const double pivot_rear_x = k->sum_in_pivot_rear_x*sin_a1 - k->link_length_5*cos_a2;
+  const double sin_a2 = (across_a2*cos_swing_a2 + along_a2*sin_swing_a2)/effective_a2;
+  const double pivot_rear_y = k->sum_in_pivot_rear_x*cos_a1 + k->link_length_5*sin_a2;
+  const double centre_2_x = (k->swap_xy ? -pivot_rear_y : -pivot_rear_x)*k->link_length_2_by_link_length_3;
   const double rod_2_x = x - centre_2_x;
+  const double centre_2_y = (k->swap_xy ? -pivot_rear_x : -pivot_rear_y)*k->link_length_2_by_link_length_3;
   const double rod_2_y = y - centre_2_y;
   const double type2_arms_aligned = k->quotient_in_type2_arms_aligned*(rod_1_x*rod_2_y - rod_1_y*rod_2_x);
   /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
@@ -383,27 +377,23 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double pivot_upper_x = -k->link_length_1*sin_a1; /* rod upper: centre about which it swings */
   const double cos_a1 = cos(a1);
   const double pivot_upper_y = -k->link_length_1*cos_a1;
+  double centre_1_x, centre_1_y;
+  if (k->swap_xy) {
+    centre_1_x = pivot_upper_y;
+    centre_1_y = pivot_upper_x;
+  } else {
+    centre_1_x = pivot_upper_x;
+    centre_1_y = pivot_upper_y;
+  }
   const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double cos_a2 = cos(a2);
   /* rod rear: centre about which it swings */
-  const double scaled_pivot_rear_x = k->quotient_in_scaled_pivot_rear_y*sin_a1
-      - k->quotient_in_scaled_pivot_rear_y_2*cos_a2;
+  const double pivot_rear_x = k->sum_in_pivot_rear_x*sin_a1 - k->link_length_5*cos_a2;
   const double sin_a2 = sin(a2);
-  const double scaled_pivot_rear_y = k->quotient_in_scaled_pivot_rear_y*cos_a1
-      + k->quotient_in_scaled_pivot_rear_y_2*sin_a2;
-  double centre_1_x, centre_2_x, centre_1_y, centre_2_y;
-  if (k->swap_xy) {
-    centre_1_x = pivot_upper_y;
-    centre_2_x = -scaled_pivot_rear_y;
-    centre_1_y = pivot_upper_x;
-    centre_2_y = -scaled_pivot_rear_x;
-  } else {
-    centre_1_x = pivot_upper_x;
-    centre_2_x = -scaled_pivot_rear_x;
-    centre_1_y = pivot_upper_y;
-    centre_2_y = -scaled_pivot_rear_y;
-  }
+  const double pivot_rear_y = k->sum_in_pivot_rear_x*cos_a1 + k->link_length_5*sin_a2;
+  const double centre_2_x = -(k->swap_xy ? pivot_rear_y : pivot_rear_x)*k->link_length_2_by_link_length_3;
   const double centre_1_to_2_x = centre_2_x - centre_1_x; /* vector from centre 1 to centre 2 */
+  const double centre_2_y = -(k->swap_xy ? pivot_rear_x : pivot_rear_y)*k->link_length_2_by_link_length_3;
   const double centre_1_to_2_y = centre_2_y - centre_1_y;
   /* squared length of the normal */
   const double normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y;
@@ -562,17 +552,13 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
-/* Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an
- * answer. */
+/* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
+ * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
     softkin_status *statuses, double *axes) {
   const mc_kin_type_12_xy_machine *k = machine;
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2], ref_a1 = reference[0],
       ref_a2 = reference[1];
-  const double quotient_in_along_a2_left = k->link_length_1*(k->link_length_2 + k->link_length_3)
-      /k->link_length_2;
-  const double quotient_in_scaled_pivot_rear_y_left_left = k->link_length_2*k->sum_in_pivot_rear_x
-      /k->link_length_3;
   if (!(fabs(z) <= k->machine_scale_times_plane)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 4);
   }
@@ -612,11 +598,41 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* rod upper: centre about which it swings */
   const double pivot_upper_x_left = -k->link_length_1*sin_a1_left;
   const double pivot_upper_y_left = -k->link_length_1*cos_a1_left;
+  const double sin_a1_right = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y)
+      /divisor_a1;
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_a1_right = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x)
+      /divisor_a1;
+  /* rod upper: centre about which it swings */
+  const double pivot_upper_x_right = -k->link_length_1*sin_a1_right;
+  const double pivot_upper_y_right = -k->link_length_1*cos_a1_right;
+  double centre_1_x_left, centre_1_y_left, centre_1_x_right, centre_1_y_right;
+  if (k->swap_xy) {
+    centre_1_x_left = pivot_upper_y_left;
+    centre_1_y_left = pivot_upper_x_left;
+    centre_1_x_right = pivot_upper_y_right;
+    centre_1_y_right = pivot_upper_x_right;
+  } else {
+    centre_1_x_left = pivot_upper_x_left;
+    centre_1_y_left = pivot_upper_y_left;
+    centre_1_x_right = pivot_upper_x_right;
+    centre_1_y_right = pivot_upper_y_right;
+  }
+  if (!(effective_a1 > k->link_length_1_times_shortest_link)) {
+    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 4);
+  }
+  if (!(fabs(cos_swing_a1) <= 1.0000000000005)) {
+    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 4);
+  }
   /* rod rear: known part of its vector */
   const double span_rear_x = -k->link_length_3_by_link_length_2*span_upper_x;
-  const double along_a2_left = span_rear_x - quotient_in_along_a2_left*sin_a1_left;
+  const double link_length_2_times_span_rear_x = k->link_length_2*span_rear_x;
+  const double along_a2_left = (link_length_2_times_span_rear_x - k->product_in_branch_w*sin_a1_left)
+      *k->one_by_link_length_2;
   const double span_rear_y = -k->link_length_3_by_link_length_2*span_upper_y;
-  const double across_a2_left = quotient_in_along_a2_left*cos_a1_left - span_rear_y;
+  const double link_length_2_times_span_rear_y = k->link_length_2*span_rear_y;
+  const double across_a2_left = k->one_by_link_length_2
+      *(k->product_in_branch_w*cos_a1_left - link_length_2_times_span_rear_y);
   /* effective length of the arm that a2 turns */
   const double effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left);
   const double divisor_a2_left = effective_a2_left > k->link_length_5_times_shortest_link ? effective_a2_left
@@ -639,39 +655,67 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_a2_left_left = (along_a2_left_times_cos_swing_a2_left + product_in_cos_a2_left_left)
       /divisor_a2_left;
-  const double product_in_scaled_pivot_rear_x_left_left = quotient_in_scaled_pivot_rear_y_left_left
-      *sin_a1_left;
-  /* rod rear: centre about which it swings */
-  const double scaled_pivot_rear_x_left_left = product_in_scaled_pivot_rear_x_left_left
-      - k->quotient_in_scaled_pivot_rear_y_2*cos_a2_left_left;
   const double product_in_sin_a2_left_left = along_a2_left*sin_swing_a2_left_right;
   const double across_a2_left_times_cos_swing_a2_left = across_a2_left*cos_swing_a2_left;
   const double sin_a2_left_left = (across_a2_left_times_cos_swing_a2_left - product_in_sin_a2_left_left)
       /divisor_a2_left;
-  const double product_in_scaled_pivot_rear_y_left_left = quotient_in_scaled_pivot_rear_y_left_left
-      *cos_a1_left;
-  const double scaled_pivot_rear_y_left_left = product_in_scaled_pivot_rear_y_left_left
-      + k->quotient_in_scaled_pivot_rear_y_2*sin_a2_left_left;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_a2_left_right = (along_a2_left_times_cos_swing_a2_left - product_in_cos_a2_left_left)
       /divisor_a2_left;
-  /* rod rear: centre about which it swings */
-  const double scaled_pivot_rear_x_left_right = product_in_scaled_pivot_rear_x_left_left
-      - k->quotient_in_scaled_pivot_rear_y_2*cos_a2_left_right;
   const double sin_a2_left_right = (across_a2_left_times_cos_swing_a2_left + product_in_sin_a2_left_left)
       /divisor_a2_left;
-  const double scaled_pivot_rear_y_left_right = product_in_scaled_pivot_rear_y_left_left
-      + k->quotient_in_scaled_pivot_rear_y_2*sin_a2_left_right;
-  const double sin_a1_right = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y)
-      /divisor_a1;
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_a1_right = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x)
-      /divisor_a1;
-  /* rod upper: centre about which it swings */
-  const double pivot_upper_x_right = -k->link_length_1*sin_a1_right;
-  const double pivot_upper_y_right = -k->link_length_1*cos_a1_right;
-  const double along_a2_right = span_rear_x - quotient_in_along_a2_left*sin_a1_right;
-  const double across_a2_right = quotient_in_along_a2_left*cos_a1_right - span_rear_y;
+  int refusal_left_left, refusal_left_right;
+  if (effective_a2_left > k->link_length_5_times_shortest_link
+      && fabs(cos_swing_a2_left) <= 1.0000000000005) {
+    const double rod_1_x_left = x - centre_1_x_left;
+    const double rod_1_y_left = y - centre_1_y_left;
+    const double sum_in_pivot_rear_x_times_sin_a1_left = k->sum_in_pivot_rear_x*sin_a1_left;
+    /* rod rear: centre about which it swings */
+    const double pivot_rear_x_left_left = sum_in_pivot_rear_x_times_sin_a1_left
+        - k->link_length_5*cos_a2_left_left;
+    const double sum_in_pivot_rear_x_times_cos_a1_left = k->sum_in_pivot_rear_x*cos_a1_left;
+    const double pivot_rear_y_left_left = sum_in_pivot_rear_x_times_cos_a1_left
+        + k->link_length_5*sin_a2_left_left;
+    const double centre_2_x_left_left = (k->swap_xy ? -pivot_rear_y_left_left : -pivot_rear_x_left_left)
+        *k->link_length_2_by_link_length_3;
+    const double rod_2_x_left_left = x - centre_2_x_left_left;
+    const double centre_2_y_left_left = (k->swap_xy ? -pivot_rear_x_left_left : -pivot_rear_y_left_left)
+        *k->link_length_2_by_link_length_3;
+    const double rod_2_y_left_left = y - centre_2_y_left_left;
+    const double type2_arms_aligned_left_left = k->quotient_in_type2_arms_aligned
+        *(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left);
+    /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
+    refusal_left_left = type2_arms_aligned_left_left >= k->min_type2_margin ? 0 : 3;
+    /* rod rear: centre about which it swings */
+    const double pivot_rear_x_left_right = sum_in_pivot_rear_x_times_sin_a1_left
+        - k->link_length_5*cos_a2_left_right;
+    const double pivot_rear_y_left_right = sum_in_pivot_rear_x_times_cos_a1_left
+        + k->link_length_5*sin_a2_left_right;
+    const double centre_2_x_left_right = (k->swap_xy ? -pivot_rear_y_left_right : -pivot_rear_x_left_right)
+        *k->link_length_2_by_link_length_3;
+    const double rod_2_x_left_right = x - centre_2_x_left_right;
+    const double centre_2_y_left_right = (k->swap_xy ? -pivot_rear_x_left_right : -pivot_rear_y_left_right)
+        *k->link_length_2_by_link_length_3;
+    const double rod_2_y_left_right = y - centre_2_y_left_right;
+    const double type2_arms_aligned_left_right = k->quotient_in_type2_arms_aligned
+        *(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right);
+    /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
+    refusal_left_right = type2_arms_aligned_left_right >= k->min_type2_margin ? 0 : 3;
+  } else {
+    /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
+    refusal_left_left = 3;
+    /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
+    refusal_left_right = 3;
+  }
+  const double axis_a1_left = k->offset_a1 + softkin_angle_of(sin_a1_left, cos_a1_left)*SOFTKIN_RADIAN;
+  const double axis_a2_left_left = k->offset_a2
+      + softkin_angle_of(sin_a2_left_left, cos_a2_left_left)*SOFTKIN_RADIAN;
+  const double axis_a2_left_right = k->offset_a2
+      + softkin_angle_of(sin_a2_left_right, cos_a2_left_right)*SOFTKIN_RADIAN;
+  const double along_a2_right = (link_length_2_times_span_rear_x - k->product_in_branch_w*sin_a1_right)
+      *k->one_by_link_length_2;
+  const double across_a2_right = k->one_by_link_length_2
+      *(k->product_in_branch_w*cos_a1_right - link_length_2_times_span_rear_y);
   /* effective length of the arm that a2 turns */
   const double effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right);
   const double divisor_a2_right = effective_a2_right > k->link_length_5_times_shortest_link
@@ -694,105 +738,47 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_a2_right_left = (along_a2_right_times_cos_swing_a2_right + product_in_cos_a2_right_left)
       /divisor_a2_right;
-  const double product_in_scaled_pivot_rear_x_right_left = quotient_in_scaled_pivot_rear_y_left_left
-      *sin_a1_right;
-  /* rod rear: centre about which it swings */
-  const double scaled_pivot_rear_x_right_left = product_in_scaled_pivot_rear_x_right_left
-      - k->quotient_in_scaled_pivot_rear_y_2*cos_a2_right_left;
   const double product_in_sin_a2_right_left = along_a2_right*sin_swing_a2_right_right;
   const double across_a2_right_times_cos_swing_a2_right = across_a2_right*cos_swing_a2_right;
   const double sin_a2_right_left = (across_a2_right_times_cos_swing_a2_right - product_in_sin_a2_right_left)
       /divisor_a2_right;
-  const double product_in_scaled_pivot_rear_y_right_left = quotient_in_scaled_pivot_rear_y_left_left
-      *cos_a1_right;
-  const double scaled_pivot_rear_y_right_left = product_in_scaled_pivot_rear_y_right_left
-      + k->quotient_in_scaled_pivot_rear_y_2*sin_a2_right_left;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_a2_right_right = (along_a2_right_times_cos_swing_a2_right - product_in_cos_a2_right_left)
       /divisor_a2_right;
-  /* rod rear: centre about which it swings */
-  const double scaled_pivot_rear_x_right_right = product_in_scaled_pivot_rear_x_right_left
-      - k->quotient_in_scaled_pivot_rear_y_2*cos_a2_right_right;
   const double sin_a2_right_right = (across_a2_right_times_cos_swing_a2_right + product_in_sin_a2_right_left)
       /divisor_a2_right;
-  const double scaled_pivot_rear_y_right_right = product_in_scaled_pivot_rear_y_right_left
-      + k->quotient_in_scaled_pivot_rear_y_2*sin_a2_right_right;
-  double centre_1_x_left, centre_1_y_left, centre_2_x_left_left, centre_2_y_left_left, centre_2_x_left_right,
-      centre_2_y_left_right, centre_1_x_right, centre_1_y_right, centre_2_x_right_left,
-      centre_2_y_right_left, centre_2_x_right_right, centre_2_y_right_right;
-  if (k->swap_xy) {
-    centre_1_x_left = pivot_upper_y_left;
-    centre_1_y_left = pivot_upper_x_left;
-    centre_2_x_left_left = -scaled_pivot_rear_y_left_left;
-    centre_2_y_left_left = -scaled_pivot_rear_x_left_left;
-    centre_2_x_left_right = -scaled_pivot_rear_y_left_right;
-    centre_2_y_left_right = -scaled_pivot_rear_x_left_right;
-    centre_1_x_right = pivot_upper_y_right;
-    centre_1_y_right = pivot_upper_x_right;
-    centre_2_x_right_left = -scaled_pivot_rear_y_right_left;
-    centre_2_y_right_left = -scaled_pivot_rear_x_right_left;
-    centre_2_x_right_right = -scaled_pivot_rear_y_right_right;
-    centre_2_y_right_right = -scaled_pivot_rear_x_right_right;
-  } else {
-    centre_1_x_left = pivot_upper_x_left;
-    centre_1_y_left = pivot_upper_y_left;
-    centre_2_x_left_left = -scaled_pivot_rear_x_left_left;
-    centre_2_y_left_left = -scaled_pivot_rear_y_left_left;
-    centre_2_x_left_right = -scaled_pivot_rear_x_left_right;
-    centre_2_y_left_right = -scaled_pivot_rear_y_left_right;
-    centre_1_x_right = pivot_upper_x_right;
-    centre_1_y_right = pivot_upper_y_right;
-    centre_2_x_right_left = -scaled_pivot_rear_x_right_left;
-    centre_2_y_right_left = -scaled_pivot_rear_y_right_left;
-    centre_2_x_right_right = -scaled_pivot_rear_x_right_right;
-    centre_2_y_right_right = -scaled_pivot_rear_y_right_right;
-  }
-  if (!(effective_a1 > k->link_length_1_times_shortest_link)) {
-    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 4);
-  }
-  if (!(fabs(cos_swing_a1) <= 1.0000000000005)) {
-    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 4);
-  }
-  int refusal_left_left, refusal_left_right;
-  if (effective_a2_left > k->link_length_5_times_shortest_link
-      && fabs(cos_swing_a2_left) <= 1.0000000000005) {
-    const double rod_1_x_left = x - centre_1_x_left;
-    const double rod_1_y_left = y - centre_1_y_left;
-    const double rod_2_x_left_left = x - centre_2_x_left_left;
-    const double rod_2_y_left_left = y - centre_2_y_left_left;
-    const double type2_arms_aligned_left_left = k->quotient_in_type2_arms_aligned
-        *(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left);
-    /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
-    refusal_left_left = type2_arms_aligned_left_left >= k->min_type2_margin ? 0 : 3;
-    const double rod_2_x_left_right = x - centre_2_x_left_right;
-    const double rod_2_y_left_right = y - centre_2_y_left_right;
-    const double type2_arms_aligned_left_right = k->quotient_in_type2_arms_aligned
-        *(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right);
-    /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
-    refusal_left_right = type2_arms_aligned_left_right >= k->min_type2_margin ? 0 : 3;
-  } else {
-    /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
-    refusal_left_left = 3;
-    /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
-    refusal_left_right = 3;
-  }
-  const double axis_a1_left = k->offset_a1 + softkin_angle_of(sin_a1_left, cos_a1_left)*SOFTKIN_RADIAN;
-  const double axis_a2_left_left = k->offset_a2
-      + softkin_angle_of(sin_a2_left_left, cos_a2_left_left)*SOFTKIN_RADIAN;
-  const double axis_a2_left_right = k->offset_a2
-      + softkin_angle_of(sin_a2_left_right, cos_a2_left_right)*SOFTKIN_RADIAN;
   int refusal_right_left, refusal_right_right;
   if (effective_a2_right > k->link_length_5_times_shortest_link
       && fabs(cos_swing_a2_right) <= 1.0000000000005) {
     const double rod_1_x_right = x - centre_1_x_right;
     const double rod_1_y_right = y - centre_1_y_right;
+    const double sum_in_pivot_rear_x_times_sin_a1_right = k->sum_in_pivot_rear_x*sin_a1_right;
+    /* rod rear: centre about which it swings */
+    const double pivot_rear_x_right_left = sum_in_pivot_rear_x_times_sin_a1_right
+        - k->link_length_5*cos_a2_right_left;
+    const double sum_in_pivot_rear_x_times_cos_a1_right = k->sum_in_pivot_rear_x*cos_a1_right;
+    const double pivot_rear_y_right_left = sum_in_pivot_rear_x_times_cos_a1_right
+        + k->link_length_5*sin_a2_right_left;
+    const double centre_2_x_right_left = (k->swap_xy ? -pivot_rear_y_right_left : -pivot_rear_x_right_left)
+        *k->link_length_2_by_link_length_3;
     const double rod_2_x_right_left = x - centre_2_x_right_left;
+    const double centre_2_y_right_left = (k->swap_xy ? -pivot_rear_x_right_left : -pivot_rear_y_right_left)
+        *k->link_length_2_by_link_length_3;
     const double rod_2_y_right_left = y - centre_2_y_right_left;
     const double type2_arms_aligned_right_left = k->quotient_in_type2_arms_aligned
         *(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left);
     /* arms_aligned: in the other assembly mode, or too close to a type 2 singularity */
     refusal_right_left = type2_arms_aligned_right_left >= k->min_type2_margin ? 0 : 3;
+    /* rod rear: centre about which it swings */
+    const double pivot_rear_x_right_right = sum_in_pivot_rear_x_times_sin_a1_right
+        - k->link_length_5*cos_a2_right_right;
+    const double pivot_rear_y_right_right = sum_in_pivot_rear_x_times_cos_a1_right
+        + k->link_length_5*sin_a2_right_right;
+    const double centre_2_x_right_right = (k->swap_xy ? -pivot_rear_y_right_right : -pivot_rear_x_right_right)
+        *k->link_length_2_by_link_length_3;
     const double rod_2_x_right_right = x - centre_2_x_right_right;
+    const double centre_2_y_right_right = (k->swap_xy ? -pivot_rear_x_right_right : -pivot_rear_y_right_right)
+        *k->link_length_2_by_link_length_3;
     const double rod_2_y_right_right = y - centre_2_y_right_right;
     const double type2_arms_aligned_right_right = k->quotient_in_type2_arms_aligned
         *(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right);
@@ -877,17 +863,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
   const double link_length_2_by_link_length_3 = p->link_length_2/p->link_length_3;
   const double one_by_link_length_2 = 1.0/p->link_length_2;
-  const double link_length_2_plus_link_length_3 = p->link_length_2 + p->link_length_3;
-  const double product_in_branch_w = p->link_length_1*link_length_2_plus_link_length_3;
+  const double product_in_branch_w = p->link_length_1*(p->link_length_2 + p->link_length_3);
   const double quotient_in_branch_w = 1.0/(p->link_length_2*p->link_length_4);
   const double sum_in_pivot_rear_x = p->link_length_1 + p->link_length_1*p->link_length_3/p->link_length_2;
-  const double quotient_in_scaled_pivot_rear_y = p->link_length_2*sum_in_pivot_rear_x/p->link_length_3;
-  const double quotient_in_scaled_pivot_rear_y_2 = p->link_length_2*p->link_length_5/p->link_length_3;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
   const double link_length_4_plus_link_length_5 = p->link_length_4 + p->link_length_5;
   const double quotient_in_type2_arms_aligned = assembly_sign*p->link_length_3
       /(p->link_length_4*p->link_length_2*p->link_length_2);
-  const double quotient_in_along_a2 = p->link_length_1*link_length_2_plus_link_length_3/p->link_length_2;
   const double quotient_in_margin_arms_aligned = p->link_length_3
       /(p->link_length_4*p->link_length_2*p->link_length_2);
   const double twice_link_length_1 = 2.0*p->link_length_1;
@@ -906,7 +888,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.mid_a2 = window_of_a2.middle;
   made.link_length_1 = p->link_length_1;
   made.link_length_2 = p->link_length_2;
-  made.link_length_3 = p->link_length_3;
   made.link_length_5 = p->link_length_5;
   made.swap_xy = (p->swap_xy != 0.0);
   made.offset_a1 = p->offset_a1;
@@ -930,12 +911,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.product_in_branch_w = product_in_branch_w;
   made.quotient_in_branch_w = quotient_in_branch_w;
   made.sum_in_pivot_rear_x = sum_in_pivot_rear_x;
-  made.quotient_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y;
-  made.quotient_in_scaled_pivot_rear_y_2 = quotient_in_scaled_pivot_rear_y_2;
   made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
   made.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5;
   made.quotient_in_type2_arms_aligned = quotient_in_type2_arms_aligned;
-  made.quotient_in_along_a2 = quotient_in_along_a2;
   made.quotient_in_margin_arms_aligned = quotient_in_margin_arms_aligned;
   made.twice_link_length_1 = twice_link_length_1;
   made.product_in_slope_2_by_x = product_in_slope_2_by_x;

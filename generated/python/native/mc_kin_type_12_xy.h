@@ -76,15 +76,14 @@ typedef struct {
   /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[MC_KIN_TYPE_12_XY_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, link_length_1, link_length_2,
-      link_length_3, link_length_5, offset_a1, offset_a2, min_type2_margin, assembly_sign,
-      product_in_normal_divisor, link_length_2_squared_times_rounding, link_length_2_plus_radius_2,
-      link_length_2_minus_radius_2, product_in_foot_fraction, machine_scale_times_plane,
-      link_length_1_times_shortest_link, link_length_1_minus_link_length_2,
-      link_length_5_times_shortest_link, link_length_5_minus_link_length_4, link_length_3_by_link_length_2,
+      link_length_5, offset_a1, offset_a2, min_type2_margin, assembly_sign, product_in_normal_divisor,
+      link_length_2_squared_times_rounding, link_length_2_plus_radius_2, link_length_2_minus_radius_2,
+      product_in_foot_fraction, machine_scale_times_plane, link_length_1_times_shortest_link,
+      link_length_1_minus_link_length_2, link_length_5_times_shortest_link,
+      link_length_5_minus_link_length_4, link_length_3_by_link_length_2,
       machine_scale_squared_times_free_angle, link_length_2_by_link_length_3, one_by_link_length_2,
-      product_in_branch_w, quotient_in_branch_w, sum_in_pivot_rear_x, quotient_in_scaled_pivot_rear_y,
-      quotient_in_scaled_pivot_rear_y_2, link_length_1_plus_link_length_2, link_length_4_plus_link_length_5,
-      quotient_in_type2_arms_aligned, quotient_in_along_a2, quotient_in_margin_arms_aligned,
+      product_in_branch_w, quotient_in_branch_w, sum_in_pivot_rear_x, link_length_1_plus_link_length_2,
+      link_length_4_plus_link_length_5, quotient_in_type2_arms_aligned, quotient_in_margin_arms_aligned,
       twice_link_length_1, product_in_slope_2_by_x, link_length_3_times_2_by_link_length_2,
       product_in_slope_2_by_a1, twice_link_length_5;
   bool single_a1, single_a2, swap_xy;

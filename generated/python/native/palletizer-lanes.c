@@ -17,7 +17,7 @@ void palletizer_regular(const void *machine, const softkin_lanes *given,
       link_length_2 = k->link_length_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
       mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      quotient_in_cos_swing_a3_from_a2 = k->quotient_in_cos_swing_a3_from_a2,
+      quotient_in_closed_cos_swing_a3_from_a2 = k->quotient_in_closed_cos_swing_a3_from_a2,
       shoulder_offset_plus_wrist_offset_x = k->shoulder_offset_plus_wrist_offset_x,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0;
@@ -51,7 +51,7 @@ void palletizer_regular(const void *machine, const softkin_lanes *given,
     const double one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach)
         *(link_length_1_plus_link_length_2 - reach);
     const double cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2)
-        *quotient_in_cos_swing_a3_from_a2;
+        *quotient_in_closed_cos_swing_a3_from_a2;
     /* a3_from_a2: out of reach */
     missed += fabs(cos_swing_a3_from_a2) <= 1.0000000000005 ? 0.0 : 1.0;
     missed += radius_a1 > machine_scale_times_free_angle ? 0.0 : 1.0;
@@ -105,7 +105,7 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
       link_length_2 = k->link_length_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
       mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      quotient_in_cos_swing_a3_from_a2 = k->quotient_in_cos_swing_a3_from_a2,
+      quotient_in_closed_cos_swing_a3_from_a2 = k->quotient_in_closed_cos_swing_a3_from_a2,
       shoulder_offset_plus_wrist_offset_x = k->shoulder_offset_plus_wrist_offset_x,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0;
@@ -146,7 +146,7 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
     const double one_plus_cos_a3_from_a2_front = (link_length_1_plus_link_length_2 + reach_front)
         *(link_length_1_plus_link_length_2 - reach_front);
     const double cos_swing_a3_from_a2_front = (one_plus_cos_a3_from_a2_front - one_less_cos_a3_from_a2_front)
-        *quotient_in_cos_swing_a3_from_a2;
+        *quotient_in_closed_cos_swing_a3_from_a2;
     /* a3_from_a2: out of reach */
     const double refusal_front = fabs(cos_swing_a3_from_a2_front) <= 1.0000000000005 ? 0 : 3;
     const double angle_a1_front = softkin_lane_angle(y, x);
@@ -184,7 +184,7 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
     const double one_plus_cos_a3_from_a2_back = (link_length_1_plus_link_length_2 + reach_back)
         *(link_length_1_plus_link_length_2 - reach_back);
     const double cos_swing_a3_from_a2_back = (one_plus_cos_a3_from_a2_back - one_less_cos_a3_from_a2_back)
-        *quotient_in_cos_swing_a3_from_a2;
+        *quotient_in_closed_cos_swing_a3_from_a2;
     /* a3_from_a2: out of reach */
     const double refusal_back = fabs(cos_swing_a3_from_a2_back) <= 1.0000000000005 ? 0 : 3;
     const double axis_a1_back = 180.0 + axis_a1_front;

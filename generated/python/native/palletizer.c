@@ -113,6 +113,229 @@ static const int PERIOD_AXES[] = {0, 1, 2, 3};
 
 static const int DISTANCE_AXES[] = {0, 1, 2, 3};
 
+/* The axes that meet a point, found by steps on the closure, and whether they do. */
+static softkin_status find_meet_point(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  const palletizer_machine *k = machine;
+  const double given_point_x = given[0], given_point_y = given[1], given_point_z = given[2],
+      given_ref_a1 = given[3], given_ref_a2 = given[4], given_ref_a3 = given[5], given_ref_a4 = given[6],
+      goal_x = given[12], goal_y = given[13], goal_z = given[14], start_a1 = given[15], start_a2 = given[16],
+      start_a3 = given[17], start_a4 = given[18];
+  const int given_sigma_elbow = (int)given[7], given_sigma_shoulder = (int)given[8],
+      given_turn_a1 = (int)given[9], given_turn_a2 = (int)given[10], given_turn_a3 = (int)given[11];
+  const double closed_sign_shoulder = given_sigma_shoulder; /* shoulder: +1 front, -1 back */
+  const double closed_sign_elbow = given_sigma_elbow; /* elbow: +1 up, -1 down */
+  /* distance of the point from the axis of a1 */
+  const double closed_distance_a1 = sqrt(goal_x*goal_x + goal_y*goal_y);
+  /* A1: without a commanded turn, the value nearest to this */
+  const double closed_open_a1 = k->single_a1 ? k->mid_a1 : given_ref_a1;
+  const double closed_near_a1 = given_turn_a1 != 0
+      ? 360.0*(given_turn_a1 > 0 ? given_turn_a1 - 1 : given_turn_a1) : closed_open_a1;
+  /* commanded point, in the frame of the last moving joint */
+  const double closed_tool_z = given_point_z + k->wrist_offset_z;
+  /* coordinate of the point that the remaining links must reach */
+  const double closed_wrist_z_from_a1 = goal_z - k->base_height - closed_tool_z;
+  /* A2: without a commanded turn, the value nearest to this */
+  const double closed_open_a2 = k->single_a2 ? k->mid_a2 : given_ref_a2;
+  const double closed_near_a2 = given_turn_a2 != 0
+      ? 360.0*(given_turn_a2 > 0 ? given_turn_a2 - 1 : given_turn_a2) : closed_open_a2;
+  /* A3: without a commanded turn, the value nearest to this */
+  const double closed_open_a3 = k->single_a3 ? k->mid_a3 : given_ref_a3;
+  const double closed_near_a3 = given_turn_a3 != 0
+      ? 360.0*(given_turn_a3 > 0 ? given_turn_a3 - 1 : given_turn_a3) : closed_open_a3;
+  /* steps of damped least squares on the closure, from one start after the other */
+  double tried_a1 = start_a1;
+  double tried_a2 = start_a2;
+  double tried_a3 = start_a3;
+  double tried_a4 = start_a4;
+  int passes_left = 40;
+  int attempt = 0;
+  double error_before = 9.0;
+  double a1, sin_a1, cos_a1, x_at_a2, a2, sin_a2, r13_at_a2, x_at_a2_a3, a3, cos_a3, r11_at_a3, x_at_a3,
+      x_at_a4, a4, sin_a4, cos_a4, r11_at_a4, r12_at_a4, x, y_at_a2, r23_at_a2, y_at_a2_a3, r21_at_a3,
+      y_at_a3, y_at_a4, y, branch_shoulder, cos_a3_from_a2, error_1, error_2, cos_a2, z_at_a2_a3, sin_a3,
+      z_at_a3, flange_z, z, error_3, error, free_angle, free_turn, closed_reference_a4, closed_cos_a4,
+      closed_sin_a4, closed_tool_y, closed_ahead_squared_a1, closed_ahead_a1, closed_reference_a1,
+      free_angle_times_machine_scale, closed_divisor_a1, closed_cos_a1, closed_sin_a1, closed_axis_a1,
+      rate_1_1, rate_2_1, z_minus_z_at_a2_a3, sum_in_rate_1_2, rate_1_2, sum_in_rate_1_3, rate_1_3,
+      product_in_damping, damping, product_1_1, rate_2_2, rate_2_3, product_1_2, x_minus_x_at_a2_a3,
+      y_minus_y_at_a2_a3, rate_3_2, rate_3_3, product_1_3, product_2_2, product_2_3, product_3_3,
+      multiplier_1, multiplier_2, multiplier_3, step_a1, step_a2, step_a3, step_length, shrinking,
+      closed_tool_x, closed_wrist_x_from_a1, closed_reach, closed_reference_a2,
+      closed_one_less_cos_a3_from_a2, closed_one_plus_cos_a3_from_a2, closed_sine_square_a3_from_a2,
+      closed_cos_a3_from_a2, closed_arm_along_a2, closed_cos_swing_a3_from_a2, closed_arm_across_a2,
+      closed_direction_x_a2, closed_direction_y_a2, closed_angle_a2, closed_axis_a2, closed_angle_a3_from_a2,
+      closed_axis_a3, shared_quotient;
+  int next_attempt;
+  bool beside_shoulder, beside_elbow, another, pose_is_close, pose_is_met, mirrors;
+  for (int pass = 0;; pass += 1) {
+    if (pass == 164) {
+      return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
+    }
+    a1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
+    sin_a1 = sin(a1);
+    cos_a1 = cos(a1);
+    x_at_a2 = k->shoulder_offset*cos_a1;
+    a2 = (tried_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    sin_a2 = sin(a2);
+    r13_at_a2 = cos_a1*sin_a2;
+    x_at_a2_a3 = x_at_a2 + k->link_length_1*r13_at_a2;
+    a3 = (tried_a3 - k->offset_a3)*SOFTKIN_DEGREE;
+    cos_a3 = cos(a3);
+    r11_at_a3 = cos_a1*cos_a3;
+    x_at_a3 = x_at_a2_a3 + k->link_length_2*r11_at_a3;
+    x_at_a4 = x_at_a3 + k->wrist_offset_x*cos_a1;
+    a4 = (tried_a4 - k->offset_a4)*SOFTKIN_DEGREE;
+    sin_a4 = sin(a4);
+    cos_a4 = cos(a4);
+    r11_at_a4 = cos_a1*cos_a4 - sin_a1*sin_a4;
+    r12_at_a4 = -cos_a1*sin_a4 - cos_a4*sin_a1;
+    x = x_at_a4 + given_point_x*r11_at_a4 + given_point_y*r12_at_a4;
+    y_at_a2 = k->shoulder_offset*sin_a1;
+    r23_at_a2 = sin_a1*sin_a2;
+    y_at_a2_a3 = y_at_a2 + k->link_length_1*r23_at_a2;
+    r21_at_a3 = cos_a3*sin_a1;
+    y_at_a3 = y_at_a2_a3 + k->link_length_2*r21_at_a3;
+    y_at_a4 = y_at_a3 + k->wrist_offset_x*sin_a1;
+    y = y_at_a4 + given_point_y*r11_at_a4 - given_point_x*r12_at_a4;
+    branch_shoulder = k->one_by_machine_scale*(x*cos_a1 + y*sin_a1);
+    beside_shoulder = branch_shoulder*closed_sign_shoulder < -1e-6;
+    cos_a3_from_a2 = cos(a2 - a3);
+    beside_elbow = closed_sign_elbow*cos_a3_from_a2 < -1e-6;
+    error_1 = (goal_x - x)*k->one_by_machine_scale;
+    error_2 = (goal_y - y)*k->one_by_machine_scale;
+    cos_a2 = cos(a2);
+    z_at_a2_a3 = k->base_height + k->link_length_1*cos_a2;
+    sin_a3 = sin(a3);
+    z_at_a3 = z_at_a2_a3 - k->link_length_2*sin_a3;
+    flange_z = k->wrist_offset_z + z_at_a3;
+    z = flange_z + given_point_z;
+    error_3 = (goal_z - z)*k->one_by_machine_scale;
+    /* error of the pose, in characteristic lengths and radians */
+    error = sqrt(error_1*error_1 + error_2*error_2 + error_3*error_3);
+    another = passes_left <= 0;
+    /* the error is rounding, and steps make it no smaller */
+    pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
+    pose_is_met = pose_is_close && (!beside_elbow) && (!beside_shoulder);
+    next_attempt = attempt + (another ? 1 : 0);
+    mirrors = pose_is_close && (beside_elbow || beside_shoulder);
+    free_angle = next_attempt > 0 ? 1e-6 : 1e-11;
+    free_turn = -137.5*(next_attempt > 1 ? 1 - next_attempt : 0);
+    closed_reference_a4 = SOFTKIN_DEGREE*(free_turn + given_ref_a4 - k->offset_a4);
+    closed_cos_a4 = cos(closed_reference_a4);
+    closed_sin_a4 = sin(closed_reference_a4);
+    /* commanded point, in the frame of the last moving joint */
+    closed_tool_y = closed_cos_a4*given_point_y + closed_sin_a4*given_point_x;
+    /* Pythagoras: square of the distance ahead of the axis */
+    closed_ahead_squared_a1 = (closed_distance_a1 + closed_tool_y)*(closed_distance_a1 - closed_tool_y);
+    /* how far ahead of the axis the point is; negative: behind it */
+    closed_ahead_a1 = softkin_root(closed_ahead_squared_a1)*closed_sign_shoulder;
+    closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
+    free_angle_times_machine_scale = free_angle*k->machine_scale;
+    closed_divisor_a1 = closed_distance_a1 > free_angle_times_machine_scale
+        ? closed_distance_a1*closed_distance_a1 : 1.0;
+    /* rotation by a1 that points the arm at the point; at a singularity: the angle of the reference */
+    closed_cos_a1 = closed_distance_a1 > free_angle_times_machine_scale
+        ? (closed_ahead_a1*goal_x + closed_tool_y*goal_y)/closed_divisor_a1 : cos(closed_reference_a1);
+    closed_sin_a1 = closed_distance_a1 > free_angle_times_machine_scale
+        ? (closed_ahead_a1*goal_y - closed_tool_y*goal_x)/closed_divisor_a1 : sin(closed_reference_a1);
+    closed_axis_a1 = softkin_on_turn(k->offset_a1
+        + softkin_angle_of(closed_sin_a1, closed_cos_a1)*SOFTKIN_RADIAN, closed_near_a1);
+    rate_1_1 = -k->one_by_machine_scale*y;
+    rate_2_1 = k->one_by_machine_scale*x;
+    z_minus_z_at_a2_a3 = z - z_at_a2_a3;
+    sum_in_rate_1_2 = k->base_height + z_minus_z_at_a2_a3 - z;
+    rate_1_2 = -k->one_by_machine_scale*sum_in_rate_1_2*cos_a1;
+    sum_in_rate_1_3 = z_at_a3 + z_minus_z_at_a2_a3 - z;
+    rate_1_3 = k->one_by_machine_scale*sum_in_rate_1_3*cos_a1;
+    product_in_damping = 0.001*error;
+    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
+    product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3;
+    rate_2_2 = -k->one_by_machine_scale*sum_in_rate_1_2*sin_a1;
+    rate_2_3 = k->one_by_machine_scale*sum_in_rate_1_3*sin_a1;
+    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3;
+    x_minus_x_at_a2_a3 = x - x_at_a2_a3;
+    y_minus_y_at_a2_a3 = y - y_at_a2_a3;
+    rate_3_2 = k->one_by_machine_scale
+        *((x_at_a2 + x_minus_x_at_a2_a3 - x)*cos_a1 + (y_at_a2 + y_minus_y_at_a2_a3 - y)*sin_a1);
+    rate_3_3 = -k->one_by_machine_scale
+        *((x_at_a3 + x_minus_x_at_a2_a3 - x)*cos_a1 + (y_at_a3 + y_minus_y_at_a2_a3 - y)*sin_a1);
+    product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3;
+    product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3;
+    product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3;
+    product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3;
+    double system[3][4] = {{product_1_1, product_1_2, product_1_3, error_1},
+        {product_1_2, product_2_2, product_2_3, error_2}, {product_1_3, product_2_3, product_3_3, error_3}};
+    softkin_solve(&system[0][0], 3, 1);
+    multiplier_1 = system[0][3];
+    multiplier_2 = system[1][3];
+    multiplier_3 = system[2][3];
+    step_a1 = multiplier_1*rate_1_1 + multiplier_2*rate_2_1;
+    step_a2 = multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2;
+    step_a3 = multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
+    step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3);
+    shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
+    /* commanded point, in the frame of the last moving joint */
+    closed_tool_x = k->wrist_offset_x + closed_cos_a4*given_point_x - closed_sin_a4*given_point_y;
+    /* coordinate of the point that the remaining links must reach */
+    closed_wrist_x_from_a1 = closed_ahead_a1 - closed_tool_x - k->shoulder_offset;
+    /* distance that the remaining links must span */
+    closed_reach = sqrt(closed_wrist_x_from_a1*closed_wrist_x_from_a1
+        + closed_wrist_z_from_a1*closed_wrist_z_from_a1);
+    closed_reference_a2 = SOFTKIN_DEGREE*(free_turn + given_ref_a2 - k->offset_a2);
+    /* law of cosines for a3_from_a2 (x_from_a1² + z_from_a1²): 1 - cosine, times a scale */
+    closed_one_less_cos_a3_from_a2 = (closed_reach + k->link_length_1_minus_link_length_2)
+        *(closed_reach - k->link_length_1_minus_link_length_2);
+    /* 1 + cosine, times the scale */
+    closed_one_plus_cos_a3_from_a2 = (k->link_length_1_plus_link_length_2 - closed_reach)
+        *(closed_reach + k->link_length_1_plus_link_length_2);
+    /* sine squared, times the squared scale */
+    closed_sine_square_a3_from_a2 = closed_one_less_cos_a3_from_a2*closed_one_plus_cos_a3_from_a2;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    closed_cos_a3_from_a2 = softkin_root(closed_sine_square_a3_from_a2)*closed_sign_elbow
+        *k->half_by_link_length_1_by_link_length_2;
+    closed_arm_along_a2 = closed_cos_a3_from_a2*k->link_length_2;
+    closed_cos_swing_a3_from_a2 = (closed_one_plus_cos_a3_from_a2 - closed_one_less_cos_a3_from_a2)
+        *k->quotient_in_closed_cos_swing_a3_from_a2;
+    closed_arm_across_a2 = k->link_length_1 - closed_cos_swing_a3_from_a2*k->link_length_2;
+    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
+    closed_direction_x_a2 = closed_reach > free_angle_times_machine_scale
+        ? closed_arm_across_a2*closed_wrist_z_from_a1 + closed_arm_along_a2*closed_wrist_x_from_a1
+        : cos(closed_reference_a2);
+    closed_direction_y_a2 = closed_reach > free_angle_times_machine_scale
+        ? closed_arm_across_a2*closed_wrist_x_from_a1 - closed_arm_along_a2*closed_wrist_z_from_a1
+        : sin(closed_reference_a2);
+    closed_angle_a2 = softkin_angle_of(closed_direction_y_a2, closed_direction_x_a2);
+    closed_axis_a2 = softkin_on_turn(k->offset_a2 + closed_angle_a2*SOFTKIN_RADIAN, closed_near_a2);
+    closed_angle_a3_from_a2 = softkin_angle_of(closed_cos_swing_a3_from_a2, closed_cos_a3_from_a2);
+    /* a3 from the sum a3_from_a2 of angles about parallel axes */
+    closed_axis_a3 = softkin_on_turn(k->offset_a3
+        + (closed_angle_a2 + closed_angle_a3_from_a2)*SOFTKIN_RADIAN, closed_near_a3);
+    shared_quotient = shrinking*SOFTKIN_RADIAN;
+    if (pose_is_met || (another && (next_attempt >= 4))) {
+      break;
+    }
+    tried_a1 = (another ? closed_axis_a1
+        : (mirrors ? (beside_shoulder ? 2.0*closed_axis_a1 - tried_a1 : tried_a1) : tried_a1
+        + shared_quotient*step_a1));
+    tried_a2 = (another ? closed_axis_a2 : (mirrors ? tried_a2 : tried_a2 + shared_quotient*step_a2));
+    tried_a3 = (another ? closed_axis_a3 : (mirrors ? tried_a3 : tried_a3 + shared_quotient*step_a3));
+    tried_a4 = (another ? given_ref_a4 : tried_a4);
+    passes_left = (another ? 40 : passes_left - 1);
+    attempt = next_attempt;
+    error_before = (another || mirrors ? 9.0 : error);
+  }
+  const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
+  const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);
+  const double chosen_a3 = softkin_on_turn(tried_a3, closed_near_a3);
+  found[0] = pose_is_met;
+  found[1] = chosen_a1;
+  found[2] = chosen_a2;
+  found[3] = chosen_a3;
+  found[4] = tried_a4;
+  return SOFTKIN_OK;
+}
+
 /* Position, rotation, and the signed margin of every branch. */
 static softkin_status find_forward(const void *machine, const double *axes, softkin_frame *frame,
     double *margins, softkin_refusal *why) {
@@ -144,18 +367,18 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double z_at_a2_a3 = k->base_height + k->link_length_1*cos_a2;
   const double sin_a3 = sin(a3);
   const double z_at_a3 = z_at_a2_a3 - k->link_length_2*sin_a3;
-  const double z_at_a4 = k->wrist_offset_z + z_at_a3;
+  const double z = k->wrist_offset_z + z_at_a3;
   const double a4 = SOFTKIN_DEGREE*(axis_a4 - k->offset_a4);
   const double sin_a4 = sin(a4);
   const double cos_a4 = cos(a4);
   const double r11_at_a4 = cos_a1*cos_a4 - sin_a1*sin_a4;
   const double r12_at_a4 = -cos_a1*sin_a4 - cos_a4*sin_a1;
-  const double branch_shoulder = k->quotient_in_branch_shoulder + k->link_length_2_by_machine_scale*cos_a3
-      + k->link_length_1_by_machine_scale*sin_a2;
+  const double branch_shoulder = k->one_by_machine_scale
+      *(k->shoulder_offset_plus_wrist_offset_x + k->link_length_2*cos_a3 + k->link_length_1*sin_a2);
   const double cos_a3_from_a2 = cos(a2 - a3);
   frame->position[0] = x_at_a4;
   frame->position[1] = y_at_a4;
-  frame->position[2] = z_at_a4;
+  frame->position[2] = z;
   frame->rotation[0][0] = r11_at_a4;
   frame->rotation[0][1] = r12_at_a4;
   frame->rotation[0][2] = 0.0;
@@ -206,7 +429,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double one_plus_cos_a3_from_a2 = (k->link_length_1_plus_link_length_2 + reach)
       *(k->link_length_1_plus_link_length_2 - reach);
   const double cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2)
-      *k->quotient_in_cos_swing_a3_from_a2;
+      *k->quotient_in_closed_cos_swing_a3_from_a2;
   /* a3_from_a2: out of reach */
   if (!(fabs(cos_swing_a3_from_a2) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "a3_from_a2: out of reach", "u",
@@ -441,8 +664,8 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double sin_a2 = sin(a2);
   const double a3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
   const double cos_a3 = cos(a3);
-  const double margin_axis_a4_on_a1 = k->quotient_in_branch_shoulder
-      + k->link_length_2_by_machine_scale*cos_a3 + k->link_length_1_by_machine_scale*sin_a2;
+  const double margin_axis_a4_on_a1 = k->one_by_machine_scale
+      *(k->shoulder_offset_plus_wrist_offset_x + k->link_length_2*cos_a3 + k->link_length_1*sin_a2);
   const double cos_a3_from_a2 = cos(a2 - a3);
   margins[0] = margin_axis_a4_on_a1;
   margins[1] = cos_a3_from_a2;
@@ -482,10 +705,10 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double z_at_a2_a3 = k->base_height + k->link_length_1*cos_a2;
   const double sin_a3 = sin(a3);
   const double z_at_a3 = z_at_a2_a3 - k->link_length_2*sin_a3;
-  const double z_at_a4 = k->wrist_offset_z + z_at_a3;
-  const double z_at_a4_minus_z_at_a2_a3 = z_at_a4 - z_at_a2_a3;
-  const double shared_sum = k->base_height + z_at_a4_minus_z_at_a2_a3 - z_at_a4;
-  const double shared_sum_2 = z_at_a3 + z_at_a4_minus_z_at_a2_a3 - z_at_a4;
+  const double z = k->wrist_offset_z + z_at_a3;
+  const double z_minus_z_at_a2_a3 = z - z_at_a2_a3;
+  const double shared_sum = k->base_height + z_minus_z_at_a2_a3 - z;
+  const double shared_sum_2 = z_at_a3 + z_minus_z_at_a2_a3 - z;
   rows[0] = -y_at_a4;
   rows[1] = -shared_sum*cos_a1;
   rows[2] = shared_sum_2*cos_a1;
@@ -520,8 +743,8 @@ static softkin_status find_quantities(const void *machine, const double *axes, d
   return SOFTKIN_OK;
 }
 
-/* Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an
- * answer. */
+/* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
+ * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
     softkin_status *statuses, double *axes) {
   const palletizer_machine *k = machine;
@@ -551,7 +774,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_plus_cos_a3_from_a2_front = (k->link_length_1_plus_link_length_2 + reach_front)
       *(k->link_length_1_plus_link_length_2 - reach_front);
   const double cos_swing_a3_from_a2_front = (one_plus_cos_a3_from_a2_front - one_less_cos_a3_from_a2_front)
-      *k->quotient_in_cos_swing_a3_from_a2;
+      *k->quotient_in_closed_cos_swing_a3_from_a2;
   /* a3_from_a2: out of reach */
   const int refusal_front = fabs(cos_swing_a3_from_a2_front) <= 1.0000000000005 ? 0 : 3;
   double direction_x_a1_front, direction_y_a1_front, direction_x_a1_back, direction_y_a1_back;
@@ -617,7 +840,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_plus_cos_a3_from_a2_back = (k->link_length_1_plus_link_length_2 + reach_back)
       *(k->link_length_1_plus_link_length_2 - reach_back);
   const double cos_swing_a3_from_a2_back = (one_plus_cos_a3_from_a2_back - one_less_cos_a3_from_a2_back)
-      *k->quotient_in_cos_swing_a3_from_a2;
+      *k->quotient_in_closed_cos_swing_a3_from_a2;
   /* a3_from_a2: out of reach */
   const int refusal_back = fabs(cos_swing_a3_from_a2_back) <= 1.0000000000005 ? 0 : 3;
   double axis_a1_back, axis_a4_back;
@@ -718,14 +941,12 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale = p->link_length_1 + p->link_length_2 + p->shoulder_offset;
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
-  const double shoulder_offset_plus_wrist_offset_x = p->shoulder_offset + p->wrist_offset_x;
-  const double quotient_in_branch_shoulder = shoulder_offset_plus_wrist_offset_x/machine_scale;
-  const double link_length_2_by_machine_scale = p->link_length_2/machine_scale;
-  const double link_length_1_by_machine_scale = p->link_length_1/machine_scale;
-  const double base_height_plus_wrist_offset_z = p->base_height + p->wrist_offset_z;
+  const double one_by_machine_scale = 1.0/machine_scale;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
-  const double quotient_in_cos_swing_a3_from_a2 = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);
+  const double quotient_in_closed_cos_swing_a3_from_a2 = 0.25/(p->link_length_1*p->link_length_2);
+  const double shoulder_offset_plus_wrist_offset_x = p->shoulder_offset + p->wrist_offset_x;
+  const double base_height_plus_wrist_offset_z = p->base_height + p->wrist_offset_z;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -754,16 +975,15 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a2 = p->offset_a2;
   made.offset_a3 = p->offset_a3;
   made.offset_a4 = p->offset_a4;
+  made.machine_scale = machine_scale;
   made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
-  made.shoulder_offset_plus_wrist_offset_x = shoulder_offset_plus_wrist_offset_x;
-  made.quotient_in_branch_shoulder = quotient_in_branch_shoulder;
-  made.link_length_2_by_machine_scale = link_length_2_by_machine_scale;
-  made.link_length_1_by_machine_scale = link_length_1_by_machine_scale;
-  made.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z;
+  made.one_by_machine_scale = one_by_machine_scale;
   made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
-  made.quotient_in_cos_swing_a3_from_a2 = quotient_in_cos_swing_a3_from_a2;
   made.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2;
+  made.quotient_in_closed_cos_swing_a3_from_a2 = quotient_in_closed_cos_swing_a3_from_a2;
+  made.shoulder_offset_plus_wrist_offset_x = shoulder_offset_plus_wrist_offset_x;
+  made.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(palletizer_machine *)machine = made;
   return SOFTKIN_OK;

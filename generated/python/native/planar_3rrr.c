@@ -117,6 +117,11 @@ static const softkin_parameter PARAMETERS[] = {
       false, 0, 0.001, 0.001,
       "min_type2_margin must be at least 0 and at most 1 (least distance from a type 2 "
       "singularity, a number without a unit; 0: off)", offsetof(planar_3rrr_parameters, min_type2_margin)},
+  {"check_forward", "flag", "",
+      "inverse kinematics refuses a pose that forward kinematics from the home pose " "does not find again",
+      0.0, 1.0, false, false, true, 0, 1.0, 1.0,
+      "check_forward must be 0 or 1 (inverse kinematics refuses a pose that forward "
+      "kinematics from the home pose does not find again)", offsetof(planar_3rrr_parameters, check_forward)},
   {"check_limits", "flag", "", "inverse kinematics tests the limits", 0.0, 1.0, false, false, true, 0, 1.0,
       1.0, "check_limits must be 0 or 1 (inverse kinematics tests the limits)",
       offsetof(planar_3rrr_parameters, check_limits)},
@@ -160,30 +165,30 @@ static const int DISTANCE_AXES[] = {0, 1, 2};
 static softkin_status find_platform(const void *machine, const double *given, double *found,
     softkin_refusal *why) {
   const planar_3rrr_machine *k = machine;
-  const double axis_a1 = given[0], axis_a2 = given[1], axis_a3 = given[2], start_cos_heading = given[3],
-      start_sin_heading = given[4], start_x = given[5], start_y = given[6];
+  const double axis_a1 = given[0], axis_a2 = given[1], axis_a3 = given[2], begin_cos_heading = given[3],
+      begin_sin_heading = given[4], begin_x = given[5], begin_y = given[6];
   if (!softkin_are_reasonable((const double[]){axis_a1, axis_a2, axis_a3}, 3)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
   /* joints of the platform, seen from its origin, in the orientation of the start */
-  const double start_arm_1_x = k->platform_1_x*start_cos_heading - k->platform_1_y*start_sin_heading;
-  const double start_arm_1_y = k->platform_1_x*start_sin_heading + k->platform_1_y*start_cos_heading;
+  const double start_arm_1_x = begin_cos_heading*k->platform_1_x - begin_sin_heading*k->platform_1_y;
+  const double start_arm_1_y = begin_cos_heading*k->platform_1_y + begin_sin_heading*k->platform_1_x;
   const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
   const double cos_a1 = cos(a1);
   const double sin_a1 = sin(a1);
-  const double start_arm_2_x = k->platform_2_x*start_cos_heading - k->platform_2_y*start_sin_heading;
-  const double start_arm_2_y = k->platform_2_x*start_sin_heading + k->platform_2_y*start_cos_heading;
+  const double start_arm_2_x = begin_cos_heading*k->platform_2_x - begin_sin_heading*k->platform_2_y;
+  const double start_arm_2_y = begin_cos_heading*k->platform_2_y + begin_sin_heading*k->platform_2_x;
   const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double cos_a2 = cos(a2);
   const double sin_a2 = sin(a2);
-  const double start_arm_3_x = k->platform_3_x*start_cos_heading - k->platform_3_y*start_sin_heading;
-  const double start_arm_3_y = k->platform_3_x*start_sin_heading + k->platform_3_y*start_cos_heading;
+  const double start_arm_3_x = begin_cos_heading*k->platform_3_x - begin_sin_heading*k->platform_3_y;
+  const double start_arm_3_y = begin_cos_heading*k->platform_3_y + begin_sin_heading*k->platform_3_x;
   const double a3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
   const double cos_a3 = cos(a3);
   const double sin_a3 = sin(a3);
   /* Newton's method: every pass improves the pose until all legs fit */
-  double x = start_x;
-  double y = start_y;
+  double x = begin_x;
+  double y = begin_y;
   double yaw = 0.0;
   bool fitted = false;
   double cos_yaw, sin_yaw, arm_1_x, rod_1_x, arm_1_y, rod_1_y, length_1, error_1, arm_2_x, rod_2_x, arm_2_y,
@@ -260,12 +265,12 @@ static softkin_status find_platform(const void *machine, const double *given, do
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the other assembly mode", "", 0.0, 0);
   }
   /* orientation of the platform */
-  const double cos_heading = start_cos_heading*cos_yaw - start_sin_heading*sin_yaw;
-  const double sin_heading = start_sin_heading*cos_yaw + start_cos_heading*sin_yaw;
+  const double found_cos_heading = begin_cos_heading*cos_yaw - begin_sin_heading*sin_yaw;
+  const double found_sin_heading = begin_cos_heading*sin_yaw + begin_sin_heading*cos_yaw;
   found[0] = x;
   found[1] = y;
-  found[2] = cos_heading;
-  found[3] = sin_heading;
+  found[2] = found_cos_heading;
+  found[3] = found_sin_heading;
   found[4] = determinant;
   found[5] = along_1_x;
   found[6] = along_1_y;
@@ -284,44 +289,63 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
     double *margins, softkin_refusal *why) {
   const planar_3rrr_machine *k = machine;
   const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2];
-  /* pose of the platform, by Newton's method from the home pose */
-  const double arguments[] = {axis_a1, axis_a2, axis_a3, k->cos_home_heading_2, k->sin_home_heading_2,
-      k->home_x, k->home_y};
+  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y}, 2)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double start_along = k->start_r11 + k->start_r22; /* nearest rotation about Z */
+  const double start_across = k->start_r21 - k->start_r12;
+  const double start_length = sqrt(start_across*start_across + start_along*start_along);
+  /* the tool points exactly the opposite way */
+  if (!(start_length > 1e-11)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "the tool points exactly the opposite way", "", 0.0, 0);
+  }
+  const double start_cos_heading = start_along/start_length;
+  const double start_sin_heading = start_across/start_length;
+  /* pose of the platform, by Newton's method from the start */
   double results[14];
+  const double arguments[] = {axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, k->start_x,
+      k->start_y};
   const softkin_status status = find_platform(k, arguments, results, why);
   if (status != SOFTKIN_OK) {
     return status;
   }
-  const double x = results[0], y = results[1], cos_heading = results[2], sin_heading = results[3];
+  const double found_x = results[0], found_y = results[1], found_cos_heading = results[2],
+      found_sin_heading = results[3];
   const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
   const double sin_a1 = sin(a1);
   const double cos_a1 = cos(a1);
   /* rod 1: known part of its vector */
-  const double span_1_x = x + k->platform_1_x*cos_heading - k->base_1_x - k->platform_1_y*sin_heading;
-  const double span_1_y = y + k->platform_1_y*cos_heading + k->platform_1_x*sin_heading - k->base_1_y;
+  const double span_1_x = found_x + found_cos_heading*k->platform_1_x - k->base_1_x
+      - found_sin_heading*k->platform_1_y;
+  const double span_1_y = found_y + found_cos_heading*k->platform_1_y + found_sin_heading*k->platform_1_x
+      - k->base_1_y;
   const double branch_elbow_1 = k->one_by_rod_length_1*(span_1_y*cos_a1 - span_1_x*sin_a1);
   const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double sin_a2 = sin(a2);
   const double cos_a2 = cos(a2);
   /* rod 2: known part of its vector */
-  const double span_2_x = x + k->platform_2_x*cos_heading - k->base_2_x - k->platform_2_y*sin_heading;
-  const double span_2_y = y + k->platform_2_y*cos_heading + k->platform_2_x*sin_heading - k->base_2_y;
+  const double span_2_x = found_x + found_cos_heading*k->platform_2_x - k->base_2_x
+      - found_sin_heading*k->platform_2_y;
+  const double span_2_y = found_y + found_cos_heading*k->platform_2_y + found_sin_heading*k->platform_2_x
+      - k->base_2_y;
   const double branch_elbow_2 = k->one_by_rod_length_2*(span_2_y*cos_a2 - span_2_x*sin_a2);
   const double a3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
   const double sin_a3 = sin(a3);
   const double cos_a3 = cos(a3);
   /* rod 3: known part of its vector */
-  const double span_3_x = x + k->platform_3_x*cos_heading - k->base_3_x - k->platform_3_y*sin_heading;
-  const double span_3_y = y + k->platform_3_y*cos_heading + k->platform_3_x*sin_heading - k->base_3_y;
+  const double span_3_x = found_x + found_cos_heading*k->platform_3_x - k->base_3_x
+      - found_sin_heading*k->platform_3_y;
+  const double span_3_y = found_y + found_cos_heading*k->platform_3_y + found_sin_heading*k->platform_3_x
+      - k->base_3_y;
   const double branch_elbow_3 = k->one_by_rod_length_3*(span_3_y*cos_a3 - span_3_x*sin_a3);
-  frame->position[0] = x;
-  frame->position[1] = y;
+  frame->position[0] = found_x;
+  frame->position[1] = found_y;
   frame->position[2] = 0.0;
-  frame->rotation[0][0] = cos_heading;
-  frame->rotation[0][1] = -sin_heading;
+  frame->rotation[0][0] = found_cos_heading;
+  frame->rotation[0][1] = -found_sin_heading;
   frame->rotation[0][2] = 0.0;
-  frame->rotation[1][0] = sin_heading;
-  frame->rotation[1][1] = cos_heading;
+  frame->rotation[1][0] = found_sin_heading;
+  frame->rotation[1][1] = found_cos_heading;
   frame->rotation[1][2] = 0.0;
   frame->rotation[2][0] = 0.0;
   frame->rotation[2][1] = 0.0;
@@ -507,6 +531,27 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* A3: whole turns added */
   const double axis_a3 = softkin_on_turn(k->offset_a3 + softkin_angle_of(sin_a3, cos_a3)*SOFTKIN_RADIAN,
       near_a3);
+  /* pose of the platform, by Newton's method from the home pose */
+  double results[14] = {0.0};
+  if (k->check_forward) {
+    const double arguments[] = {axis_a1, axis_a2, axis_a3, k->cos_home_heading_2, k->sin_home_heading_2,
+        k->home_x, k->home_y};
+    const softkin_status status = find_platform(k, arguments, results, NULL);
+    if (status != SOFTKIN_OK) {
+      return softkin_refuse(why, SOFTKIN_UNREACHABLE,
+          "forward kinematics from the home pose does not find this pose again", "", 0.0, 0);
+    }
+  }
+  const double found_x = results[0], found_y = results[1], found_cos_heading = results[2],
+      found_sin_heading = results[3];
+  /* forward kinematics from the home pose does not find this pose again */
+  if (!((!k->check_forward) || ((fabs(cos_heading - found_cos_heading) <= 1e-6)
+      && (fabs(found_sin_heading - sin_heading) <= 1e-6)
+      && (fabs(found_x - x) <= k->machine_scale_times_plane)
+      && (fabs(found_y - y) <= k->machine_scale_times_plane)))) {
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE,
+        "forward kinematics from the home pose does not find this pose again", "", 0.0, 0);
+  }
   axes[0] = axis_a1;
   axes[1] = axis_a2;
   axes[2] = axis_a3;
@@ -594,36 +639,54 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
     softkin_refusal *why) {
   const planar_3rrr_machine *k = machine;
   const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2];
-  /* pose of the platform, by Newton's method from the home pose */
-  const double arguments[] = {axis_a1, axis_a2, axis_a3, k->cos_home_heading_2, k->sin_home_heading_2,
-      k->home_x, k->home_y};
+  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y}, 2)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double start_along = k->start_r11 + k->start_r22; /* nearest rotation about Z */
+  const double start_across = k->start_r21 - k->start_r12;
+  const double start_length = sqrt(start_across*start_across + start_along*start_along);
+  /* the tool points exactly the opposite way */
+  if (!(start_length > 1e-11)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "the tool points exactly the opposite way", "", 0.0, 0);
+  }
+  const double start_cos_heading = start_along/start_length;
+  const double start_sin_heading = start_across/start_length;
+  /* pose of the platform, by Newton's method from the start */
   double results[14];
+  const double arguments[] = {axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, k->start_x,
+      k->start_y};
   const softkin_status status = find_platform(k, arguments, results, why);
   if (status != SOFTKIN_OK) {
     return status;
   }
-  const double x = results[0], y = results[1], cos_heading = results[2], sin_heading = results[3],
-      determinant = results[4];
+  const double found_x = results[0], found_y = results[1], found_cos_heading = results[2],
+      found_sin_heading = results[3], determinant = results[4];
   const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
   const double sin_a1 = sin(a1);
   const double cos_a1 = cos(a1);
   /* rod 1: known part of its vector */
-  const double span_1_x = x + k->platform_1_x*cos_heading - k->base_1_x - k->platform_1_y*sin_heading;
-  const double span_1_y = y + k->platform_1_y*cos_heading + k->platform_1_x*sin_heading - k->base_1_y;
+  const double span_1_x = found_x + found_cos_heading*k->platform_1_x - k->base_1_x
+      - found_sin_heading*k->platform_1_y;
+  const double span_1_y = found_y + found_cos_heading*k->platform_1_y + found_sin_heading*k->platform_1_x
+      - k->base_1_y;
   const double margin_stretched_1 = k->one_by_rod_length_1*(span_1_y*cos_a1 - span_1_x*sin_a1);
   const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double sin_a2 = sin(a2);
   const double cos_a2 = cos(a2);
   /* rod 2: known part of its vector */
-  const double span_2_x = x + k->platform_2_x*cos_heading - k->base_2_x - k->platform_2_y*sin_heading;
-  const double span_2_y = y + k->platform_2_y*cos_heading + k->platform_2_x*sin_heading - k->base_2_y;
+  const double span_2_x = found_x + found_cos_heading*k->platform_2_x - k->base_2_x
+      - found_sin_heading*k->platform_2_y;
+  const double span_2_y = found_y + found_cos_heading*k->platform_2_y + found_sin_heading*k->platform_2_x
+      - k->base_2_y;
   const double margin_stretched_2 = k->one_by_rod_length_2*(span_2_y*cos_a2 - span_2_x*sin_a2);
   const double a3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
   const double sin_a3 = sin(a3);
   const double cos_a3 = cos(a3);
   /* rod 3: known part of its vector */
-  const double span_3_x = x + k->platform_3_x*cos_heading - k->base_3_x - k->platform_3_y*sin_heading;
-  const double span_3_y = y + k->platform_3_y*cos_heading + k->platform_3_x*sin_heading - k->base_3_y;
+  const double span_3_x = found_x + found_cos_heading*k->platform_3_x - k->base_3_x
+      - found_sin_heading*k->platform_3_y;
+  const double span_3_y = found_y + found_cos_heading*k->platform_3_y + found_sin_heading*k->platform_3_x
+      - k->base_3_y;
   const double margin_stretched_3 = k->one_by_rod_length_3*(span_3_y*cos_a3 - span_3_x*sin_a3);
   margins[0] = margin_stretched_1;
   margins[1] = margin_stretched_2;
@@ -637,10 +700,22 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
     softkin_refusal *why) {
   const planar_3rrr_machine *k = machine;
   const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2];
-  /* pose of the platform, by Newton's method from the home pose */
-  const double arguments[] = {axis_a1, axis_a2, axis_a3, k->cos_home_heading_2, k->sin_home_heading_2,
-      k->home_x, k->home_y};
+  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y}, 2)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double start_along = k->start_r11 + k->start_r22; /* nearest rotation about Z */
+  const double start_across = k->start_r21 - k->start_r12;
+  const double start_length = sqrt(start_across*start_across + start_along*start_along);
+  /* the tool points exactly the opposite way */
+  if (!(start_length > 1e-11)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "the tool points exactly the opposite way", "", 0.0, 0);
+  }
+  const double start_cos_heading = start_along/start_length;
+  const double start_sin_heading = start_across/start_length;
+  /* pose of the platform, by Newton's method from the start */
   double results[14];
+  const double arguments[] = {axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, k->start_x,
+      k->start_y};
   const softkin_status status = find_platform(k, arguments, results, why);
   if (status != SOFTKIN_OK) {
     return status;
@@ -682,358 +757,24 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
-/* Position, rotation and margins, found from a given start. */
-static softkin_status find_forward_from(const void *machine, const double *axes, const softkin_frame *start,
-    softkin_frame *frame, double *margins, softkin_refusal *why) {
-  const planar_3rrr_machine *k = machine;
-  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], start_x = start->position[0],
-      start_y = start->position[1], start_r11 = start->rotation[0][0], start_r12 = start->rotation[0][1],
-      start_r21 = start->rotation[1][0], start_r22 = start->rotation[1][1];
-  if (!softkin_are_reasonable((const double[]){start_x, start_y}, 2)) {
-    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
-  }
-  const double start_along = start_r11 + start_r22; /* nearest rotation about Z */
-  const double start_across = start_r21 - start_r12;
-  const double start_length = sqrt(start_across*start_across + start_along*start_along);
-  /* the tool points exactly the opposite way */
-  if (!(start_length > 1e-11)) {
-    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "the tool points exactly the opposite way", "", 0.0, 0);
-  }
-  const double start_cos_heading = start_along/start_length;
-  const double start_sin_heading = start_across/start_length;
-  /* pose of the platform, by Newton's method from the given start */
-  const double arguments[] = {axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, start_x,
-      start_y};
-  double results[14];
-  const softkin_status status = find_platform(k, arguments, results, why);
-  if (status != SOFTKIN_OK) {
-    return status;
-  }
-  const double x = results[0], y = results[1], cos_heading = results[2], sin_heading = results[3];
-  const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
-  const double sin_a1 = sin(a1);
-  const double cos_a1 = cos(a1);
-  /* rod 1: known part of its vector */
-  const double span_1_x = x + k->platform_1_x*cos_heading - k->base_1_x - k->platform_1_y*sin_heading;
-  const double span_1_y = y + k->platform_1_y*cos_heading + k->platform_1_x*sin_heading - k->base_1_y;
-  const double branch_elbow_1 = k->one_by_rod_length_1*(span_1_y*cos_a1 - span_1_x*sin_a1);
-  const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
-  const double sin_a2 = sin(a2);
-  const double cos_a2 = cos(a2);
-  /* rod 2: known part of its vector */
-  const double span_2_x = x + k->platform_2_x*cos_heading - k->base_2_x - k->platform_2_y*sin_heading;
-  const double span_2_y = y + k->platform_2_y*cos_heading + k->platform_2_x*sin_heading - k->base_2_y;
-  const double branch_elbow_2 = k->one_by_rod_length_2*(span_2_y*cos_a2 - span_2_x*sin_a2);
-  const double a3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
-  const double sin_a3 = sin(a3);
-  const double cos_a3 = cos(a3);
-  /* rod 3: known part of its vector */
-  const double span_3_x = x + k->platform_3_x*cos_heading - k->base_3_x - k->platform_3_y*sin_heading;
-  const double span_3_y = y + k->platform_3_y*cos_heading + k->platform_3_x*sin_heading - k->base_3_y;
-  const double branch_elbow_3 = k->one_by_rod_length_3*(span_3_y*cos_a3 - span_3_x*sin_a3);
-  frame->position[0] = x;
-  frame->position[1] = y;
-  frame->position[2] = 0.0;
-  frame->rotation[0][0] = cos_heading;
-  frame->rotation[0][1] = -sin_heading;
-  frame->rotation[0][2] = 0.0;
-  frame->rotation[1][0] = sin_heading;
-  frame->rotation[1][1] = cos_heading;
-  frame->rotation[1][2] = 0.0;
-  frame->rotation[2][0] = 0.0;
-  frame->rotation[2][1] = 0.0;
-  frame->rotation[2][2] = 1.0;
-  margins[0] = branch_elbow_1;
-  margins[1] = branch_elbow_2;
-  margins[2] = branch_elbow_3;
-  return SOFTKIN_OK;
+/* The machine with another start of forward kinematics. */
+static void start_at(const void *machine, const softkin_frame *start, void *moved) {
+  planar_3rrr_machine *k = moved;
+  *k = *(const planar_3rrr_machine *)machine;
+  k->start_x = start->position[0];
+  k->start_y = start->position[1];
+  k->start_r11 = start->rotation[0][0];
+  k->start_r12 = start->rotation[0][1];
+  k->start_r21 = start->rotation[1][0];
+  k->start_r22 = start->rotation[1][1];
 }
 
-/* Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an
- * answer. */
-static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
-    softkin_status *statuses, double *axes) {
-  const planar_3rrr_machine *k = machine;
-  const double x = frame->position[0], y = frame->position[1], z = frame->position[2],
-      r11 = frame->rotation[0][0], r12 = frame->rotation[0][1], r21 = frame->rotation[1][0],
-      r22 = frame->rotation[1][1], ref_a1 = reference[0], ref_a2 = reference[1], ref_a3 = reference[2];
-  const double quotient_in_determinant_right_right_right = 1.0
-      /(k->rod_length_1*k->rod_length_2*k->rod_length_3);
-  /* nearest rotation about Z: the tool is turned to the direction that the machine has, the twist is
-   * kept */
-  const double heading_along = r11 + r22;
-  const double heading_across = r21 - r12;
-  const double heading_length = sqrt(heading_across*heading_across + heading_along*heading_along);
-  const double heading_divisor = (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11)
-      ? heading_length : 1.0;
-  const double cos_heading = heading_along/heading_divisor;
-  const double sin_heading = heading_across/heading_divisor;
-  const double arm_1_x = k->platform_1_x*cos_heading - k->platform_1_y*sin_heading;
-  const double span_1_x = arm_1_x + x - k->base_1_x; /* rod 1: known part of its vector */
-  const double arm_1_y = k->platform_1_y*cos_heading + k->platform_1_x*sin_heading;
-  const double span_1_y = arm_1_y + y - k->base_1_y;
-  /* effective length of the arm that a1 turns */
-  const double effective_a1 = sqrt(span_1_x*span_1_x + span_1_y*span_1_y);
-  const double divisor_a1 = effective_a1 > k->arm_length_1_times_shortest_link ? effective_a1 : 1.0;
-  /* law of cosines for a1 (rod 1): 1 - cosine, times a scale */
-  const double one_less_cos_a1 = (divisor_a1 - k->arm_length_1_plus_rod_length_1)
-      *(k->arm_length_1_minus_rod_length_1 - divisor_a1);
-  /* 1 + cosine, times the scale */
-  const double one_plus_cos_a1 = (k->arm_length_1_minus_rod_length_1 + divisor_a1)
-      *(k->arm_length_1_plus_rod_length_1 + divisor_a1);
-  /* sum of both, twice the scale: cosine² + sine² is then 1 */
-  const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
-  const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
-  const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
-  const double cos_swing_a1_times_span_1_x = span_1_x*cos_swing_a1;
-  /* sine squared, times the squared scale */
-  const double sine_square_a1 = one_less_cos_a1*one_plus_cos_a1;
-  const double sin_swing_a1_left = 2.0*softkin_root(sine_square_a1)/divisor_of_cos_a1;
-  const double sin_swing_a1_left_times_span_1_y = span_1_y*sin_swing_a1_left;
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_a1_right = (cos_swing_a1_times_span_1_x + sin_swing_a1_left_times_span_1_y)/divisor_a1;
-  /* leg 1: vector from its joint on the base to its joint on the platform */
-  const double rod_1_x_right = span_1_x - k->arm_length_1*cos_a1_right;
-  const double cos_swing_a1_times_span_1_y = span_1_y*cos_swing_a1;
-  const double sin_swing_a1_left_times_span_1_x = span_1_x*sin_swing_a1_left;
-  const double sin_a1_right = (cos_swing_a1_times_span_1_y - sin_swing_a1_left_times_span_1_x)/divisor_a1;
-  const double rod_1_y_right = span_1_y - k->arm_length_1*sin_a1_right;
-  /* leg 1: the moment of its span about the platform's origin */
-  const double moment_1_z_right = (arm_1_x*rod_1_y_right - arm_1_y*rod_1_x_right)*k->one_by_platform_radius;
-  const double arm_2_x = k->platform_2_x*cos_heading - k->platform_2_y*sin_heading;
-  const double span_2_x = arm_2_x + x - k->base_2_x; /* rod 2: known part of its vector */
-  const double arm_2_y = k->platform_2_y*cos_heading + k->platform_2_x*sin_heading;
-  const double span_2_y = arm_2_y + y - k->base_2_y;
-  /* effective length of the arm that a2 turns */
-  const double effective_a2 = sqrt(span_2_x*span_2_x + span_2_y*span_2_y);
-  const double divisor_a2 = effective_a2 > k->arm_length_2_times_shortest_link ? effective_a2 : 1.0;
-  /* law of cosines for a2 (rod 2): 1 - cosine, times a scale */
-  const double one_less_cos_a2 = (divisor_a2 - k->arm_length_2_plus_rod_length_2)
-      *(k->arm_length_2_minus_rod_length_2 - divisor_a2);
-  /* 1 + cosine, times the scale */
-  const double one_plus_cos_a2 = (k->arm_length_2_minus_rod_length_2 + divisor_a2)
-      *(k->arm_length_2_plus_rod_length_2 + divisor_a2);
-  /* sum of both, twice the scale: cosine² + sine² is then 1 */
-  const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
-  const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
-  const double cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2;
-  const double cos_swing_a2_times_span_2_x = span_2_x*cos_swing_a2;
-  /* sine squared, times the squared scale */
-  const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
-  const double sin_swing_a2_left = 2.0*softkin_root(sine_square_a2)/divisor_of_cos_a2;
-  const double sin_swing_a2_left_times_span_2_y = span_2_y*sin_swing_a2_left;
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_a2_right = (cos_swing_a2_times_span_2_x + sin_swing_a2_left_times_span_2_y)/divisor_a2;
-  /* leg 2: vector from its joint on the base to its joint on the platform */
-  const double rod_2_x_right = span_2_x - k->arm_length_2*cos_a2_right;
-  const double cos_swing_a2_times_span_2_y = span_2_y*cos_swing_a2;
-  const double sin_swing_a2_left_times_span_2_x = span_2_x*sin_swing_a2_left;
-  const double sin_a2_right = (cos_swing_a2_times_span_2_y - sin_swing_a2_left_times_span_2_x)/divisor_a2;
-  const double rod_2_y_right = span_2_y - k->arm_length_2*sin_a2_right;
-  /* leg 2: the moment of its span about the platform's origin */
-  const double moment_2_z_right = (arm_2_x*rod_2_y_right - arm_2_y*rod_2_x_right)*k->one_by_platform_radius;
-  const double arm_3_x = k->platform_3_x*cos_heading - k->platform_3_y*sin_heading;
-  const double span_3_x = arm_3_x + x - k->base_3_x; /* rod 3: known part of its vector */
-  const double arm_3_y = k->platform_3_y*cos_heading + k->platform_3_x*sin_heading;
-  const double span_3_y = arm_3_y + y - k->base_3_y;
-  /* effective length of the arm that a3 turns */
-  const double effective_a3 = sqrt(span_3_x*span_3_x + span_3_y*span_3_y);
-  const double divisor_a3 = effective_a3 > k->arm_length_3_times_shortest_link ? effective_a3 : 1.0;
-  /* law of cosines for a3 (rod 3): 1 - cosine, times a scale */
-  const double one_less_cos_a3 = (divisor_a3 - k->arm_length_3_plus_rod_length_3)
-      *(k->arm_length_3_minus_rod_length_3 - divisor_a3);
-  /* 1 + cosine, times the scale */
-  const double one_plus_cos_a3 = (k->arm_length_3_minus_rod_length_3 + divisor_a3)
-      *(k->arm_length_3_plus_rod_length_3 + divisor_a3);
-  /* sum of both, twice the scale: cosine² + sine² is then 1 */
-  const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
-  const double divisor_of_cos_a3 = sum_a3 > 0.0 ? sum_a3 : 1.0;
-  const double cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3;
-  const double cos_swing_a3_times_span_3_x = span_3_x*cos_swing_a3;
-  /* sine squared, times the squared scale */
-  const double sine_square_a3 = one_less_cos_a3*one_plus_cos_a3;
-  const double sin_swing_a3_left = 2.0*softkin_root(sine_square_a3)/divisor_of_cos_a3;
-  const double sin_swing_a3_left_times_span_3_y = span_3_y*sin_swing_a3_left;
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_a3_right = (cos_swing_a3_times_span_3_x + sin_swing_a3_left_times_span_3_y)/divisor_a3;
-  /* leg 3: vector from its joint on the base to its joint on the platform */
-  const double rod_3_x_right = span_3_x - k->arm_length_3*cos_a3_right;
-  const double cos_swing_a3_times_span_3_y = span_3_y*cos_swing_a3;
-  const double sin_swing_a3_left_times_span_3_x = span_3_x*sin_swing_a3_left;
-  const double sin_a3_right = (cos_swing_a3_times_span_3_y - sin_swing_a3_left_times_span_3_x)/divisor_a3;
-  const double rod_3_y_right = span_3_y - k->arm_length_3*sin_a3_right;
-  /* leg 3: the moment of its span about the platform's origin */
-  const double moment_3_z_right = (arm_3_x*rod_3_y_right - arm_3_y*rod_3_x_right)*k->one_by_platform_radius;
-  /* determinant of the spans of the legs and their moments */
-  double system[3][3] = {{rod_1_x_right, rod_1_y_right, moment_1_z_right},
-      {rod_2_x_right, rod_2_y_right, moment_2_z_right}, {rod_3_x_right, rod_3_y_right, moment_3_z_right}};
-  const double determinant_of_spans_right_right_right = softkin_solve(&system[0][0], 3, 0);
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_a3_left = (cos_swing_a3_times_span_3_x - sin_swing_a3_left_times_span_3_y)/divisor_a3;
-  /* leg 3: vector from its joint on the base to its joint on the platform */
-  const double rod_3_x_left = span_3_x - k->arm_length_3*cos_a3_left;
-  const double sin_a3_left = (cos_swing_a3_times_span_3_y + sin_swing_a3_left_times_span_3_x)/divisor_a3;
-  const double rod_3_y_left = span_3_y - k->arm_length_3*sin_a3_left;
-  /* leg 3: the moment of its span about the platform's origin */
-  const double moment_3_z_left = (arm_3_x*rod_3_y_left - arm_3_y*rod_3_x_left)*k->one_by_platform_radius;
-  /* determinant of the spans of the legs and their moments */
-  double system_of_2[3][3] = {{rod_1_x_right, rod_1_y_right, moment_1_z_right},
-      {rod_2_x_right, rod_2_y_right, moment_2_z_right}, {rod_3_x_left, rod_3_y_left, moment_3_z_left}};
-  const double determinant_of_spans_right_right_left = softkin_solve(&system_of_2[0][0], 3, 0);
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_a2_left = (cos_swing_a2_times_span_2_x - sin_swing_a2_left_times_span_2_y)/divisor_a2;
-  /* leg 2: vector from its joint on the base to its joint on the platform */
-  const double rod_2_x_left = span_2_x - k->arm_length_2*cos_a2_left;
-  const double sin_a2_left = (cos_swing_a2_times_span_2_y + sin_swing_a2_left_times_span_2_x)/divisor_a2;
-  const double rod_2_y_left = span_2_y - k->arm_length_2*sin_a2_left;
-  /* leg 2: the moment of its span about the platform's origin */
-  const double moment_2_z_left = (arm_2_x*rod_2_y_left - arm_2_y*rod_2_x_left)*k->one_by_platform_radius;
-  /* determinant of the spans of the legs and their moments */
-  double system_of_3[3][3] = {{rod_1_x_right, rod_1_y_right, moment_1_z_right},
-      {rod_2_x_left, rod_2_y_left, moment_2_z_left}, {rod_3_x_right, rod_3_y_right, moment_3_z_right}};
-  const double determinant_of_spans_right_left_right = softkin_solve(&system_of_3[0][0], 3, 0);
-  /* determinant of the spans of the legs and their moments */
-  double system_of_4[3][3] = {{rod_1_x_right, rod_1_y_right, moment_1_z_right},
-      {rod_2_x_left, rod_2_y_left, moment_2_z_left}, {rod_3_x_left, rod_3_y_left, moment_3_z_left}};
-  const double determinant_of_spans_right_left_left = softkin_solve(&system_of_4[0][0], 3, 0);
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_a1_left = (cos_swing_a1_times_span_1_x - sin_swing_a1_left_times_span_1_y)/divisor_a1;
-  /* leg 1: vector from its joint on the base to its joint on the platform */
-  const double rod_1_x_left = span_1_x - k->arm_length_1*cos_a1_left;
-  const double sin_a1_left = (cos_swing_a1_times_span_1_y + sin_swing_a1_left_times_span_1_x)/divisor_a1;
-  const double rod_1_y_left = span_1_y - k->arm_length_1*sin_a1_left;
-  /* leg 1: the moment of its span about the platform's origin */
-  const double moment_1_z_left = (arm_1_x*rod_1_y_left - arm_1_y*rod_1_x_left)*k->one_by_platform_radius;
-  /* determinant of the spans of the legs and their moments */
-  double system_of_5[3][3] = {{rod_1_x_left, rod_1_y_left, moment_1_z_left},
-      {rod_2_x_right, rod_2_y_right, moment_2_z_right}, {rod_3_x_right, rod_3_y_right, moment_3_z_right}};
-  const double determinant_of_spans_left_right_right = softkin_solve(&system_of_5[0][0], 3, 0);
-  /* determinant of the spans of the legs and their moments */
-  double system_of_6[3][3] = {{rod_1_x_left, rod_1_y_left, moment_1_z_left},
-      {rod_2_x_right, rod_2_y_right, moment_2_z_right}, {rod_3_x_left, rod_3_y_left, moment_3_z_left}};
-  const double determinant_of_spans_left_right_left = softkin_solve(&system_of_6[0][0], 3, 0);
-  /* determinant of the spans of the legs and their moments */
-  double system_of_7[3][3] = {{rod_1_x_left, rod_1_y_left, moment_1_z_left},
-      {rod_2_x_left, rod_2_y_left, moment_2_z_left}, {rod_3_x_right, rod_3_y_right, moment_3_z_right}};
-  const double determinant_of_spans_left_left_right = softkin_solve(&system_of_7[0][0], 3, 0);
-  /* determinant of the spans of the legs and their moments */
-  double system_of_8[3][3] = {{rod_1_x_left, rod_1_y_left, moment_1_z_left},
-      {rod_2_x_left, rod_2_y_left, moment_2_z_left}, {rod_3_x_left, rod_3_y_left, moment_3_z_left}};
-  const double determinant_of_spans_left_left_left = softkin_solve(&system_of_8[0][0], 3, 0);
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
-    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
-  }
-  if (!(fabs(z) <= k->machine_scale_times_plane)) {
-    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
-  }
-  if (!(effective_a1 > k->arm_length_1_times_shortest_link)) {
-    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
-  }
-  if (!(fabs(cos_swing_a1) <= 1.0000000000005)) {
-    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
-  }
-  if (!(effective_a2 > k->arm_length_2_times_shortest_link)) {
-    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
-  }
-  if (!(fabs(cos_swing_a2) <= 1.0000000000005)) {
-    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
-  }
-  if (!(effective_a3 > k->arm_length_3_times_shortest_link)) {
-    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
-  }
-  if (!(fabs(cos_swing_a3) <= 1.0000000000005)) {
-    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
-  }
-  /* the same of unit vectors: margin of the platform, zero in a type 2 singularity */
-  const double determinant_right_right_right = determinant_of_spans_right_right_right
-      *quotient_in_determinant_right_right_right;
-  /* rods_dependent: in the other assembly mode, or too close to a type 2 singularity */
-  const int refusal_right_right_right = k->assembly_sign*determinant_right_right_right >= k->min_type2_margin
-      ? 0 : 3;
-  const double axis_a1_right = k->offset_a1 + softkin_angle_of(sin_a1_right, cos_a1_right)*SOFTKIN_RADIAN;
-  const double axis_a2_right = k->offset_a2 + softkin_angle_of(sin_a2_right, cos_a2_right)*SOFTKIN_RADIAN;
-  const double axis_a3_right = k->offset_a3 + softkin_angle_of(sin_a3_right, cos_a3_right)*SOFTKIN_RADIAN;
-  /* the same of unit vectors: margin of the platform, zero in a type 2 singularity */
-  const double determinant_right_right_left = determinant_of_spans_right_right_left
-      *quotient_in_determinant_right_right_right;
-  /* rods_dependent: in the other assembly mode, or too close to a type 2 singularity */
-  const int refusal_right_right_left = k->assembly_sign*determinant_right_right_left >= k->min_type2_margin
-      ? 0 : 3;
-  const double axis_a3_left = k->offset_a3 + softkin_angle_of(sin_a3_left, cos_a3_left)*SOFTKIN_RADIAN;
-  /* the same of unit vectors: margin of the platform, zero in a type 2 singularity */
-  const double determinant_right_left_right = determinant_of_spans_right_left_right
-      *quotient_in_determinant_right_right_right;
-  /* rods_dependent: in the other assembly mode, or too close to a type 2 singularity */
-  const int refusal_right_left_right = k->assembly_sign*determinant_right_left_right >= k->min_type2_margin
-      ? 0 : 3;
-  const double axis_a2_left = k->offset_a2 + softkin_angle_of(sin_a2_left, cos_a2_left)*SOFTKIN_RADIAN;
-  /* the same of unit vectors: margin of the platform, zero in a type 2 singularity */
-  const double determinant_right_left_left = determinant_of_spans_right_left_left
-      *quotient_in_determinant_right_right_right;
-  /* rods_dependent: in the other assembly mode, or too close to a type 2 singularity */
-  const int refusal_right_left_left = k->assembly_sign*determinant_right_left_left >= k->min_type2_margin ? 0
-      : 3;
-  /* the same of unit vectors: margin of the platform, zero in a type 2 singularity */
-  const double determinant_left_right_right = determinant_of_spans_left_right_right
-      *quotient_in_determinant_right_right_right;
-  /* rods_dependent: in the other assembly mode, or too close to a type 2 singularity */
-  const int refusal_left_right_right = k->assembly_sign*determinant_left_right_right >= k->min_type2_margin
-      ? 0 : 3;
-  const double axis_a1_left = k->offset_a1 + softkin_angle_of(sin_a1_left, cos_a1_left)*SOFTKIN_RADIAN;
-  /* the same of unit vectors: margin of the platform, zero in a type 2 singularity */
-  const double determinant_left_right_left = determinant_of_spans_left_right_left
-      *quotient_in_determinant_right_right_right;
-  /* rods_dependent: in the other assembly mode, or too close to a type 2 singularity */
-  const int refusal_left_right_left = k->assembly_sign*determinant_left_right_left >= k->min_type2_margin ? 0
-      : 3;
-  /* the same of unit vectors: margin of the platform, zero in a type 2 singularity */
-  const double determinant_left_left_right = determinant_of_spans_left_left_right
-      *quotient_in_determinant_right_right_right;
-  /* rods_dependent: in the other assembly mode, or too close to a type 2 singularity */
-  const int refusal_left_left_right = k->assembly_sign*determinant_left_left_right >= k->min_type2_margin ? 0
-      : 3;
-  /* the same of unit vectors: margin of the platform, zero in a type 2 singularity */
-  const double determinant_left_left_left = determinant_of_spans_left_left_left
-      *quotient_in_determinant_right_right_right;
-  /* rods_dependent: in the other assembly mode, or too close to a type 2 singularity */
-  const int refusal_left_left_left = k->assembly_sign*determinant_left_left_left >= k->min_type2_margin ? 0
-      : 3;
-  const double near_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
-  const double near_a2 = k->single_a2 ? k->mid_a2 : ref_a2;
-  const double near_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
-  statuses[0] = (softkin_status)(refusal_right_right_right);
-  axes[0] = softkin_on_turn(axis_a1_right, near_a1);
-  axes[1] = softkin_on_turn(axis_a2_right, near_a2);
-  axes[2] = softkin_on_turn(axis_a3_right, near_a3);
-  statuses[1] = (softkin_status)(refusal_left_right_right);
-  axes[3] = softkin_on_turn(axis_a1_left, near_a1);
-  axes[4] = softkin_on_turn(axis_a2_right, near_a2);
-  axes[5] = softkin_on_turn(axis_a3_right, near_a3);
-  statuses[2] = (softkin_status)(refusal_right_left_right);
-  axes[6] = softkin_on_turn(axis_a1_right, near_a1);
-  axes[7] = softkin_on_turn(axis_a2_left, near_a2);
-  axes[8] = softkin_on_turn(axis_a3_right, near_a3);
-  statuses[3] = (softkin_status)(refusal_left_left_right);
-  axes[9] = softkin_on_turn(axis_a1_left, near_a1);
-  axes[10] = softkin_on_turn(axis_a2_left, near_a2);
-  axes[11] = softkin_on_turn(axis_a3_right, near_a3);
-  statuses[4] = (softkin_status)(refusal_right_right_left);
-  axes[12] = softkin_on_turn(axis_a1_right, near_a1);
-  axes[13] = softkin_on_turn(axis_a2_right, near_a2);
-  axes[14] = softkin_on_turn(axis_a3_left, near_a3);
-  statuses[5] = (softkin_status)(refusal_left_right_left);
-  axes[15] = softkin_on_turn(axis_a1_left, near_a1);
-  axes[16] = softkin_on_turn(axis_a2_right, near_a2);
-  axes[17] = softkin_on_turn(axis_a3_left, near_a3);
-  statuses[6] = (softkin_status)(refusal_right_left_left);
-  axes[18] = softkin_on_turn(axis_a1_right, near_a1);
-  axes[19] = softkin_on_turn(axis_a2_left, near_a2);
-  axes[20] = softkin_on_turn(axis_a3_left, near_a3);
-  statuses[7] = (softkin_status)(refusal_left_left_left);
-  axes[21] = softkin_on_turn(axis_a1_left, near_a1);
-  axes[22] = softkin_on_turn(axis_a2_left, near_a2);
-  axes[23] = softkin_on_turn(axis_a3_left, near_a3);
-  return true;
+/* Forward kinematics from a given start. */
+static softkin_status find_forward_from(const void *machine, const double *axes, const softkin_frame *start,
+    softkin_frame *frame, double *margins, softkin_refusal *why) {
+  planar_3rrr_machine moved;
+  start_at(machine, start, &moved);
+  return find_forward(&moved, axes, frame, margins, why);
 }
 
 /* The values that depend on the parameters alone, or why the parameters are refused. */
@@ -1275,7 +1016,14 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a2 = p->offset_a2;
   made.offset_a3 = p->offset_a3;
   made.min_type2_margin = p->min_type2_margin;
+  made.check_forward = (p->check_forward != 0.0);
   made.assembly_sign = assembly_sign;
+  made.start_x = p->home_x;
+  made.start_y = p->home_y;
+  made.start_r11 = cos_home_heading;
+  made.start_r12 = -sin_home_heading;
+  made.start_r21 = sin_home_heading;
+  made.start_r22 = cos_home_heading;
   made.within = within;
   made.cos_home_heading_2 = cos_home_heading_2;
   made.sin_home_heading_2 = sin_home_heading_2;
@@ -1312,7 +1060,7 @@ const softkin_mechanism planar_3rrr_mechanism = {
     .row_count = 3,
     .margin_count = 4,
     .limit_count = 3,
-    .parameter_count = 36,
+    .parameter_count = 37,
     .quantity_count = 0,
     .distance_count = 3,
     .side_count = 0,
@@ -1334,8 +1082,8 @@ const softkin_mechanism planar_3rrr_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .start_at = start_at,
     .forward_from = find_forward_from,
-    .every_branch = find_every_branch,
 };
 
 void planar_3rrr_defaults(planar_3rrr_parameters *parameters) {
@@ -1355,6 +1103,26 @@ softkin_status planar_3rrr_forward(const planar_3rrr_machine *machine, const dou
 softkin_status planar_3rrr_forward_from(const planar_3rrr_machine *machine, const double *axes,
     const softkin_frame *start, softkin_frame *frame, int8_t *configuration, softkin_refusal *why) {
   return softkin_forward(&planar_3rrr_mechanism, machine, axes, start, frame, configuration, NULL, why);
+}
+
+softkin_status planar_3rrr_start_at(const planar_3rrr_machine *machine, const softkin_frame *start,
+    planar_3rrr_machine *moved, softkin_refusal *why) {
+  return softkin_start_at(&planar_3rrr_mechanism, machine, start, moved, why);
+}
+
+softkin_status planar_3rrr_jacobian_from(const planar_3rrr_machine *machine, const double *axes,
+    const softkin_frame *start, double *rows, softkin_refusal *why) {
+  planar_3rrr_machine moved;
+  const softkin_status status = softkin_start_at(&planar_3rrr_mechanism, machine, start, &moved, why);
+  return status == SOFTKIN_OK ? softkin_jacobian(&planar_3rrr_mechanism, &moved, axes, rows, why) : status;
+}
+
+softkin_status planar_3rrr_singularity_from(const planar_3rrr_machine *machine, const double *axes,
+    const softkin_frame *start, double *margins, bool *is_singular, softkin_refusal *why) {
+  planar_3rrr_machine moved;
+  const softkin_status status = softkin_start_at(&planar_3rrr_mechanism, machine, start, &moved, why);
+  return status == SOFTKIN_OK
+      ? softkin_singularity(&planar_3rrr_mechanism, &moved, axes, margins, is_singular, why) : status;
 }
 
 softkin_status planar_3rrr_inverse(const planar_3rrr_machine *machine, const softkin_frame *frame,

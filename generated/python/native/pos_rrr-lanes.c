@@ -10,13 +10,13 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     double *SOFTKIN_RESTRICT misses) {
   const pos_rrr_machine *k = machine;
   const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3_2 = k->a2_minus_effective_q3_2,
-      a2_plus_effective_q3_2 = k->a2_plus_effective_q3_2, a3_by_effective_q3_2 = k->a3_by_effective_q3_2,
-      d1 = k->d1, d3 = k->d3, d4_by_effective_q3_2 = k->d4_by_effective_q3_2,
-      effective_q3_2 = k->effective_q3_2,
-      machine_scale_squared_times_plane = k->machine_scale_squared_times_plane,
+      a2_plus_effective_q3_2_2 = k->a2_plus_effective_q3_2_2,
+      a3_by_effective_q3_2_2 = k->a3_by_effective_q3_2_2, d1 = k->d1, d3 = k->d3,
+      d4_by_effective_q3_2_2 = k->d4_by_effective_q3_2_2, effective_q3_2 = k->effective_q3_2,
       machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
       mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
-      offset_a3 = k->offset_a3, rounding_q1 = k->rounding_q1, single_a1 = k->single_a1 ? 1.0 : 0.0,
+      offset_a3 = k->offset_a3, product_in_lost_digits_19 = k->product_in_lost_digits_19,
+      rounding_q1 = k->rounding_q1, single_a1 = k->single_a1 ? 1.0 : 0.0,
       single_a2 = k->single_a2 ? 1.0 : 0.0, single_a3 = k->single_a3 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
@@ -31,34 +31,35 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     const double distance_q1_squared = distance_q1*distance_q1;
     /* q1: out of reach */
     missed += ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1 ? 0.0 : 1.0;
-    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
-    /* coordinate of the point that the remaining links must reach */
-    const double wrist_y_from_q1 = z - d1;
-    const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
     const double sign_arm = sigma_arm; /* arm: +1 front, -1 back */
     /* how far ahead of the axis the point is; negative: behind it */
-    const double ahead_q1_before_q1_for_q3 = softkin_lane_root(ahead_squared_q1)*sign_arm;
+    const double ahead_q1 = softkin_lane_root(ahead_squared_q1)*sign_arm;
     /* coordinate of the point that the remaining links must reach */
-    const double wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1;
+    const double wrist_x_from_q1 = ahead_q1 - a1;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_z_from_q1 = z - d1;
     /* distance that the remaining links must span */
-    const double reach = softkin_lane_root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1);
-    /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-    const double one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach);
+    const double reach = softkin_lane_root(wrist_x_from_q1*wrist_x_from_q1 + wrist_z_from_q1*wrist_z_from_q1);
+    /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+    const double one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach)*(a2_plus_effective_q3_2_2 - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach);
     /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
     missed += sum_q3 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3;
+    const bool within_19 = fabs(cos_swing_q3) <= 1.0;
+    const bool lost_digits_19 = (!within_19) && (fabs(ahead_q1) <= product_in_lost_digits_19);
+    /* digits may be lost */
+    missed += !lost_digits_19 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_swing_q3) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    const double cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/distance_q1_squared;
-    const double sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/distance_q1_squared;
-    const double axis_a1 = offset_a1
-        + softkin_lane_angle(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*SOFTKIN_RADIAN;
+    const double cos_q1 = (ahead_q1*x - d3*y)/distance_q1_squared;
+    const double sin_q1 = (ahead_q1*y + d3*x)/distance_q1_squared;
+    const double axis_a1 = offset_a1 + softkin_lane_angle(sin_q1, cos_q1)*SOFTKIN_RADIAN;
     const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
     /* sine squared, times the squared scale */
     const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
@@ -66,12 +67,12 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     const double arm_along_q2 = -effective_q3_2*sin_swing_q3;
     const double arm_across_q2 = a2 + effective_q3_2*cos_swing_q3;
     /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    const double direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1;
-    const double direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1;
+    const double direction_x_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
+    const double direction_y_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
     const double axis_a2 = offset_a2 + softkin_lane_angle(direction_y_q2, direction_x_q2)*SOFTKIN_RADIAN;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3 = a3_by_effective_q3_2*cos_swing_q3 - d4_by_effective_q3_2*sin_swing_q3;
-    const double sin_q3 = a3_by_effective_q3_2*sin_swing_q3 + d4_by_effective_q3_2*cos_swing_q3;
+    const double cos_q3 = a3_by_effective_q3_2_2*cos_swing_q3 - d4_by_effective_q3_2_2*sin_swing_q3;
+    const double sin_q3 = a3_by_effective_q3_2_2*sin_swing_q3 + d4_by_effective_q3_2_2*cos_swing_q3;
     const double axis_a3 = offset_a3 + softkin_lane_angle(sin_q3, cos_q3)*SOFTKIN_RADIAN;
     near[0][lane] = single_a1 > 0.0 ? mid_a1 : ref_a1;
     near[1][lane] = single_a2 > 0.0 ? mid_a2 : ref_a2;
@@ -88,16 +89,17 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const pos_rrr_machine *k = machine;
-  const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3_2 = k->a2_minus_effective_q3_2,
-      a2_plus_effective_q3_2 = k->a2_plus_effective_q3_2, a3_by_effective_q3_2 = k->a3_by_effective_q3_2,
-      d1 = k->d1, d3 = k->d3, d4_by_effective_q3_2 = k->d4_by_effective_q3_2,
-      effective_q3_2 = k->effective_q3_2,
-      machine_scale_squared_times_plane = k->machine_scale_squared_times_plane,
+  const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3_2_2 = k->a2_minus_effective_q3_2_2,
+      a2_plus_effective_q3_2_2 = k->a2_plus_effective_q3_2_2,
+      a3_by_effective_q3_2_2 = k->a3_by_effective_q3_2_2, d1 = k->d1, d3 = k->d3,
+      d4_by_effective_q3_2_2 = k->d4_by_effective_q3_2_2, effective_q3_2 = k->effective_q3_2,
       machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
       mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
-      offset_a3 = k->offset_a3, rounding_q1 = k->rounding_q1, single_a1 = k->single_a1 ? 1.0 : 0.0,
+      offset_a3 = k->offset_a3, product_in_lost_digits_19 = k->product_in_lost_digits_19,
+      rounding_q1 = k->rounding_q1, single_a1 = k->single_a1 ? 1.0 : 0.0,
       single_a2 = k->single_a2 ? 1.0 : 0.0, single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double angle_of_a3_by_effective_q3_2 = softkin_lane_angle(d4_by_effective_q3_2, a3_by_effective_q3_2);
+  const double angle_of_a3_by_effective_q3_2_2 = softkin_lane_angle(d4_by_effective_q3_2_2,
+      a3_by_effective_q3_2_2);
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane],
@@ -107,61 +109,66 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double distance_q1 = softkin_lane_root(x*x + y*y);
     /* Pythagoras: square of the distance ahead of the axis */
     const double ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1);
-    /* near a fold */
-    missed += ahead_squared_q1 > machine_scale_squared_times_plane ? 0.0 : 1.0;
     const double distance_q1_squared = distance_q1*distance_q1;
     /* q1: out of reach */
     missed += ahead_squared_q1 >= -1e-12*distance_q1_squared - rounding_q1 ? 0.0 : 1.0;
     /* how far ahead of the axis the point is; negative: behind it */
-    const double ahead_q1_before_q1_for_q3_front = softkin_lane_root(ahead_squared_q1);
+    const double ahead_q1_front = softkin_lane_root(ahead_squared_q1);
     /* coordinate of the point that the remaining links must reach */
-    const double wrist_x_from_q1_front = ahead_q1_before_q1_for_q3_front - a1;
+    const double wrist_x_from_q1_front = ahead_q1_front - a1;
     /* coordinate of the point that the remaining links must reach */
-    const double wrist_y_from_q1 = z - d1;
-    const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
+    const double wrist_z_from_q1 = z - d1;
+    const double wrist_z_from_q1_squared = wrist_z_from_q1*wrist_z_from_q1;
     /* distance that the remaining links must span */
-    const double reach_front = softkin_lane_root(wrist_y_from_q1_squared
+    const double reach_front = softkin_lane_root(wrist_z_from_q1_squared
         + wrist_x_from_q1_front*wrist_x_from_q1_front);
-    /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-    const double one_less_cos_q3_front = (a2_plus_effective_q3_2 + reach_front)
-        *(a2_plus_effective_q3_2 - reach_front);
+    /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+    const double one_less_cos_q3_front = (a2_plus_effective_q3_2_2 + reach_front)
+        *(a2_plus_effective_q3_2_2 - reach_front);
     /* 1 + cosine, times the scale */
-    const double one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2)
-        *(a2_minus_effective_q3_2 + reach_front);
+    const double one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2_2)
+        *(a2_minus_effective_q3_2_2 + reach_front);
     /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
     missed += sum_q3_front > 0.0 ? 0.0 : 1.0;
-    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += reach_front > machine_scale_times_free_angle ? 0.0 : 1.0;
+    const double cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/sum_q3_front;
+    const bool within_19_front = fabs(cos_swing_q3_front) <= 1.0;
+    const bool lost_digits_19_front = (!within_19_front)
+        && (fabs(ahead_q1_front) <= product_in_lost_digits_19);
+    /* digits may be lost */
+    missed += !lost_digits_19_front ? 0.0 : 1.0;
     /* coordinate of the point that the remaining links must reach */
-    const double wrist_x_from_q1_back = -a1 - ahead_q1_before_q1_for_q3_front;
+    const double wrist_x_from_q1_back = -a1 - ahead_q1_front;
     /* distance that the remaining links must span */
-    const double reach_back = softkin_lane_root(wrist_y_from_q1_squared
+    const double reach_back = softkin_lane_root(wrist_z_from_q1_squared
         + wrist_x_from_q1_back*wrist_x_from_q1_back);
-    /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-    const double one_less_cos_q3_back = (a2_plus_effective_q3_2 + reach_back)
-        *(a2_plus_effective_q3_2 - reach_back);
+    /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+    const double one_less_cos_q3_back = (a2_plus_effective_q3_2_2 + reach_back)
+        *(a2_plus_effective_q3_2_2 - reach_back);
     /* 1 + cosine, times the scale */
-    const double one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2)
-        *(a2_minus_effective_q3_2 + reach_back);
+    const double one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2_2)
+        *(a2_minus_effective_q3_2_2 + reach_back);
     /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
     missed += sum_q3_back > 0.0 ? 0.0 : 1.0;
+    const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/sum_q3_back;
+    const bool within_19_back = fabs(cos_swing_q3_back) <= 1.0;
+    const bool lost_digits_19_back = (!within_19_back) && (fabs(ahead_q1_front) <= product_in_lost_digits_19);
+    /* digits may be lost */
+    missed += !lost_digits_19_back ? 0.0 : 1.0;
+    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += reach_front > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += reach_back > machine_scale_times_free_angle ? 0.0 : 1.0;
-    const double cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/sum_q3_front;
     /* q3: out of reach */
     const double refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
     const double d3_times_y = d3*y;
-    const double ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3_front*x;
+    const double ahead_q1_front_times_x = ahead_q1_front*x;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    const double cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)
-        /distance_q1_squared;
+    const double cos_q1_front = (ahead_q1_front_times_x - d3_times_y)/distance_q1_squared;
     const double d3_times_x = d3*x;
-    const double ahead_q1_before_q1_for_q3_front_times_y = ahead_q1_before_q1_for_q3_front*y;
-    const double sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_y + d3_times_x)
-        /distance_q1_squared;
-    const double axis_a1_front = offset_a1
-        + softkin_lane_angle(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*SOFTKIN_RADIAN;
+    const double ahead_q1_front_times_y = ahead_q1_front*y;
+    const double sin_q1_front = (ahead_q1_front_times_y + d3_times_x)/distance_q1_squared;
+    const double axis_a1_front = offset_a1 + softkin_lane_angle(sin_q1_front, cos_q1_front)*SOFTKIN_RADIAN;
     /* sine squared, times the squared scale */
     const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
     const double sin_swing_q3_front_up = 2.0*softkin_lane_root(sine_square_q3_front)/sum_q3_front;
@@ -169,27 +176,23 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double arm_across_q2_front = a2 + effective_q3_2*cos_swing_q3_front;
     const double angle_of_arm_across_q2_front_down = softkin_lane_angle(arm_along_q2_front_down,
         arm_across_q2_front);
-    const double angle_of_wrist_y_from_q1_front = softkin_lane_angle(wrist_x_from_q1_front, wrist_y_from_q1);
-    const double angle_q2_front_down = angle_of_arm_across_q2_front_down - angle_of_wrist_y_from_q1_front;
+    const double angle_of_wrist_z_from_q1_front = softkin_lane_angle(wrist_x_from_q1_front, wrist_z_from_q1);
+    const double angle_q2_front_down = angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
     const double axis_a2_front_down = offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
     const double angle_of_swing_q3_front_down = -softkin_lane_angle(sin_swing_q3_front_up,
         cos_swing_q3_front);
-    const double angle_q3_front_down = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_front_down;
+    const double angle_q3_front_down = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_front_down;
     const double axis_a3_front_down = offset_a3 + angle_q3_front_down*SOFTKIN_RADIAN;
-    const double angle_q2_front_up = -angle_of_arm_across_q2_front_down - angle_of_wrist_y_from_q1_front;
+    const double angle_q2_front_up = -angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
     const double axis_a2_front_up = offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
-    const double angle_q3_front_up = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_front_down;
+    const double angle_q3_front_up = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_front_down;
     const double axis_a3_front_up = offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
-    const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/sum_q3_back;
     /* q3: out of reach */
     const double refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    const double cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)
-        /distance_q1_squared;
-    const double sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_front_times_y)
-        /distance_q1_squared;
-    const double axis_a1_back = offset_a1
-        + softkin_lane_angle(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*SOFTKIN_RADIAN;
+    const double cos_q1_back = (-ahead_q1_front_times_x - d3_times_y)/distance_q1_squared;
+    const double sin_q1_back = (d3_times_x - ahead_q1_front_times_y)/distance_q1_squared;
+    const double axis_a1_back = offset_a1 + softkin_lane_angle(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
     /* sine squared, times the squared scale */
     const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
     const double sin_swing_q3_back_up = 2.0*softkin_lane_root(sine_square_q3_back)/sum_q3_back;
@@ -197,15 +200,15 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double arm_across_q2_back = a2 + effective_q3_2*cos_swing_q3_back;
     const double angle_of_arm_across_q2_back_down = softkin_lane_angle(arm_along_q2_back_down,
         arm_across_q2_back);
-    const double angle_of_wrist_y_from_q1_back = softkin_lane_angle(wrist_x_from_q1_back, wrist_y_from_q1);
-    const double angle_q2_back_down = angle_of_arm_across_q2_back_down - angle_of_wrist_y_from_q1_back;
+    const double angle_of_wrist_z_from_q1_back = softkin_lane_angle(wrist_x_from_q1_back, wrist_z_from_q1);
+    const double angle_q2_back_down = angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
     const double axis_a2_back_down = offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
     const double angle_of_swing_q3_back_down = -softkin_lane_angle(sin_swing_q3_back_up, cos_swing_q3_back);
-    const double angle_q3_back_down = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_back_down;
+    const double angle_q3_back_down = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_back_down;
     const double axis_a3_back_down = offset_a3 + angle_q3_back_down*SOFTKIN_RADIAN;
-    const double angle_q2_back_up = -angle_of_arm_across_q2_back_down - angle_of_wrist_y_from_q1_back;
+    const double angle_q2_back_up = -angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
     const double axis_a2_back_up = offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
-    const double angle_q3_back_up = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_back_down;
+    const double angle_q3_back_up = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_back_down;
     const double axis_a3_back_up = offset_a3 + angle_q3_back_up*SOFTKIN_RADIAN;
     near[0][lane] = single_a1 > 0.0 ? mid_a1 : ref_a1;
     near[1][lane] = single_a2 > 0.0 ? mid_a2 : ref_a2;

@@ -91,6 +91,426 @@ static const int PERIOD_AXES[] = {0, 1, 2};
 
 static const int DISTANCE_AXES[] = {0, 1, 2};
 
+/* The axes that meet a pose, found by steps on the closure, and whether they do. */
+static softkin_status find_meet_pose(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  const pos_rrr_machine *k = machine;
+  const double given_ref_a1 = given[0], given_ref_a2 = given[1], given_ref_a3 = given[2], goal_x = given[8],
+      goal_y = given[9], goal_z = given[10], start_a1 = given[11], start_a2 = given[12], start_a3 = given[13];
+  const int given_sigma_arm = (int)given[3], given_sigma_elbow = (int)given[4],
+      given_turn_a1 = (int)given[5], given_turn_a2 = (int)given[6], given_turn_a3 = (int)given[7];
+  const double closed_sign_arm = given_sigma_arm; /* arm: +1 front, -1 back */
+  const double closed_sign_elbow = given_sigma_elbow; /* elbow: +1 down, -1 up */
+  /* distance of the point from the axis of q1 */
+  const double closed_distance_q1 = sqrt(goal_x*goal_x + goal_y*goal_y);
+  /* Pythagoras: square of the distance ahead of the axis */
+  const double closed_ahead_squared_q1 = (closed_distance_q1 + k->d3)*(closed_distance_q1 - k->d3);
+  /* how far ahead of the axis the point is; negative: behind it */
+  const double closed_ahead_q1 = softkin_root(closed_ahead_squared_q1)*closed_sign_arm;
+  /* A1: without a commanded turn, the value nearest to this */
+  const double closed_open_a1 = k->single_a1 ? k->mid_a1 : given_ref_a1;
+  const double closed_near_a1 = given_turn_a1 != 0
+      ? 360.0*(given_turn_a1 > 0 ? given_turn_a1 - 1 : given_turn_a1) : closed_open_a1;
+  /* coordinate of the point that the remaining links must reach */
+  const double closed_wrist_x_from_q1 = closed_ahead_q1 - k->a1;
+  /* coordinate of the point that the remaining links must reach */
+  const double closed_wrist_z_from_q1 = goal_z - k->d1;
+  /* distance that the remaining links must span */
+  const double closed_reach = sqrt(closed_wrist_x_from_q1*closed_wrist_x_from_q1
+      + closed_wrist_z_from_q1*closed_wrist_z_from_q1);
+  /* A2: without a commanded turn, the value nearest to this */
+  const double closed_open_a2 = k->single_a2 ? k->mid_a2 : given_ref_a2;
+  const double closed_near_a2 = given_turn_a2 != 0
+      ? 360.0*(given_turn_a2 > 0 ? given_turn_a2 - 1 : given_turn_a2) : closed_open_a2;
+  /* A3: without a commanded turn, the value nearest to this */
+  const double closed_open_a3 = k->single_a3 ? k->mid_a3 : given_ref_a3;
+  const double closed_near_a3 = given_turn_a3 != 0
+      ? 360.0*(given_turn_a3 > 0 ? given_turn_a3 - 1 : given_turn_a3) : closed_open_a3;
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double closed_one_less_cos_q3 = (k->a2_plus_effective_q3_2 + closed_reach)
+      *(k->a2_plus_effective_q3_2 - closed_reach);
+  /* 1 + cosine, times the scale */
+  const double closed_one_plus_cos_q3 = (closed_reach - k->a2_minus_effective_q3_2_2)
+      *(k->a2_minus_effective_q3_2_2 + closed_reach);
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
+  const double closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3;
+  const double closed_divisor_of_cos_q3 = closed_sum_q3 > 0.0 ? closed_sum_q3 : 1.0;
+  /* sine squared, times the squared scale */
+  const double closed_sine_square_q3 = closed_one_less_cos_q3*closed_one_plus_cos_q3;
+  const double closed_sin_swing_q3 = -2.0*softkin_root(closed_sine_square_q3)*closed_sign_elbow
+      /closed_divisor_of_cos_q3;
+  const double closed_arm_along_q2 = -closed_sin_swing_q3*k->effective_q3_2;
+  const double closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3)
+      /closed_divisor_of_cos_q3;
+  const double closed_arm_across_q2 = k->a2 + closed_cos_swing_q3*k->effective_q3_2;
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double closed_cos_q3 = k->a3_by_effective_q3_2*closed_cos_swing_q3
+      - closed_sin_swing_q3*k->d4_by_effective_q3_2;
+  const double closed_sin_q3 = k->a3_by_effective_q3_2*closed_sin_swing_q3
+      + closed_cos_swing_q3*k->d4_by_effective_q3_2;
+  const double closed_axis_a3 = softkin_on_turn(k->offset_a3
+      + softkin_angle_of(closed_sin_q3, closed_cos_q3)*SOFTKIN_RADIAN, closed_near_a3);
+  /* steps of damped least squares on the closure, from one start after the other */
+  double tried_a1 = start_a1;
+  double tried_a2 = start_a2;
+  double tried_a3 = start_a3;
+  int passes_left = 40;
+  int attempt = 0;
+  double error_before = 9.0;
+  double q1, sin_q1, cos_q1, x_at_q2, q2, sin_q2, r13_at_q2, x_at_q3, q3, q2_plus_q3, cos_q23, r11_at_q23,
+      sin_q23, r13_at_q23, x, y_at_q2, r23_at_q2, y_at_q3, r21_at_q23, r23_at_q23, y, branch_arm, sin_q3,
+      cos_q3, branch_elbow, error_1, error_2, cos_q2, z_at_q3, z, error_3, error, free_angle, free_turn,
+      closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1, closed_cos_q1, closed_sin_q1,
+      closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1, cos_q1_times_one_by_machine_scale, rate_1_2,
+      z_minus_z_at_q3, rate_1_3, product_in_damping, damping, product_1_1, sin_q1_times_one_by_machine_scale,
+      rate_2_2, rate_2_3, product_1_2, rate_3_2, rate_3_3, product_1_3, product_2_2, product_2_3,
+      product_3_3, multiplier_1, multiplier_2, multiplier_3, step_a1, step_a2, step_a3, step_length,
+      shrinking, closed_reference_a2, closed_direction_x_q2, closed_direction_y_q2, closed_axis_a2,
+      shared_quotient;
+  int next_attempt;
+  bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, mirrors;
+  for (int pass = 0;; pass += 1) {
+    if (pass == 164) {
+      return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
+    }
+    q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
+    sin_q1 = sin(q1);
+    cos_q1 = cos(q1);
+    x_at_q2 = k->a1*cos_q1;
+    q2 = (tried_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    sin_q2 = sin(q2);
+    r13_at_q2 = -cos_q1*sin_q2;
+    x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+    q3 = (tried_a3 - k->offset_a3)*SOFTKIN_DEGREE;
+    q2_plus_q3 = q2 + q3;
+    cos_q23 = cos(q2_plus_q3);
+    r11_at_q23 = cos_q1*cos_q23;
+    sin_q23 = sin(q2_plus_q3);
+    r13_at_q23 = -cos_q1*sin_q23;
+    x = x_at_q3 + k->a3*r13_at_q23 + k->d3*sin_q1 + k->d4*r11_at_q23;
+    y_at_q2 = k->a1*sin_q1;
+    r23_at_q2 = -sin_q1*sin_q2;
+    y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+    r21_at_q23 = cos_q23*sin_q1;
+    r23_at_q23 = -sin_q1*sin_q23;
+    y = y_at_q3 + k->a3*r23_at_q23 + k->d4*r21_at_q23 - k->d3*cos_q1;
+    branch_arm = k->one_by_machine_scale*(x*cos_q1 + y*sin_q1);
+    beside_arm = branch_arm*closed_sign_arm < -1e-6;
+    sin_q3 = sin(q3);
+    cos_q3 = cos(q3);
+    branch_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2;
+    beside_elbow = branch_elbow*closed_sign_elbow < -1e-6;
+    error_1 = (goal_x - x)*k->one_by_machine_scale;
+    error_2 = (goal_y - y)*k->one_by_machine_scale;
+    cos_q2 = cos(q2);
+    z_at_q3 = k->d1 + k->a2*cos_q2;
+    z = z_at_q3 + k->a3*cos_q23 + k->d4*sin_q23;
+    error_3 = (goal_z - z)*k->one_by_machine_scale;
+    /* error of the pose, in characteristic lengths and radians */
+    error = sqrt(error_1*error_1 + error_2*error_2 + error_3*error_3);
+    another = passes_left <= 0;
+    /* the error is rounding, and steps make it no smaller */
+    pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
+    pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow);
+    next_attempt = attempt + (another ? 1 : 0);
+    mirrors = pose_is_close && (beside_arm || beside_elbow);
+    free_angle = next_attempt > 0 ? 1e-6 : 1e-11;
+    free_turn = -137.5*(next_attempt > 1 ? 1 - next_attempt : 0);
+    closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
+    free_angle_times_machine_scale = free_angle*k->machine_scale;
+    closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? closed_distance_q1*closed_distance_q1 : 1.0;
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
+    closed_cos_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*goal_x - k->d3*goal_y)/closed_divisor_q1 : cos(closed_reference_a1);
+    closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*goal_y + k->d3*goal_x)/closed_divisor_q1 : sin(closed_reference_a1);
+    closed_axis_a1 = softkin_on_turn(k->offset_a1
+        + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
+    rate_1_1 = -k->one_by_machine_scale*y;
+    rate_2_1 = k->one_by_machine_scale*x;
+    z_minus_d1 = z - k->d1;
+    cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
+    rate_1_2 = -z_minus_d1*cos_q1_times_one_by_machine_scale;
+    z_minus_z_at_q3 = z - z_at_q3;
+    rate_1_3 = -z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
+    product_in_damping = 0.001*error;
+    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
+    product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3;
+    sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
+    rate_2_2 = -z_minus_d1*sin_q1_times_one_by_machine_scale;
+    rate_2_3 = -z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
+    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3;
+    rate_3_2 = -k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
+    rate_3_3 = -k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
+    product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3;
+    product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3;
+    product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3;
+    product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3;
+    double system[3][4] = {{product_1_1, product_1_2, product_1_3, error_1},
+        {product_1_2, product_2_2, product_2_3, error_2}, {product_1_3, product_2_3, product_3_3, error_3}};
+    softkin_solve(&system[0][0], 3, 1);
+    multiplier_1 = system[0][3];
+    multiplier_2 = system[1][3];
+    multiplier_3 = system[2][3];
+    step_a1 = multiplier_1*rate_1_1 + multiplier_2*rate_2_1;
+    step_a2 = multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2;
+    step_a3 = multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
+    step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3);
+    shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
+    closed_reference_a2 = SOFTKIN_DEGREE*(free_turn + given_ref_a2 - k->offset_a2);
+    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
+    closed_direction_x_q2 = closed_reach > free_angle_times_machine_scale
+        ? closed_arm_across_q2*closed_wrist_z_from_q1 + closed_arm_along_q2*closed_wrist_x_from_q1
+        : cos(closed_reference_a2);
+    closed_direction_y_q2 = closed_reach > free_angle_times_machine_scale
+        ? closed_arm_along_q2*closed_wrist_z_from_q1 - closed_arm_across_q2*closed_wrist_x_from_q1
+        : sin(closed_reference_a2);
+    closed_axis_a2 = softkin_on_turn(k->offset_a2
+        + softkin_angle_of(closed_direction_y_q2, closed_direction_x_q2)*SOFTKIN_RADIAN, closed_near_a2);
+    shared_quotient = shrinking*SOFTKIN_RADIAN;
+    if (pose_is_met || (another && (next_attempt >= 4))) {
+      break;
+    }
+    tried_a1 = (another ? closed_axis_a1
+        : (mirrors ? (beside_arm ? 2.0*closed_axis_a1 - tried_a1 : tried_a1) : tried_a1
+        + shared_quotient*step_a1));
+    tried_a2 = (another ? closed_axis_a2 : (mirrors ? tried_a2 : tried_a2 + shared_quotient*step_a2));
+    tried_a3 = (another ? closed_axis_a3
+        : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
+        + shared_quotient*step_a3));
+    passes_left = (another ? 40 : passes_left - 1);
+    attempt = next_attempt;
+    error_before = (another || mirrors ? 9.0 : error);
+  }
+  const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
+  const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);
+  const double chosen_a3 = softkin_on_turn(tried_a3, closed_near_a3);
+  found[0] = pose_is_met;
+  found[1] = chosen_a1;
+  found[2] = chosen_a2;
+  found[3] = chosen_a3;
+  return SOFTKIN_OK;
+}
+
+/* The axes that meet a point, found by steps on the closure, and whether they do. */
+static softkin_status find_meet_point(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  const pos_rrr_machine *k = machine;
+  const double given_point_x = given[0], given_point_y = given[1], given_point_z = given[2],
+      given_ref_a1 = given[3], given_ref_a2 = given[4], given_ref_a3 = given[5], goal_x = given[11],
+      goal_y = given[12], goal_z = given[13], start_a1 = given[14], start_a2 = given[15],
+      start_a3 = given[16];
+  const int given_sigma_arm = (int)given[6], given_sigma_elbow = (int)given[7],
+      given_turn_a1 = (int)given[8], given_turn_a2 = (int)given[9], given_turn_a3 = (int)given[10];
+  const double closed_sign_arm = given_sigma_arm; /* arm: +1 front, -1 back */
+  const double closed_sign_elbow = given_sigma_elbow; /* elbow: +1 down, -1 up */
+  /* distance of the point from the axis of q1 */
+  const double closed_distance_q1 = sqrt(goal_x*goal_x + goal_y*goal_y);
+  /* A1: without a commanded turn, the value nearest to this */
+  const double closed_open_a1 = k->single_a1 ? k->mid_a1 : given_ref_a1;
+  const double closed_near_a1 = given_turn_a1 != 0
+      ? 360.0*(given_turn_a1 > 0 ? given_turn_a1 - 1 : given_turn_a1) : closed_open_a1;
+  /* coordinate of the point that the remaining links must reach */
+  const double closed_wrist_z_from_q1 = goal_z - k->d1;
+  /* A2: without a commanded turn, the value nearest to this */
+  const double closed_open_a2 = k->single_a2 ? k->mid_a2 : given_ref_a2;
+  const double closed_near_a2 = given_turn_a2 != 0
+      ? 360.0*(given_turn_a2 > 0 ? given_turn_a2 - 1 : given_turn_a2) : closed_open_a2;
+  /* A3: without a commanded turn, the value nearest to this */
+  const double closed_open_a3 = k->single_a3 ? k->mid_a3 : given_ref_a3;
+  const double closed_near_a3 = given_turn_a3 != 0
+      ? 360.0*(given_turn_a3 > 0 ? given_turn_a3 - 1 : given_turn_a3) : closed_open_a3;
+  /* commanded point, in the frame of the last moving joint */
+  const double tool_x = k->d4 + given_point_z;
+  /* commanded point, in the frame of the last moving joint */
+  const double tool_z = k->a3 + given_point_x;
+  /* commanded point, in the frame of the last moving joint */
+  const double closed_tool_y = -k->d3 - given_point_y;
+  /* Pythagoras: square of the distance ahead of the axis */
+  const double closed_ahead_squared_q1 = (closed_distance_q1 + closed_tool_y)
+      *(closed_distance_q1 - closed_tool_y);
+  /* how far ahead of the axis the point is; negative: behind it */
+  const double closed_ahead_q1 = softkin_root(closed_ahead_squared_q1)*closed_sign_arm;
+  /* coordinate of the point that the remaining links must reach */
+  const double closed_wrist_x_from_q1 = closed_ahead_q1 - k->a1;
+  /* distance that the remaining links must span */
+  const double closed_reach = sqrt(closed_wrist_x_from_q1*closed_wrist_x_from_q1
+      + closed_wrist_z_from_q1*closed_wrist_z_from_q1);
+  /* effective length of the arm that q3 turns */
+  const double closed_effective_q3 = sqrt(tool_x*tool_x + tool_z*tool_z);
+  const double closed_divisor_q3 = closed_effective_q3 > k->a2_times_shortest_link ? closed_effective_q3
+      : 1.0;
+  const double a2_minus_closed_reach = k->a2 - closed_reach;
+  const double a2_plus_closed_reach = k->a2 + closed_reach;
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double closed_one_less_cos_q3 = (a2_minus_closed_reach + closed_divisor_q3)
+      *(a2_plus_closed_reach + closed_divisor_q3);
+  /* 1 + cosine, times the scale */
+  const double closed_one_plus_cos_q3 = (closed_divisor_q3 - a2_plus_closed_reach)
+      *(a2_minus_closed_reach - closed_divisor_q3);
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
+  const double closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3;
+  const double closed_divisor_of_cos_q3 = closed_sum_q3 > 0.0 ? closed_sum_q3 : 1.0;
+  const double closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3)
+      /closed_divisor_of_cos_q3;
+  /* sine squared, times the squared scale */
+  const double closed_sine_square_q3 = closed_one_less_cos_q3*closed_one_plus_cos_q3;
+  const double closed_sin_swing_q3 = -2.0*softkin_root(closed_sine_square_q3)*closed_sign_elbow
+      /closed_divisor_of_cos_q3;
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double closed_cos_q3 = (closed_cos_swing_q3*tool_z - closed_sin_swing_q3*tool_x)/closed_divisor_q3;
+  const double closed_sin_q3 = (closed_cos_swing_q3*tool_x + closed_sin_swing_q3*tool_z)/closed_divisor_q3;
+  const double closed_arm_along_q2 = closed_cos_q3*tool_x - closed_sin_q3*tool_z;
+  const double closed_arm_across_q2 = k->a2 + closed_cos_q3*tool_z + closed_sin_q3*tool_x;
+  const double closed_axis_a3 = softkin_on_turn(k->offset_a3
+      + softkin_angle_of(closed_sin_q3, closed_cos_q3)*SOFTKIN_RADIAN, closed_near_a3);
+  /* steps of damped least squares on the closure, from one start after the other */
+  double tried_a1 = start_a1;
+  double tried_a2 = start_a2;
+  double tried_a3 = start_a3;
+  int passes_left = 40;
+  int attempt = 0;
+  double error_before = 9.0;
+  double q1, sin_q1, cos_q1, q2, q3, q2_plus_q3, cos_q23, r11_at_q23, sin_q23, r13_at_q23, x_at_q2, sin_q2,
+      r13_at_q2, x_at_q3, flange_x, x, r21_at_q23, r23_at_q23, y_at_q2, r23_at_q2, y_at_q3, flange_y, y,
+      branch_arm, sin_q3, cos_q3, branch_elbow, error_1, error_2, cos_q2, z_at_q3, flange_z, z, error_3,
+      error, free_angle, free_turn, closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1,
+      closed_cos_q1, closed_sin_q1, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1,
+      cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, product_in_damping, damping,
+      product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, product_1_2, rate_3_2, rate_3_3,
+      product_1_3, product_2_2, product_2_3, product_3_3, multiplier_1, multiplier_2, multiplier_3, step_a1,
+      step_a2, step_a3, step_length, shrinking, closed_reference_a2, closed_direction_x_q2,
+      closed_direction_y_q2, closed_axis_a2, shared_quotient;
+  int next_attempt;
+  bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, mirrors;
+  for (int pass = 0;; pass += 1) {
+    if (pass == 164) {
+      return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
+    }
+    q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
+    sin_q1 = sin(q1);
+    cos_q1 = cos(q1);
+    q2 = (tried_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    q3 = (tried_a3 - k->offset_a3)*SOFTKIN_DEGREE;
+    q2_plus_q3 = q2 + q3;
+    cos_q23 = cos(q2_plus_q3);
+    r11_at_q23 = cos_q1*cos_q23;
+    sin_q23 = sin(q2_plus_q3);
+    r13_at_q23 = -cos_q1*sin_q23;
+    x_at_q2 = k->a1*cos_q1;
+    sin_q2 = sin(q2);
+    r13_at_q2 = -cos_q1*sin_q2;
+    x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+    flange_x = x_at_q3 + k->a3*r13_at_q23 + k->d3*sin_q1 + k->d4*r11_at_q23;
+    x = flange_x + given_point_x*r13_at_q23 + given_point_y*sin_q1 + given_point_z*r11_at_q23;
+    r21_at_q23 = cos_q23*sin_q1;
+    r23_at_q23 = -sin_q1*sin_q23;
+    y_at_q2 = k->a1*sin_q1;
+    r23_at_q2 = -sin_q1*sin_q2;
+    y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+    flange_y = y_at_q3 + k->a3*r23_at_q23 + k->d4*r21_at_q23 - k->d3*cos_q1;
+    y = flange_y + given_point_x*r23_at_q23 + given_point_z*r21_at_q23 - given_point_y*cos_q1;
+    branch_arm = k->one_by_machine_scale*(x*cos_q1 + y*sin_q1);
+    beside_arm = branch_arm*closed_sign_arm < -1e-6;
+    sin_q3 = sin(q3);
+    cos_q3 = cos(q3);
+    branch_elbow = k->one_by_machine_scale*(tool_x*cos_q3 - tool_z*sin_q3);
+    beside_elbow = branch_elbow*closed_sign_elbow < -1e-6;
+    error_1 = (goal_x - x)*k->one_by_machine_scale;
+    error_2 = (goal_y - y)*k->one_by_machine_scale;
+    cos_q2 = cos(q2);
+    z_at_q3 = k->d1 + k->a2*cos_q2;
+    flange_z = z_at_q3 + k->a3*cos_q23 + k->d4*sin_q23;
+    z = flange_z + given_point_x*cos_q23 + given_point_z*sin_q23;
+    error_3 = (goal_z - z)*k->one_by_machine_scale;
+    /* error of the pose, in characteristic lengths and radians */
+    error = sqrt(error_1*error_1 + error_2*error_2 + error_3*error_3);
+    another = passes_left <= 0;
+    /* the error is rounding, and steps make it no smaller */
+    pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
+    pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow);
+    next_attempt = attempt + (another ? 1 : 0);
+    mirrors = pose_is_close && (beside_arm || beside_elbow);
+    free_angle = next_attempt > 0 ? 1e-6 : 1e-11;
+    free_turn = -137.5*(next_attempt > 1 ? 1 - next_attempt : 0);
+    closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
+    free_angle_times_machine_scale = free_angle*k->machine_scale;
+    closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? closed_distance_q1*closed_distance_q1 : 1.0;
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
+    closed_cos_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*goal_x + closed_tool_y*goal_y)/closed_divisor_q1 : cos(closed_reference_a1);
+    closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*goal_y - closed_tool_y*goal_x)/closed_divisor_q1 : sin(closed_reference_a1);
+    closed_axis_a1 = softkin_on_turn(k->offset_a1
+        + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
+    rate_1_1 = -k->one_by_machine_scale*y;
+    rate_2_1 = k->one_by_machine_scale*x;
+    z_minus_d1 = z - k->d1;
+    cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
+    rate_1_2 = -z_minus_d1*cos_q1_times_one_by_machine_scale;
+    z_minus_z_at_q3 = z - z_at_q3;
+    rate_1_3 = -z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
+    product_in_damping = 0.001*error;
+    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
+    product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3;
+    sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
+    rate_2_2 = -z_minus_d1*sin_q1_times_one_by_machine_scale;
+    rate_2_3 = -z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
+    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3;
+    rate_3_2 = -k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
+    rate_3_3 = -k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
+    product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3;
+    product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3;
+    product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3;
+    product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3;
+    double system[3][4] = {{product_1_1, product_1_2, product_1_3, error_1},
+        {product_1_2, product_2_2, product_2_3, error_2}, {product_1_3, product_2_3, product_3_3, error_3}};
+    softkin_solve(&system[0][0], 3, 1);
+    multiplier_1 = system[0][3];
+    multiplier_2 = system[1][3];
+    multiplier_3 = system[2][3];
+    step_a1 = multiplier_1*rate_1_1 + multiplier_2*rate_2_1;
+    step_a2 = multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2;
+    step_a3 = multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
+    step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3);
+    shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
+    closed_reference_a2 = SOFTKIN_DEGREE*(free_turn + given_ref_a2 - k->offset_a2);
+    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
+    closed_direction_x_q2 = closed_reach > free_angle_times_machine_scale
+        ? closed_arm_across_q2*closed_wrist_z_from_q1 + closed_arm_along_q2*closed_wrist_x_from_q1
+        : cos(closed_reference_a2);
+    closed_direction_y_q2 = closed_reach > free_angle_times_machine_scale
+        ? closed_arm_along_q2*closed_wrist_z_from_q1 - closed_arm_across_q2*closed_wrist_x_from_q1
+        : sin(closed_reference_a2);
+    closed_axis_a2 = softkin_on_turn(k->offset_a2
+        + softkin_angle_of(closed_direction_y_q2, closed_direction_x_q2)*SOFTKIN_RADIAN, closed_near_a2);
+    shared_quotient = shrinking*SOFTKIN_RADIAN;
+    if (pose_is_met || (another && (next_attempt >= 4))) {
+      break;
+    }
+    tried_a1 = (another ? closed_axis_a1
+        : (mirrors ? (beside_arm ? 2.0*closed_axis_a1 - tried_a1 : tried_a1) : tried_a1
+        + shared_quotient*step_a1));
+    tried_a2 = (another ? closed_axis_a2 : (mirrors ? tried_a2 : tried_a2 + shared_quotient*step_a2));
+    tried_a3 = (another ? closed_axis_a3
+        : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
+        + shared_quotient*step_a3));
+    passes_left = (another ? 40 : passes_left - 1);
+    attempt = next_attempt;
+    error_before = (another || mirrors ? 9.0 : error);
+  }
+  const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
+  const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);
+  const double chosen_a3 = softkin_on_turn(tried_a3, closed_near_a3);
+  found[0] = pose_is_met;
+  found[1] = chosen_a1;
+  found[2] = chosen_a2;
+  found[3] = chosen_a3;
+  return SOFTKIN_OK;
+}
+
 /* Position, rotation, and the signed margin of every branch. */
 static softkin_status find_forward(const void *machine, const double *axes, softkin_frame *frame,
     double *margins, softkin_refusal *why) {
@@ -105,37 +525,37 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double q2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double q3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
   const double q2_plus_q3 = q2 + q3;
-  const double sin_q23 = sin(q2_plus_q3);
-  const double r11_at_q23 = -cos_q1*sin_q23;
   const double cos_q23 = cos(q2_plus_q3);
-  const double r12_at_q23 = -cos_q1*cos_q23;
+  const double r11_at_q23 = cos_q1*cos_q23;
+  const double sin_q23 = sin(q2_plus_q3);
+  const double r13_at_q23 = -cos_q1*sin_q23;
   const double x_at_q2 = k->a1*cos_q1;
   const double sin_q2 = sin(q2);
-  const double r11_at_q2 = -cos_q1*sin_q2;
-  const double x_at_q3 = x_at_q2 + k->a2*r11_at_q2;
-  const double x = x_at_q3 + k->a3*r11_at_q23 + k->d3*sin_q1 - k->d4*r12_at_q23;
-  const double r21_at_q23 = -sin_q1*sin_q23;
-  const double r22_at_q23 = -cos_q23*sin_q1;
+  const double r13_at_q2 = -cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+  const double x = x_at_q3 + k->a3*r13_at_q23 + k->d3*sin_q1 + k->d4*r11_at_q23;
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double r23_at_q23 = -sin_q1*sin_q23;
   const double y_at_q2 = k->a1*sin_q1;
-  const double r21_at_q2 = -sin_q1*sin_q2;
-  const double y_at_q3 = y_at_q2 + k->a2*r21_at_q2;
-  const double y = y_at_q3 + k->a3*r21_at_q23 - k->d3*cos_q1 - k->d4*r22_at_q23;
+  const double r23_at_q2 = -sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+  const double y = y_at_q3 + k->a3*r23_at_q23 + k->d4*r21_at_q23 - k->d3*cos_q1;
   const double cos_q2 = cos(q2);
   const double z_at_q3 = k->d1 + k->a2*cos_q2;
   const double z = z_at_q3 + k->a3*cos_q23 + k->d4*sin_q23;
   const double branch_arm = k->one_by_machine_scale*(x*cos_q1 + y*sin_q1);
   const double sin_q3 = sin(q3);
   const double cos_q3 = cos(q3);
-  const double branch_elbow = k->d4_by_effective_q3_2*cos_q3 - k->a3_by_effective_q3_2*sin_q3;
+  const double branch_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2_2;
   frame->position[0] = x;
   frame->position[1] = y;
   frame->position[2] = z;
-  frame->rotation[0][0] = r11_at_q23;
+  frame->rotation[0][0] = r13_at_q23;
   frame->rotation[0][1] = sin_q1;
-  frame->rotation[0][2] = -r12_at_q23;
-  frame->rotation[1][0] = r21_at_q23;
+  frame->rotation[0][2] = r11_at_q23;
+  frame->rotation[1][0] = r23_at_q23;
   frame->rotation[1][1] = -cos_q1;
-  frame->rotation[1][2] = -r22_at_q23;
+  frame->rotation[1][2] = r21_at_q23;
   frame->rotation[2][0] = cos_q23;
   frame->rotation[2][1] = 0.0;
   frame->rotation[2][2] = sin_q23;
@@ -163,86 +583,41 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!(ahead_squared_q1 >= -1e-12*distance_q1_squared - k->rounding_q1)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: out of reach", "u", fabs(k->d3) - distance_q1, 0);
   }
-  /* coordinate of the point that the remaining links must reach */
-  const double wrist_y_from_q1 = z - k->d1;
-  const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
   const double sign_arm = sigma_arm; /* arm: +1 front, -1 back */
   /* how far ahead of the axis the point is; negative: behind it */
-  const double ahead_q1_before_q1_for_q3 = softkin_root(ahead_squared_q1)*sign_arm;
-  double cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3;
-  if (distance_q1 > k->machine_scale_times_free_angle) {
-    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - k->d3*y)/distance_q1_squared;
-    sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + k->d3*x)/distance_q1_squared;
-  } else {
-    const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3 = cos(reference_a1);
-    sin_q1_before_q1_for_q3 = sin(reference_a1);
-  }
-  double ahead_q1, cos_q1, sin_q1;
-  if (ahead_squared_q1 > k->machine_scale_squared_times_plane) {
-    ahead_q1 = ahead_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-    cos_q1 = cos_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-    sin_q1 = sin_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-  } else {
-    const double wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - k->a1;
-    /* q3 has solutions where this is within its bound */
-    const double value_q1_for_q3 = wrist_y_from_q1_squared
-        + wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
-        - k->a2_squared_plus_effective_q3_2_squared;
-    if (fabs(value_q1_for_q3) <= k->size_q1_for_q3_2) {
-      ahead_q1 = ahead_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-      cos_q1 = cos_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-      sin_q1 = sin_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-    } else {
-      /* its derivative by q1 */
-      const double rate_q1_for_q3 = -k->twice_d3*wrist_x_from_q1_before_q1_for_q3;
-      double turn_q1_for_q3;
-      if (fabs(rate_q1_for_q3) > k->size_q1_for_q3_2_times_rounding) {
-        const double excess_q1_for_q3 = value_q1_for_q3 > 0.0 ? value_q1_for_q3 - k->size_q1_for_q3_2
-            : k->size_q1_for_q3_2 + value_q1_for_q3;
-        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3; /* turn of q1 to first order */
-      } else {
-        turn_q1_for_q3 = 0.0; /* turn of q1 to first order */
-      }
-      const double turned_length_q1_for_q3 = softkin_root(1.0 + turn_q1_for_q3*turn_q1_for_q3);
-      const double one_by_turned_length_q1_for_q3 = 1.0/turned_length_q1_for_q3;
-      const double turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3
-          *(cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3);
-      const double turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3
-          *(sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3);
-      /* residual of the equation of q1 */
-      const double turned_cost_q1_for_q3 = fabs(k->d3 + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x);
-      if (turned_cost_q1_for_q3 > k->machine_scale_times_rounding) {
-        ahead_q1 = ahead_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-        cos_q1 = cos_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-        sin_q1 = sin_q1_before_q1_for_q3; /* turned so that q3 has a solution */
-      } else {
-        /* turned so that q3 has a solution */
-        ahead_q1 = (ahead_q1_before_q1_for_q3 - k->d3*turn_q1_for_q3)*one_by_turned_length_q1_for_q3;
-        cos_q1 = turned_cos_q1_for_q3; /* turned so that q3 has a solution */
-        sin_q1 = turned_sin_q1_for_q3; /* turned so that q3 has a solution */
-      }
-    }
-  }
+  const double ahead_q1 = softkin_root(ahead_squared_q1)*sign_arm;
   /* coordinate of the point that the remaining links must reach */
   const double wrist_x_from_q1 = ahead_q1 - k->a1;
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_z_from_q1 = z - k->d1;
   /* distance that the remaining links must span */
-  const double reach = softkin_root(wrist_y_from_q1_squared + wrist_x_from_q1*wrist_x_from_q1);
-  /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3 = (k->a2_plus_effective_q3_2 + reach)*(k->a2_plus_effective_q3_2 - reach);
+  const double reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_z_from_q1*wrist_z_from_q1);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double one_less_cos_q3 = (k->a2_plus_effective_q3_2_2 + reach)*(k->a2_plus_effective_q3_2_2 - reach);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3 = (reach - k->a2_minus_effective_q3_2)*(k->a2_minus_effective_q3_2 + reach);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
   const double divisor_of_cos_q3 = sum_q3 > 0.0 ? sum_q3 : 1.0;
   const double cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3;
+  const bool within_19 = fabs(cos_swing_q3) <= 1.0;
+  const bool lost_digits_19 = (!within_19) && (fabs(ahead_q1) <= k->product_in_lost_digits_19);
   /* q3: out of reach */
-  if (!(fabs(cos_swing_q3) <= 1.0000000000005)) {
+  if (!(lost_digits_19 || (fabs(cos_swing_q3) <= 1.0000000000005))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        (reach - k->a2_plus_effective_q3_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
-        - k->a2_plus_effective_q3_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
+        (reach - k->a2_plus_effective_q3_2_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
+        - k->a2_plus_effective_q3_2_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
+  }
+  double cos_q1, sin_q1;
+  if (distance_q1 > k->machine_scale_times_free_angle) {
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
+    cos_q1 = (ahead_q1*x - k->d3*y)/distance_q1_squared;
+    sin_q1 = (ahead_q1*y + k->d3*x)/distance_q1_squared;
+  } else {
+    const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
+    cos_q1 = cos(reference_a1);
+    sin_q1 = sin(reference_a1);
   }
   /* A1: without a commanded turn, the value nearest to this */
   const double open_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
@@ -259,8 +634,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     const double arm_along_q2 = -k->effective_q3_2*sin_swing_q3;
     const double arm_across_q2 = k->a2 + k->effective_q3_2*cos_swing_q3;
     /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1;
-    direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1;
+    direction_x_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
+    direction_y_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
     /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
@@ -274,17 +649,35 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double axis_a2 = softkin_on_turn(k->offset_a2
       + softkin_angle_of(direction_y_q2, direction_x_q2)*SOFTKIN_RADIAN, near_a2);
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3 = k->a3_by_effective_q3_2*cos_swing_q3 - k->d4_by_effective_q3_2*sin_swing_q3;
-  const double sin_q3 = k->a3_by_effective_q3_2*sin_swing_q3 + k->d4_by_effective_q3_2*cos_swing_q3;
+  const double cos_q3 = k->a3_by_effective_q3_2_2*cos_swing_q3 - k->d4_by_effective_q3_2_2*sin_swing_q3;
+  const double sin_q3 = k->a3_by_effective_q3_2_2*sin_swing_q3 + k->d4_by_effective_q3_2_2*cos_swing_q3;
   /* A3: without a commanded turn, the value nearest to this */
   const double open_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
   const double near_a3 = turn_a3 != 0 ? 360.0*(turn_a3 > 0 ? turn_a3 - 1 : turn_a3) : open_a3;
   /* A3: whole turns added */
   const double axis_a3 = softkin_on_turn(k->offset_a3 + softkin_angle_of(sin_q3, cos_q3)*SOFTKIN_RADIAN,
       near_a3);
-  axes[0] = axis_a1;
-  axes[1] = axis_a2;
-  axes[2] = axis_a3;
+  /* digits were lost: the pose is met by steps on the closure */
+  double results[4] = {0.0};
+  if (lost_digits_19) {
+    const double arguments[] = {ref_a1, ref_a2, ref_a3, sigma_arm, sigma_elbow, turn_a1, turn_a2, turn_a3, x,
+        y, z, axis_a1, axis_a2, axis_a3};
+    const softkin_status status = find_meet_pose(k, arguments, results, why);
+    if (status != SOFTKIN_OK) {
+      return status;
+    }
+  }
+  const double found_a1 = results[1], found_a2 = results[2], found_a3 = results[3];
+  const bool met = results[0] != 0.0;
+  /* q3: out of reach */
+  if (!(met || (fabs(cos_swing_q3) <= 1.0000000000005))) {
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
+        (reach - k->a2_plus_effective_q3_2_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
+        - k->a2_plus_effective_q3_2_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
+  }
+  axes[0] = (met ? found_a1 : axis_a1);
+  axes[1] = (met ? found_a2 : axis_a2);
+  axes[2] = (met ? found_a3 : axis_a3);
   return SOFTKIN_OK;
 }
 
@@ -378,25 +771,25 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double x_at_q2 = k->a1*cos_q1;
   const double q2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double sin_q2 = sin(q2);
-  const double r11_at_q2 = -cos_q1*sin_q2;
-  const double x_at_q3 = x_at_q2 + k->a2*r11_at_q2;
+  const double r13_at_q2 = -cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
   const double q3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
   const double q2_plus_q3 = q2 + q3;
-  const double sin_q23 = sin(q2_plus_q3);
-  const double r11_at_q23 = -cos_q1*sin_q23;
   const double cos_q23 = cos(q2_plus_q3);
-  const double r12_at_q23 = -cos_q1*cos_q23;
-  const double x = x_at_q3 + k->a3*r11_at_q23 + k->d3*sin_q1 - k->d4*r12_at_q23;
+  const double r11_at_q23 = cos_q1*cos_q23;
+  const double sin_q23 = sin(q2_plus_q3);
+  const double r13_at_q23 = -cos_q1*sin_q23;
+  const double x = x_at_q3 + k->a3*r13_at_q23 + k->d3*sin_q1 + k->d4*r11_at_q23;
   const double y_at_q2 = k->a1*sin_q1;
-  const double r21_at_q2 = -sin_q1*sin_q2;
-  const double y_at_q3 = y_at_q2 + k->a2*r21_at_q2;
-  const double r21_at_q23 = -sin_q1*sin_q23;
-  const double r22_at_q23 = -cos_q23*sin_q1;
-  const double y = y_at_q3 + k->a3*r21_at_q23 - k->d3*cos_q1 - k->d4*r22_at_q23;
+  const double r23_at_q2 = -sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double r23_at_q23 = -sin_q1*sin_q23;
+  const double y = y_at_q3 + k->a3*r23_at_q23 + k->d4*r21_at_q23 - k->d3*cos_q1;
   const double margin_point_on_axis_1 = k->one_by_machine_scale*(x*cos_q1 + y*sin_q1);
   const double sin_q3 = sin(q3);
   const double cos_q3 = cos(q3);
-  const double margin_elbow = k->d4_by_effective_q3_2*cos_q3 - k->a3_by_effective_q3_2*sin_q3;
+  const double margin_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2_2;
   margins[0] = margin_point_on_axis_1;
   margins[1] = margin_elbow;
   return SOFTKIN_OK;
@@ -416,21 +809,21 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double y_at_q2 = k->a1*sin_q1;
   const double q2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double sin_q2 = sin(q2);
-  const double r21_at_q2 = -sin_q1*sin_q2;
-  const double y_at_q3 = y_at_q2 + k->a2*r21_at_q2;
+  const double r23_at_q2 = -sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
   const double q3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
   const double q2_plus_q3 = q2 + q3;
-  const double sin_q23 = sin(q2_plus_q3);
-  const double r21_at_q23 = -sin_q1*sin_q23;
   const double cos_q23 = cos(q2_plus_q3);
-  const double r22_at_q23 = -cos_q23*sin_q1;
-  const double y = y_at_q3 + k->a3*r21_at_q23 - k->d3*cos_q1 - k->d4*r22_at_q23;
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double sin_q23 = sin(q2_plus_q3);
+  const double r23_at_q23 = -sin_q1*sin_q23;
+  const double y = y_at_q3 + k->a3*r23_at_q23 + k->d4*r21_at_q23 - k->d3*cos_q1;
   const double x_at_q2 = k->a1*cos_q1;
-  const double r11_at_q2 = -cos_q1*sin_q2;
-  const double x_at_q3 = x_at_q2 + k->a2*r11_at_q2;
-  const double r11_at_q23 = -cos_q1*sin_q23;
-  const double r12_at_q23 = -cos_q1*cos_q23;
-  const double x = x_at_q3 + k->a3*r11_at_q23 + k->d3*sin_q1 - k->d4*r12_at_q23;
+  const double r13_at_q2 = -cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+  const double r11_at_q23 = cos_q1*cos_q23;
+  const double r13_at_q23 = -cos_q1*sin_q23;
+  const double x = x_at_q3 + k->a3*r13_at_q23 + k->d3*sin_q1 + k->d4*r11_at_q23;
   const double cos_q2 = cos(q2);
   const double z_at_q3 = k->d1 + k->a2*cos_q2;
   const double z = z_at_q3 + k->a3*cos_q23 + k->d4*sin_q23;
@@ -448,74 +841,92 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
-/* Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an
- * answer. */
+/* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
+ * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
     softkin_status *statuses, double *axes) {
   const pos_rrr_machine *k = machine;
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2], ref_a1 = reference[0],
       ref_a2 = reference[1], ref_a3 = reference[2];
-  const double angle_of_a3_by_effective_q3_2 = softkin_angle_of(k->d4_by_effective_q3_2,
-      k->a3_by_effective_q3_2);
+  const double angle_of_a3_by_effective_q3_2_2 = softkin_angle_of(k->d4_by_effective_q3_2_2,
+      k->a3_by_effective_q3_2_2);
   const double distance_q1 = sqrt(x*x + y*y); /* distance of the point from the axis of q1 */
   /* Pythagoras: square of the distance ahead of the axis */
   const double ahead_squared_q1 = (distance_q1 - k->d3)*(k->d3 + distance_q1);
-  if (!(ahead_squared_q1 > k->machine_scale_squared_times_plane)) {
-    return false;
-  }
   const double distance_q1_squared = distance_q1*distance_q1;
   if (!(ahead_squared_q1 >= -1e-12*distance_q1_squared - k->rounding_q1)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 4);
   }
   /* how far ahead of the axis the point is; negative: behind it */
-  const double ahead_q1_before_q1_for_q3_front = softkin_root(ahead_squared_q1);
+  const double ahead_q1_front = softkin_root(ahead_squared_q1);
   /* coordinate of the point that the remaining links must reach */
-  const double wrist_x_from_q1_front = ahead_q1_before_q1_for_q3_front - k->a1;
+  const double wrist_x_from_q1_front = ahead_q1_front - k->a1;
   /* coordinate of the point that the remaining links must reach */
-  const double wrist_y_from_q1 = z - k->d1;
-  const double wrist_y_from_q1_squared = wrist_y_from_q1*wrist_y_from_q1;
+  const double wrist_z_from_q1 = z - k->d1;
+  const double wrist_z_from_q1_squared = wrist_z_from_q1*wrist_z_from_q1;
   /* distance that the remaining links must span */
-  const double reach_front = softkin_root(wrist_y_from_q1_squared
+  const double reach_front = softkin_root(wrist_z_from_q1_squared
       + wrist_x_from_q1_front*wrist_x_from_q1_front);
-  /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_front = (k->a2_plus_effective_q3_2 + reach_front)
-      *(k->a2_plus_effective_q3_2 - reach_front);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double one_less_cos_q3_front = (k->a2_plus_effective_q3_2_2 + reach_front)
+      *(k->a2_plus_effective_q3_2_2 - reach_front);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_front = (reach_front - k->a2_minus_effective_q3_2)
-      *(k->a2_minus_effective_q3_2 + reach_front);
+  const double one_plus_cos_q3_front = (reach_front - k->a2_minus_effective_q3_2_2)
+      *(k->a2_minus_effective_q3_2_2 + reach_front);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
   const double divisor_of_cos_q3_front = sum_q3_front > 0.0 ? sum_q3_front : 1.0;
   const double cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/divisor_of_cos_q3_front;
+  const bool within_19_front = fabs(cos_swing_q3_front) <= 1.0;
+  const bool lost_digits_19_front = (!within_19_front)
+      && (fabs(ahead_q1_front) <= k->product_in_lost_digits_19);
+  if (!(!lost_digits_19_front)) {
+    return false;
+  }
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_x_from_q1_back = -k->a1 - ahead_q1_front;
+  /* distance that the remaining links must span */
+  const double reach_back = softkin_root(wrist_z_from_q1_squared + wrist_x_from_q1_back*wrist_x_from_q1_back);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double one_less_cos_q3_back = (k->a2_plus_effective_q3_2_2 + reach_back)
+      *(k->a2_plus_effective_q3_2_2 - reach_back);
+  /* 1 + cosine, times the scale */
+  const double one_plus_cos_q3_back = (reach_back - k->a2_minus_effective_q3_2_2)
+      *(k->a2_minus_effective_q3_2_2 + reach_back);
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
+  const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
+  const double divisor_of_cos_q3_back = sum_q3_back > 0.0 ? sum_q3_back : 1.0;
+  const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back;
+  const bool within_19_back = fabs(cos_swing_q3_back) <= 1.0;
+  const bool lost_digits_19_back = (!within_19_back)
+      && (fabs(ahead_q1_front) <= k->product_in_lost_digits_19);
+  if (!(!lost_digits_19_back)) {
+    return false;
+  }
   /* q3: out of reach */
   const int refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
-  double cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back,
-      sin_q1_before_q1_for_q3_back;
+  double cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     const double d3_times_y = k->d3*y;
-    const double ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3_front*x;
+    const double ahead_q1_front_times_x = ahead_q1_front*x;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)
-        /distance_q1_squared;
+    cos_q1_front = (ahead_q1_front_times_x - d3_times_y)/distance_q1_squared;
     const double d3_times_x = k->d3*x;
-    const double ahead_q1_before_q1_for_q3_front_times_y = ahead_q1_before_q1_for_q3_front*y;
-    sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_y + d3_times_x)
-        /distance_q1_squared;
+    const double ahead_q1_front_times_y = ahead_q1_front*y;
+    sin_q1_front = (ahead_q1_front_times_y + d3_times_x)/distance_q1_squared;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front_times_x - d3_times_y)
-        /distance_q1_squared;
-    sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_front_times_y)/distance_q1_squared;
+    cos_q1_back = (-ahead_q1_front_times_x - d3_times_y)/distance_q1_squared;
+    sin_q1_back = (d3_times_x - ahead_q1_front_times_y)/distance_q1_squared;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3_front = cos(reference_a1);
-    sin_q1_before_q1_for_q3_front = sin(reference_a1);
+    cos_q1_front = cos(reference_a1);
+    sin_q1_front = sin(reference_a1);
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front;
-    sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front;
+    cos_q1_back = cos_q1_front;
+    sin_q1_back = sin_q1_front;
   }
-  const double axis_a1_front = k->offset_a1
-      + softkin_angle_of(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*SOFTKIN_RADIAN;
+  const double axis_a1_front = k->offset_a1 + softkin_angle_of(sin_q1_front, cos_q1_front)*SOFTKIN_RADIAN;
   /* sine squared, times the squared scale */
   const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
   const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
@@ -525,9 +936,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double arm_across_q2_front = k->a2 + k->effective_q3_2*cos_swing_q3_front;
     const double angle_of_arm_across_q2_front_down = softkin_angle_of(arm_along_q2_front_down,
         arm_across_q2_front);
-    const double angle_of_wrist_y_from_q1_front = softkin_angle_of(wrist_x_from_q1_front, wrist_y_from_q1);
-    angle_q2_front_down = angle_of_arm_across_q2_front_down - angle_of_wrist_y_from_q1_front;
-    angle_q2_front_up = -angle_of_arm_across_q2_front_down - angle_of_wrist_y_from_q1_front;
+    const double angle_of_wrist_z_from_q1_front = softkin_angle_of(wrist_x_from_q1_front, wrist_z_from_q1);
+    angle_q2_front_down = angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
+    angle_q2_front_up = -angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
     angle_q2_front_down = reference_a2;
@@ -535,28 +946,13 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double axis_a2_front_down = k->offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
   const double angle_of_swing_q3_front_down = -softkin_angle_of(sin_swing_q3_front_up, cos_swing_q3_front);
-  const double angle_q3_front_down = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_front_down;
+  const double angle_q3_front_down = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_front_down;
   const double axis_a3_front_down = k->offset_a3 + angle_q3_front_down*SOFTKIN_RADIAN;
   const double axis_a2_front_up = k->offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
-  const double angle_q3_front_up = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_front_down;
+  const double angle_q3_front_up = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_front_down;
   const double axis_a3_front_up = k->offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
-  /* coordinate of the point that the remaining links must reach */
-  const double wrist_x_from_q1_back = -k->a1 - ahead_q1_before_q1_for_q3_front;
-  /* distance that the remaining links must span */
-  const double reach_back = softkin_root(wrist_y_from_q1_squared + wrist_x_from_q1_back*wrist_x_from_q1_back);
-  /* law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_back = (k->a2_plus_effective_q3_2 + reach_back)
-      *(k->a2_plus_effective_q3_2 - reach_back);
-  /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_back = (reach_back - k->a2_minus_effective_q3_2)
-      *(k->a2_minus_effective_q3_2 + reach_back);
-  /* sum of both, twice the scale: cosine² + sine² is then 1 */
-  const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
-  const double divisor_of_cos_q3_back = sum_q3_back > 0.0 ? sum_q3_back : 1.0;
-  const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back;
   const int refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3; /* q3: out of reach */
-  const double axis_a1_back = k->offset_a1
-      + softkin_angle_of(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*SOFTKIN_RADIAN;
+  const double axis_a1_back = k->offset_a1 + softkin_angle_of(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
   /* sine squared, times the squared scale */
   const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
   const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
@@ -566,9 +962,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double arm_across_q2_back = k->a2 + k->effective_q3_2*cos_swing_q3_back;
     const double angle_of_arm_across_q2_back_down = softkin_angle_of(arm_along_q2_back_down,
         arm_across_q2_back);
-    const double angle_of_wrist_y_from_q1_back = softkin_angle_of(wrist_x_from_q1_back, wrist_y_from_q1);
-    angle_q2_back_down = angle_of_arm_across_q2_back_down - angle_of_wrist_y_from_q1_back;
-    angle_q2_back_up = -angle_of_arm_across_q2_back_down - angle_of_wrist_y_from_q1_back;
+    const double angle_of_wrist_z_from_q1_back = softkin_angle_of(wrist_x_from_q1_back, wrist_z_from_q1);
+    angle_q2_back_down = angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
+    angle_q2_back_up = -angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
     angle_q2_back_down = reference_a2;
@@ -576,10 +972,10 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double axis_a2_back_down = k->offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
   const double angle_of_swing_q3_back_down = -softkin_angle_of(sin_swing_q3_back_up, cos_swing_q3_back);
-  const double angle_q3_back_down = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_back_down;
+  const double angle_q3_back_down = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_back_down;
   const double axis_a3_back_down = k->offset_a3 + angle_q3_back_down*SOFTKIN_RADIAN;
   const double axis_a2_back_up = k->offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
-  const double angle_q3_back_up = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_back_down;
+  const double angle_q3_back_up = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_back_down;
   const double axis_a3_back_up = k->offset_a3 + angle_q3_back_up*SOFTKIN_RADIAN;
   const double near_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
   const double near_a2 = k->single_a2 ? k->mid_a2 : ref_a2;
@@ -628,19 +1024,20 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double effective_q3_2 = sqrt(p->a3*p->a3 + p->d4*p->d4);
   /* rounding error of a squared length */
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
-  const double size_q1_for_q3_2 = 2.0*fabs(effective_q3_2)*p->a2;
-  const double a2_squared = p->a2*p->a2;
-  const double size_q1_for_q3_2_times_rounding = 1e-12*size_q1_for_q3_2;
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
-  const double machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale;
-  const double machine_scale_times_rounding = 1e-12*machine_scale;
+  const double a2_times_shortest_link = 1e-9*p->a2;
+  const double product_in_lost_digits_19 = 0.01*machine_scale;
   const double a2_minus_effective_q3_2 = p->a2 - effective_q3_2;
+  const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
+  const double one_by_effective_q3_2 = 1.0/effective_q3_2;
+  const double a2_plus_effective_q3_2 = p->a2 + effective_q3_2;
+  const double a2_minus_effective_q3_2_2 = p->a2 - effective_q3_2;
   const double d4_by_effective_q3_2 = p->d4/effective_q3_2;
   const double a3_by_effective_q3_2 = p->a3/effective_q3_2;
-  const double a2_squared_plus_effective_q3_2_squared = a2_squared + effective_q3_2*effective_q3_2;
-  const double twice_d3 = 2.0*p->d3;
-  const double a2_plus_effective_q3_2 = p->a2 + effective_q3_2;
+  const double one_by_effective_q3_2_2 = 1.0/effective_q3_2;
+  const double a2_plus_effective_q3_2_2 = p->a2 + effective_q3_2;
+  const double d4_by_effective_q3_2_2 = p->d4/effective_q3_2;
+  const double a3_by_effective_q3_2_2 = p->a3/effective_q3_2;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -662,20 +1059,23 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a1 = p->offset_a1;
   made.offset_a2 = p->offset_a2;
   made.offset_a3 = p->offset_a3;
+  made.machine_scale = machine_scale;
   made.effective_q3_2 = effective_q3_2;
   made.rounding_q1 = rounding_q1;
-  made.size_q1_for_q3_2 = size_q1_for_q3_2;
-  made.size_q1_for_q3_2_times_rounding = size_q1_for_q3_2_times_rounding;
-  made.machine_scale_times_free_angle = machine_scale_times_free_angle;
-  made.machine_scale_squared_times_plane = machine_scale_squared_times_plane;
-  made.machine_scale_times_rounding = machine_scale_times_rounding;
+  made.a2_times_shortest_link = a2_times_shortest_link;
+  made.product_in_lost_digits_19 = product_in_lost_digits_19;
   made.a2_minus_effective_q3_2 = a2_minus_effective_q3_2;
+  made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;
+  made.one_by_effective_q3_2 = one_by_effective_q3_2;
+  made.a2_plus_effective_q3_2 = a2_plus_effective_q3_2;
+  made.a2_minus_effective_q3_2_2 = a2_minus_effective_q3_2_2;
   made.d4_by_effective_q3_2 = d4_by_effective_q3_2;
   made.a3_by_effective_q3_2 = a3_by_effective_q3_2;
-  made.a2_squared_plus_effective_q3_2_squared = a2_squared_plus_effective_q3_2_squared;
-  made.twice_d3 = twice_d3;
-  made.a2_plus_effective_q3_2 = a2_plus_effective_q3_2;
+  made.one_by_effective_q3_2_2 = one_by_effective_q3_2_2;
+  made.a2_plus_effective_q3_2_2 = a2_plus_effective_q3_2_2;
+  made.d4_by_effective_q3_2_2 = d4_by_effective_q3_2_2;
+  made.a3_by_effective_q3_2_2 = a3_by_effective_q3_2_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(pos_rrr_machine *)machine = made;
   return SOFTKIN_OK;

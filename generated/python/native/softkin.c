@@ -349,6 +349,23 @@ static void write_turns(const softkin_mechanism *kind, const void *machine, cons
   }
 }
 
+softkin_status softkin_start_at(const softkin_mechanism *kind, const void *machine,
+    const softkin_frame *start, void *moved, softkin_refusal *why) {
+  softkin_status status = refused(machine, start != NULL && moved != NULL, why);
+  softkin_frame begin;
+  if (status == SOFTKIN_OK && kind->start_at == NULL) {
+    return bad(why, "forward kinematics needs no start");
+  }
+  if (status == SOFTKIN_OK) {
+    begin = *start;
+    status = find_rotation(start, &begin, why);
+  }
+  if (status == SOFTKIN_OK) {
+    kind->start_at(machine, &begin, moved);
+  }
+  return status;
+}
+
 softkin_status softkin_forward(const softkin_mechanism *kind, const void *machine, const double *axes,
     const softkin_frame *start, softkin_frame *frame, int8_t *configuration, double *margins,
     softkin_refusal *why) {

@@ -162,6 +162,7 @@ typedef struct {
       softkin_refusal *why);
   softkin_status (*forward_from)(const void *machine, const double *axes, const softkin_frame *start,
       softkin_frame *frame, double *margins, softkin_refusal *why); /**< or NULL */
+  void (*start_at)(const void *machine, const softkin_frame *start, void *moved); /**< or NULL */
   softkin_status (*branch)(const void *machine, const softkin_frame *frame, const int8_t *signs,
       const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
   softkin_status (*limit)(const void *machine, const double *axes, softkin_refusal *why);
@@ -205,6 +206,17 @@ softkin_status softkin_init(const softkin_mechanism *kind, void *machine, const 
 softkin_status softkin_forward(const softkin_mechanism *kind, const void *machine, const double *axes,
     const softkin_frame *start, softkin_frame *frame, int8_t *configuration, double *margins,
     softkin_refusal *why);
+
+/**
+ * The machine whose forward kinematics begins at `start`: with it, every call of axis values answers for the
+ * frame that
+ * they have there.
+ *
+ * @param start the frame that the axes have, or one nearby; `kind` must have `start_at`
+ * @param moved `kind->machine_size` bytes
+ */
+softkin_status softkin_start_at(const softkin_mechanism *kind, const void *machine,
+    const softkin_frame *start, void *moved, softkin_refusal *why);
 
 /**
  * The axis values that reach a frame.

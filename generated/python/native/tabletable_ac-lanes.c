@@ -31,12 +31,12 @@ void tabletable_ac_regular(const void *machine, const softkin_lanes *given,
     const double x_from_c = x*cos_c - y*sin_c;
     const double axis_x = offset_x + x_from_c;
     const double c_radius_of_a = radius_c*sign_tilt;
+    const double z_from_c = pivot_z + z;
     const double y_from_c = y*cos_c + x*sin_c;
     const double pivot_y_plus_y_from_c = pivot_y + y_from_c;
-    const double pivot_z_plus_z = pivot_z + z;
-    const double y_from_c_a = pivot_y_plus_y_from_c*r33 - c_radius_of_a*pivot_z_plus_z;
+    const double y_from_c_a = pivot_y_plus_y_from_c*r33 - c_radius_of_a*z_from_c;
     const double axis_y = offset_y + y_from_c_a;
-    const double z_from_c_a = c_radius_of_a*pivot_y_plus_y_from_c + pivot_z_plus_z*r33;
+    const double z_from_c_a = c_radius_of_a*pivot_y_plus_y_from_c + r33*z_from_c;
     /* joint_z from the z_from_c_a equation, which is linear in it */
     const double joint_z = tool_length + z_from_c_a;
     const double axis_z = joint_z + offset_z;
@@ -74,14 +74,14 @@ void tabletable_ac_regular_all(const void *machine, const softkin_lanes *given,
     const double r13_by_radius_c = r13/radius_c;
     const double x_from_c_positive = r23_by_radius_c*x - r13_by_radius_c*y;
     const double axis_x_positive = offset_x + x_from_c_positive;
-    const double pivot_z_plus_z = pivot_z + z;
-    const double radius_c_times_pivot_z_plus_z = pivot_z_plus_z*radius_c;
+    const double z_from_c = pivot_z + z;
+    const double radius_c_times_z_from_c = radius_c*z_from_c;
     const double y_from_c_positive = r13_by_radius_c*x + r23_by_radius_c*y;
     const double pivot_y_plus_y_from_c_positive = pivot_y + y_from_c_positive;
-    const double y_from_c_a_positive = pivot_y_plus_y_from_c_positive*r33 - radius_c_times_pivot_z_plus_z;
+    const double y_from_c_a_positive = pivot_y_plus_y_from_c_positive*r33 - radius_c_times_z_from_c;
     const double axis_y_positive = offset_y + y_from_c_a_positive;
-    const double r33_times_pivot_z_plus_z = pivot_z_plus_z*r33;
-    const double z_from_c_a_positive = r33_times_pivot_z_plus_z + pivot_y_plus_y_from_c_positive*radius_c;
+    const double r33_times_z_from_c = r33*z_from_c;
+    const double z_from_c_a_positive = r33_times_z_from_c + pivot_y_plus_y_from_c_positive*radius_c;
     /* joint_z from the z_from_c_a equation, which is linear in it */
     const double joint_z_positive = tool_length + z_from_c_a_positive;
     const double axis_z_positive = joint_z_positive + offset_z;
@@ -93,9 +93,9 @@ void tabletable_ac_regular_all(const void *machine, const softkin_lanes *given,
     const double axis_x_negative = offset_x + x_from_c_negative;
     const double y_from_c_negative = -y_from_c_positive;
     const double pivot_y_plus_y_from_c_negative = pivot_y + y_from_c_negative;
-    const double y_from_c_a_negative = radius_c_times_pivot_z_plus_z + pivot_y_plus_y_from_c_negative*r33;
+    const double y_from_c_a_negative = radius_c_times_z_from_c + pivot_y_plus_y_from_c_negative*r33;
     const double axis_y_negative = offset_y + y_from_c_a_negative;
-    const double z_from_c_a_negative = r33_times_pivot_z_plus_z - pivot_y_plus_y_from_c_negative*radius_c;
+    const double z_from_c_a_negative = r33_times_z_from_c - pivot_y_plus_y_from_c_negative*radius_c;
     /* joint_z from the z_from_c_a equation, which is linear in it */
     const double joint_z_negative = tool_length + z_from_c_a_negative;
     const double axis_z_negative = joint_z_negative + offset_z;

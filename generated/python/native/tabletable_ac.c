@@ -174,12 +174,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double x_from_c = x*cos_c - y*sin_c;
   const double axis_x = k->offset_x + x_from_c;
   const double c_radius_of_a = radius_c*sign_tilt;
+  const double z_from_c = k->pivot_z + z;
   const double y_from_c = y*cos_c + x*sin_c;
   const double pivot_y_plus_y_from_c = k->pivot_y + y_from_c;
-  const double pivot_z_plus_z = k->pivot_z + z;
-  const double y_from_c_a = pivot_y_plus_y_from_c*r33 - c_radius_of_a*pivot_z_plus_z;
+  const double y_from_c_a = pivot_y_plus_y_from_c*r33 - c_radius_of_a*z_from_c;
   const double axis_y = k->offset_y + y_from_c_a;
-  const double z_from_c_a = c_radius_of_a*pivot_y_plus_y_from_c + pivot_z_plus_z*r33;
+  const double z_from_c_a = c_radius_of_a*pivot_y_plus_y_from_c + r33*z_from_c;
   /* joint_z from the z_from_c_a equation, which is linear in it */
   const double joint_z = k->tool_length + z_from_c_a;
   const double axis_z = joint_z + k->offset_z;
@@ -349,8 +349,8 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
-/* Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an
- * answer. */
+/* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
+ * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
     softkin_status *statuses, double *axes) {
   const tabletable_ac_machine *k = machine;
@@ -373,14 +373,14 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double x_from_c_positive = x*cos_c_positive - y*sin_c_positive;
   const double axis_x_positive = k->offset_x + x_from_c_positive;
-  const double pivot_z_plus_z = k->pivot_z + z;
-  const double radius_c_times_pivot_z_plus_z = pivot_z_plus_z*radius_c;
+  const double z_from_c = k->pivot_z + z;
+  const double radius_c_times_z_from_c = radius_c*z_from_c;
   const double y_from_c_positive = y*cos_c_positive + x*sin_c_positive;
   const double pivot_y_plus_y_from_c_positive = k->pivot_y + y_from_c_positive;
-  const double y_from_c_a_positive = pivot_y_plus_y_from_c_positive*r33 - radius_c_times_pivot_z_plus_z;
+  const double y_from_c_a_positive = pivot_y_plus_y_from_c_positive*r33 - radius_c_times_z_from_c;
   const double axis_y_positive = k->offset_y + y_from_c_a_positive;
-  const double r33_times_pivot_z_plus_z = pivot_z_plus_z*r33;
-  const double z_from_c_a_positive = r33_times_pivot_z_plus_z + pivot_y_plus_y_from_c_positive*radius_c;
+  const double r33_times_z_from_c = r33*z_from_c;
+  const double z_from_c_a_positive = r33_times_z_from_c + pivot_y_plus_y_from_c_positive*radius_c;
   /* joint_z from the z_from_c_a equation, which is linear in it */
   const double joint_z_positive = k->tool_length + z_from_c_a_positive;
   const double axis_z_positive = joint_z_positive + k->offset_z;
@@ -400,9 +400,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double axis_x_negative = k->offset_x + x_from_c_negative;
   const double pivot_y_plus_y_from_c_negative = k->pivot_y + y_from_c_negative;
-  const double y_from_c_a_negative = radius_c_times_pivot_z_plus_z + pivot_y_plus_y_from_c_negative*r33;
+  const double y_from_c_a_negative = radius_c_times_z_from_c + pivot_y_plus_y_from_c_negative*r33;
   const double axis_y_negative = k->offset_y + y_from_c_a_negative;
-  const double z_from_c_a_negative = r33_times_pivot_z_plus_z - pivot_y_plus_y_from_c_negative*radius_c;
+  const double z_from_c_a_negative = r33_times_z_from_c - pivot_y_plus_y_from_c_negative*radius_c;
   /* joint_z from the z_from_c_a equation, which is linear in it */
   const double joint_z_negative = k->tool_length + z_from_c_a_negative;
   const double axis_z_negative = joint_z_negative + k->offset_z;

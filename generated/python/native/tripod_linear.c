@@ -169,13 +169,12 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
       *k->one_by_arm_length;
   const double span_2_y = y - k->sum_in_pivot_2_y;
   const double span_2_x = x - k->sum_in_pivot_2_x; /* rod 2: known part of its vector */
-  const double sum_in_branch_carriage_2 = span_2_x*k->sin_rail_angle_times_half_by_arm_length
-      - z*k->cos_rail_angle_by_arm_length;
-  const double branch_carriage_2 = a2*k->one_by_arm_length + k->quotient_in_branch_carriage_2*span_2_y
-      - sum_in_branch_carriage_2;
+  const double sum_in_branch_carriage_2 = k->twice_cos_rail_angle*z - span_2_x*k->sin_rail_angle;
+  const double branch_carriage_2 = (2.0*a2 + sum_in_branch_carriage_2
+      + span_2_y*k->sin_rail_angle_times_root_of_3)*k->half_by_arm_length;
   const double span_3_y = k->sum_in_pivot_2_y + y;
-  const double branch_carriage_3 = a3*k->one_by_arm_length - sum_in_branch_carriage_2
-      - k->quotient_in_branch_carriage_2*span_3_y;
+  const double branch_carriage_3 = (2.0*a3 + sum_in_branch_carriage_2
+      - span_3_y*k->sin_rail_angle_times_root_of_3)*k->half_by_arm_length;
   frame->position[0] = x;
   frame->position[1] = y;
   frame->position[2] = z;
@@ -420,13 +419,12 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double y = foot_y + height_by_normal*normal_y;
   const double span_2_y = y - k->sum_in_pivot_2_y;
   const double span_2_x = x - k->sum_in_pivot_2_x; /* rod 2: known part of its vector */
-  const double sum_in_margin_square_2 = span_2_x*k->sin_rail_angle_times_half_by_arm_length
-      - z*k->cos_rail_angle_by_arm_length;
-  const double margin_square_2 = a2*k->one_by_arm_length + k->quotient_in_branch_carriage_2*span_2_y
-      - sum_in_margin_square_2;
+  const double sum_in_margin_square_2 = k->twice_cos_rail_angle*z - span_2_x*k->sin_rail_angle;
+  const double margin_square_2 = (2.0*a2 + sum_in_margin_square_2
+      + span_2_y*k->sin_rail_angle_times_root_of_3)*k->half_by_arm_length;
   const double span_3_y = k->sum_in_pivot_2_y + y;
-  const double margin_square_3 = a3*k->one_by_arm_length - sum_in_margin_square_2
-      - k->quotient_in_branch_carriage_2*span_3_y;
+  const double margin_square_3 = (2.0*a3 + sum_in_margin_square_2
+      - span_3_y*k->sin_rail_angle_times_root_of_3)*k->half_by_arm_length;
   const double rod_1_x = x - pivot_1_x;
   const double rod_1_z = z - pivot_1_z;
   const double rod_2_x = x - pivot_2_x;
@@ -561,8 +559,8 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
-/* Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an
- * answer. */
+/* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
+ * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
     softkin_status *statuses, double *axes) {
   (void)reference;
@@ -813,9 +811,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double sin_rail_angle_times_root_of_3 = root_of_3*sin_rail_angle;
   const double twice_cos_rail_angle = 2.0*cos_rail_angle;
   const double half_by_arm_length = 0.5/p->arm_length;
-  const double sin_rail_angle_times_half_by_arm_length = 0.5*sin_rail_angle/p->arm_length;
-  const double cos_rail_angle_by_arm_length = cos_rail_angle/p->arm_length;
-  const double quotient_in_branch_carriage_2 = 0.5*root_of_3*sin_rail_angle/p->arm_length;
   const double product_in_radicand_a1 = 2.0*cos_rail_angle*sin_rail_angle;
   const double cos_rail_angle_squared = cos_rail_angle*cos_rail_angle;
   const double product_in_radicand_a2 = root_of_3*cos_rail_angle*sin_rail_angle;
@@ -861,9 +856,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.sin_rail_angle_times_root_of_3 = sin_rail_angle_times_root_of_3;
   made.twice_cos_rail_angle = twice_cos_rail_angle;
   made.half_by_arm_length = half_by_arm_length;
-  made.sin_rail_angle_times_half_by_arm_length = sin_rail_angle_times_half_by_arm_length;
-  made.cos_rail_angle_by_arm_length = cos_rail_angle_by_arm_length;
-  made.quotient_in_branch_carriage_2 = quotient_in_branch_carriage_2;
   made.product_in_radicand_a1 = product_in_radicand_a1;
   made.cos_rail_angle_squared = cos_rail_angle_squared;
   made.product_in_radicand_a2 = product_in_radicand_a2;

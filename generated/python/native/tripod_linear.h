@@ -89,7 +89,6 @@ typedef struct {
       arm_length_squared_times_rounding, product_in_determinant_divisor, product_in_pivot_2_y,
       sum_in_pivot_2_y, inner_radius_minus_outer_radius, half_sin_rail_angle, sum_in_pivot_2_x,
       one_by_arm_length, sin_rail_angle_times_root_of_3, twice_cos_rail_angle, half_by_arm_length,
-      sin_rail_angle_times_half_by_arm_length, cos_rail_angle_by_arm_length, quotient_in_branch_carriage_2,
       product_in_radicand_a1, cos_rail_angle_squared, product_in_radicand_a2, product_in_radicand_a2_2,
       cos_rail_angle_times_sin_rail_angle, sin_rail_angle_squared_times_1_by_4,
       quotient_in_type2_rods_coplanar, root_of_3_times_half_by_arm_length, one_minus_sin_rail_angle_squared,

@@ -90,11 +90,11 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double sin_b = sin(b);
   const double r31_at_b = -k->tool_side*sin_b;
   const double r13_at_b = -r31_at_b*cos_a;
-  const double x_at_b = k->roll_axis_offset_x*cos_a - k->roll_axis_offset_y*sin_a;
-  const double x = x_at_b + r13_at_b*k->tool_length_times_tool_side;
+  const double x_at_b = k->roll_axis_offset_x*cos_a;
+  const double x = x_at_b + r13_at_b*k->tool_length_times_tool_side - k->roll_axis_offset_y*sin_a;
   const double r23_at_b = -r31_at_b*sin_a;
-  const double y_at_b = k->roll_axis_offset_y*cos_a + k->roll_axis_offset_x*sin_a;
-  const double y = y_at_b + r23_at_b*k->tool_length_times_tool_side;
+  const double y_at_b = k->roll_axis_offset_x*sin_a;
+  const double y = y_at_b + k->roll_axis_offset_y*cos_a + r23_at_b*k->tool_length_times_tool_side;
   const double cos_b = cos(b);
   const double z = k->roll_axis_offset_z + k->tool_length_times_tool_side*cos_b;
   const double r11_at_b = cos_a*cos_b;
@@ -252,8 +252,8 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
-/* Every branch on its turns, of input that is good; false near a fold: there a branch by itself has an
- * answer. */
+/* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
+ * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
     softkin_status *statuses, double *axes) {
   const wrist2_machine *k = machine;

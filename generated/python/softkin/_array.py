@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import Any, ClassVar, TypeAlias, TypeVar
+from typing import Any, ClassVar, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from softkin._scalar import DEGREE
+from softkin._start import with_start
 from softkin._types import Status
 
 __all__ = [
@@ -45,6 +46,7 @@ __all__ = [
     "reasonable",
     "require",
     "root",
+    "run_where",
     "select",
     "settled",
     "sin",
@@ -85,6 +87,10 @@ class Programs(ABC):
     def __init__(self, constants: Any) -> None:
         """constants: those of the machine for which the programs compute."""
         self.constants = constants
+
+    def at(self, rows: slice) -> Programs:
+        """The programs of some rows."""
+        return self
 
     @abstractmethod
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
@@ -131,11 +137,9 @@ class Programs(ABC):
 class StartedPrograms(Programs):
     """The programs on arrays of a mechanism whose forward kinematics iterates."""
 
-    @abstractmethod
-    def forward_from(
-        self, axes: Reals, start_position: Vector, start_rotation: Rotation
-    ) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
-        """Forward kinematics from a given start."""
+    def started(self, position: Vector, rotation: Rotation) -> Self:
+        """These programs, whose forward kinematics starts at other frames."""
+        return type(self)(with_start(self.constants, position, rotation))
 
 
 class OrientationPrograms(Programs):
@@ -234,6 +238,21 @@ def settled(done: Truth, status: Codes) -> bool:
 def advanced(done: Truth, state: Reals, following: Reals) -> Values:
     """The state for the next pass: rows that are done keep theirs."""
     return tuple(np.where(done, old, new) for old, new in zip(state, following, strict=True))
+
+
+def run_where(
+    wanted: Truth, program: Callable[[Values, Codes], Values], given: Values, status: Codes, nothing: tuple[float, ...]
+) -> Values:
+    """The results of a shared program in the rows where it is wanted; `nothing` in all other rows."""
+    shape, found = status.shape, tuple(np.full(status.shape, value) for value in nothing)
+    rows = np.flatnonzero(np.broadcast_to(wanted, shape) & (status == Status.OK))
+    if len(rows):
+        own = tuple(np.broadcast_to(value, shape).ravel()[rows] for value in given)
+        codes: Codes = np.zeros(len(rows), np.uint8)
+        for column, values in zip(found, program(own, codes), strict=True):
+            column.reshape(-1)[rows] = values
+        status.reshape(-1)[rows] = codes
+    return found
 
 
 def sin(x: Real) -> Real:

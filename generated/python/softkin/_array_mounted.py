@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -134,14 +134,13 @@ class StartedMountedPrograms(MountedPrograms, StartedPrograms):
 
     programs: StartedPrograms
 
-    def forward_from(
-        self, axes: Reals, start_position: Vector, start_rotation: Rotation
-    ) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
-        """Forward kinematics from a start of the tool."""
-        rotation = product(seen_from(self.base_rotation, start_rotation), transposed(self.tool_rotation))
-        place = turned(transposed(self.base_rotation), plus(start_position, self.base, -1.0))
-        pose, status = self.programs.forward_from(axes, plus(place, turned(rotation, self.tool), -1.0), rotation)
-        return self._of_flange(*pose), status
+    def started(self, position: Vector, rotation: Rotation) -> Self:
+        """These programs, whose forward kinematics starts at other frames of the tool."""
+        turn = product(seen_from(self.base_rotation, rotation), transposed(self.tool_rotation))
+        place = plus(
+            turned(transposed(self.base_rotation), plus(position, self.base, -1.0)), turned(turn, self.tool), -1.0
+        )
+        return type(self)(self.machine, self.programs.started(place, turn), self.kind, self.shift)
 
 
 def _length(vector: Vector) -> Real:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -47,29 +48,36 @@ _UNTRIED = 255
 _Forward: TypeAlias = tuple[tuple[Vector, Rotation, Reals], Codes]
 
 
-def forward(robot: Mechanism, programs: Programs, axes: ArrayLike) -> tuple[Array, Array, Bytes, Codes]:
+def forward(robot: Mechanism, programs: Programs | Started, axes: ArrayLike) -> tuple[Array, Array, Bytes, Codes]:
     """Forward kinematics of every row."""
     values = numbers(axes, None, (len(robot.AXES),), "axes")
-    return _poses(robot, values, lambda rows: programs.forward(columns(values[rows])))
+    return _poses(robot, values, lambda rows: programs.at(rows).forward(columns(values[rows])))
 
 
-def forward_from(
-    robot: Mechanism, programs: StartedPrograms, axes: ArrayLike, start: FrameLike | tuple[ArrayLike, ArrayLike]
-) -> tuple[Array, Array, Bytes, Codes]:
-    """Forward kinematics of every row, from a start of its own or from one start for all."""
-    values = numbers(axes, None, (len(robot.AXES),), "axes")
-    given = starts(start)
-    places = numbers(given[0], len(values), (3,), "start positions")
-    turns = numbers(given[1], len(values), (3, 3), "start rotations")
+@dataclass(frozen=True)
+class Started:
+    """The programs of a mechanism whose forward kinematics starts at a frame of its own in every row."""
 
-    def from_start(rows: slice) -> _Forward:
-        x, y, z = columns(places[rows])
-        a, b, c, d, e, f, g, h, i = columns(turns[rows].reshape(-1, 9))
+    programs: StartedPrograms
+    positions: Array
+    rotations: Array
+
+    def at(self, rows: slice) -> Programs:
+        """The programs of some rows. A start that is no rotation is no number, so that it is refused."""
+        a, b, c, d, e, f, g, h, i = columns(self.rotations[rows].reshape(-1, 9))
         rotation, refused = made_rotations(((a, b, c), (d, e, f), (g, h, i)))
-        pose, status = programs.forward_from(columns(values[rows]), (x, y, z), rotation)
-        return pose, _later(refused, status)
+        x, y, z = columns(self.positions[rows])
+        return self.programs.started((np.where(refused == Status.OK, x, np.nan), y, z), rotation)
 
-    return _poses(robot, values, from_start)
+
+def started(
+    robot: Mechanism, programs: StartedPrograms, axes: ArrayLike, start: FrameLike | tuple[ArrayLike, ArrayLike]
+) -> Started:
+    """The programs from a start of its own for every row of axes, or from one start for all."""
+    count = len(numbers(axes, None, (len(robot.AXES),), "axes"))
+    places, turns = starts(start)
+    positions = numbers(places, count, (3,), "start positions")
+    return Started(programs, positions, numbers(turns, count, (3, 3), "start rotations"))
 
 
 def _poses(robot: Mechanism, values: Array, program: Callable[[slice], _Forward]) -> tuple[Array, Array, Bytes, Codes]:

@@ -497,6 +497,10 @@ class Mechanism(Value, ABC):
         is_singular = any(abs(margin) < near for margin in margins)
         return Singularity(is_singular, dict(zip(self.MARGINS, margins, strict=True)))
 
+    def _started(self, position: Vector, rotation: Rotation) -> Self:
+        """This machine, whose forward kinematics starts at a frame that the axes have: the same unless it iterates."""
+        return self
+
     def _warning_distance(self) -> float:
         """The size of a margin below which a pose is called singular."""
         return self.parameters.get("warning_distance", WARNING_DISTANCE)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from softkin._array import Array, Codes, Programs
-from softkin._batch import CHUNK
+from softkin._batch import CHUNK, Started
 from softkin._columns import columns
 from softkin._table import numbers
 from softkin._types import Status
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from softkin._core import Mechanism
 
 
-def jacobian(robot: Mechanism, programs: Programs, axes: ArrayLike) -> tuple[Array, Codes]:
+def jacobian(robot: Mechanism, programs: Programs | Started, axes: ArrayLike) -> tuple[Array, Codes]:
     """The Jacobian of every row, and its status."""
     values = numbers(axes, None, (len(robot.AXES),), "axes")
     count = len(values)
@@ -27,7 +27,7 @@ def jacobian(robot: Mechanism, programs: Programs, axes: ArrayLike) -> tuple[Arr
     for start in range(0, count, CHUNK):
         rows = slice(start, start + CHUNK)
         with np.errstate(all="ignore"):
-            entries, status = programs.jacobian(columns(values[rows]))
+            entries, status = programs.at(rows).jacobian(columns(values[rows]))
         for i, row in enumerate(entries):
             for k, entry in enumerate(row):
                 matrices[rows, i, k] = entry
@@ -36,7 +36,7 @@ def jacobian(robot: Mechanism, programs: Programs, axes: ArrayLike) -> tuple[Arr
     return matrices, statuses
 
 
-def singularity(robot: Mechanism, programs: Programs, axes: ArrayLike) -> tuple[NDArray[np.bool_], Array]:
+def singularity(robot: Mechanism, programs: Programs | Started, axes: ArrayLike) -> tuple[NDArray[np.bool_], Array]:
     """Whether every row is singular, and its margins."""
     values = numbers(axes, None, (len(robot.AXES),), "axes")
     margins = np.empty((len(values), len(robot.MARGINS)))
@@ -44,7 +44,7 @@ def singularity(robot: Mechanism, programs: Programs, axes: ArrayLike) -> tuple[
     for start in range(0, len(values), CHUNK):
         rows = slice(start, start + CHUNK)
         with np.errstate(all="ignore"):
-            found, status = programs.singularity(columns(values[rows]))
+            found, status = programs.at(rows).singularity(columns(values[rows]))
         for k, margin in enumerate(found):
             margins[rows, k] = margin
         failed[rows] = status != Status.OK

@@ -319,10 +319,9 @@ class StartedMounted(Mounted, IterativeForward):
 
     PARAMETERS = ()
 
-    def _forward_from(self, axes: Reals, start_position: Vector, start_rotation: Rotation) -> Pose | Status:
-        start = self.base.inverse() @ (start_position, start_rotation) @ self.tool.inverse()
-        assert isinstance(self.bare, IterativeForward)
-        return self._of_flange(self.bare._forward_from(axes, start.position, start.rotation))
+    def _started(self, position: Vector, rotation: Rotation) -> Self:
+        start = self.base.inverse() @ (position, rotation) @ self.tool.inverse()
+        return type(self)(self.bare._started(start.position, start.rotation), self.base, self.tool)
 
     def _array_programs(self) -> StartedPrograms:
         """The programs on arrays, which run those of the bare machine."""

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 CHOICE = "SOFTKIN_CORE"
 """The variable of the environment that chooses `python`, or `native`: an error where there is no extension."""
-SOURCES = "2c87d7e2b9fdb160"
+SOURCES = "5125c2d1456b67be"
 """The digest of what all machines share in C: an extension that was made of other sources is not used."""
 _ASKED_FOR = f"{CHOICE} is native, but the extension _softkin_native"
 _STATUSES = tuple(Status)
@@ -57,11 +57,13 @@ CORE = "python" if _NATIVE is None else "native"
 """The core that runs."""
 
 
-def machine_of(robot: Mechanism) -> Any:
-    """The machine in C that the calls use; where a subclass has programs of its own, it answers nothing."""
+def machine_of(robot: Mechanism, *, is_changed: bool = False) -> Any:
+    """The machine in C that the calls use; where a subclass has programs of its own, or is_changed, it answers
+    nothing.
+    """
     assert _NATIVE is not None
     own: Any = next(cls for cls in type(robot).__mro__ if "KEY" in vars(cls))
-    is_changed = any(getattr(type(robot), name) is not getattr(own, name) for name in _PROGRAMS)
+    is_changed = is_changed or any(getattr(type(robot), name) is not getattr(own, name) for name in _PROGRAMS)
     values = tuple(robot.parameters[p.name] for p in robot.PARAMETERS)
     return _NATIVE.Machine("" if is_changed else own.KEY, values, Frame, Solution, _STATUSES)
 
@@ -75,13 +77,18 @@ def take_over(cls: type[Mechanism]) -> bool:
     return True
 
 
-def _forward(python: _Call) -> _Call:
-    @wraps(python)
-    def forward(self: Any, axes: Any, *start: Any, **named: Any) -> Any:
-        found = NotImplemented if start or named else self._machine.forward(axes)
-        return python(self, axes, *start, **named) if found is NotImplemented else found
+def _of_axes(name: str) -> Callable[[_Call], _Call]:
+    """A call that takes axes. Python answers where a caller also gives the start of forward kinematics."""
 
-    return forward
+    def made(python: _Call) -> _Call:
+        @wraps(python)
+        def call(self: Any, axes: Any, *start: Any, **named: Any) -> Any:
+            found = NotImplemented if start or named else getattr(self._machine, name)(axes)
+            return python(self, axes, *start, **named) if found is NotImplemented else found
+
+        return call
+
+    return made
 
 
 def _inverse(python: _Call) -> _Call:
@@ -120,33 +127,6 @@ def _branch(python: _Call) -> _Call:
     return branch
 
 
-def _jacobian(python: _Call) -> _Call:
-    @wraps(python)
-    def jacobian(self: Any, axes: Any) -> Any:
-        found = self._machine.jacobian(axes)
-        return python(self, axes) if found is NotImplemented else found
-
-    return jacobian
-
-
-def _pose(python: _Call) -> _Call:
-    @wraps(python)
-    def pose(self: Any, axes: Any) -> Any:
-        found = self._machine.pose(axes)
-        return python(self, axes) if found is NotImplemented else found
-
-    return pose
-
-
-def _margins(python: _Call) -> _Call:
-    @wraps(python)
-    def margins(self: Any, axes: Any) -> Any:
-        found = self._machine.margins(axes)
-        return python(self, axes) if found is NotImplemented else found
-
-    return margins
-
-
 def _solve(python: _Call) -> _Call:
     @wraps(python)
     def solve(self: Any, position: Any, rotation: Any, signs: Any, turns: Any, reference: Any) -> Any:
@@ -156,16 +136,21 @@ def _solve(python: _Call) -> _Call:
     return solve
 
 
-def _forward_batch(python: _Call) -> _Call:
-    @wraps(python)
-    def forward_batch(self: Any, axes: Any, *start: Any, **named: Any) -> Any:
-        if start or named or not self._machine.answers:
-            return python(self, axes, *start, **named)
-        from softkin import _native_batch
+def _batch_of_axes(name: str) -> Callable[[_Call], _Call]:
+    """A call of `_native_batch` that takes axes."""
 
-        return _native_batch.forward(self, axes)
+    def made(python: _Call) -> _Call:
+        @wraps(python)
+        def call(self: Any, axes: Any, *start: Any, **named: Any) -> Any:
+            if start or named or not self._machine.answers:
+                return python(self, axes, *start, **named)
+            from softkin import _native_batch
 
-    return forward_batch
+            return getattr(_native_batch, name)(self, axes)
+
+        return call
+
+    return made
 
 
 def _inverse_batch(python: _Call) -> _Call:
@@ -194,33 +179,21 @@ def _inverse_all_batch(python: _Call) -> _Call:
     return inverse_all_batch
 
 
-def _jacobian_batch(python: _Call) -> _Call:
-    @wraps(python)
-    def jacobian_batch(self: Any, axes: Any) -> Any:
-        if not self._machine.answers:
-            return python(self, axes)
-        from softkin import _native_batch
-
-        return _native_batch.jacobian(self, axes)
-
-    return jacobian_batch
-
-
 _CALLS: dict[str, Callable[[_Call], _Call]] = {
     "branch": _branch,
     "branches": _branches,
-    "forward": _forward,
-    "forward_batch": _forward_batch,
+    "forward": _of_axes("forward"),
+    "forward_batch": _batch_of_axes("forward"),
     "inverse": _inverse,
     "inverse_all": _inverse_all,
     "inverse_all_batch": _inverse_all_batch,
     "inverse_batch": _inverse_batch,
-    "jacobian": _jacobian,
-    "jacobian_batch": _jacobian_batch,
+    "jacobian": _of_axes("jacobian"),
+    "jacobian_batch": _batch_of_axes("jacobian"),
     "_branch": _solve,
-    "_forward": _pose,
-    "_jacobian": _jacobian,
-    "_singularity": _margins,
+    "_forward": _of_axes("pose"),
+    "_jacobian": _of_axes("jacobian"),
+    "_singularity": _of_axes("margins"),
 }
 """The calls that the native core answers, each with the function that makes the call ask the core first."""
 _PROGRAMS = ("_branch", "_forward", "_jacobian", "_limits", "_singularity")

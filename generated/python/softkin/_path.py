@@ -148,7 +148,7 @@ def path(
     follower = _Follower(robot, corners, signs)
     places, values = follower.run(axes, samples)
     reached = tuple(_frame(corners, place) for place in places)
-    stretches = tuple(_stretches(robot, places, values, singular))
+    stretches = tuple(_stretches(robot, places, reached, values, singular))
     return Path(robot, corners, signs, places, reached, values, follower.stop, stretches)
 
 
@@ -223,9 +223,11 @@ class _Follower:
         return None
 
 
-def _stretches(robot: Mechanism, places: Reals, values: tuple[Reals, ...], singular: float) -> Iterator[Stretch]:
+def _stretches(
+    robot: Mechanism, places: Reals, frames: Sequence[Frame], values: Sequence[Reals], singular: float
+) -> Iterator[Stretch]:
     """The stretches on which a margin is small, or between whose ends it changes its sign."""
-    every = [robot._singularity(axes) for axes in values]
+    every = [robot._started(*frame)._singularity(axes) for frame, axes in zip(frames, values, strict=True)]
     found: list[Stretch] = []
     for number, name in enumerate(robot.MARGINS):
         margins = [float("nan") if isinstance(m, Status) else m[number] for m in every]

@@ -7,7 +7,7 @@ from abc import ABCMeta
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Self, cast
 
 from softkin._configuration import Criterion
 from softkin._core import Image, Mechanism, Pose
@@ -293,9 +293,8 @@ class InRadians(Mechanism):
         part: Any = self.part
         return part._projection(rotation)  # type: ignore[no-any-return]
 
-    def _forward_from(self, axes: Reals, start_position: Vector, start_rotation: Rotation) -> Pose | Status:
-        part: Any = self.part
-        return part._forward_from(self._deg(axes), start_position, start_rotation)  # type: ignore[no-any-return]
+    def _started(self, position: Vector, rotation: Rotation) -> Self:
+        return type(self)(self.part._started(position, rotation))
 
     def _compatible(self, flange_axis: Vector) -> Status:
         part: Any = self.part

@@ -22,11 +22,9 @@ class RadianPrograms(OrientationPrograms):
         """Forward kinematics."""
         return self.part.forward(self._deg(axes))  # type: ignore[no-any-return]
 
-    def forward_from(
-        self, axes: Reals, start_position: Vector, start_rotation: Rotation
-    ) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
-        """Forward kinematics from a given start."""
-        return self.part.forward_from(self._deg(axes), start_position, start_rotation)  # type: ignore[no-any-return]
+    def started(self, position: Vector, rotation: Rotation) -> RadianPrograms:
+        """These programs, whose forward kinematics starts at other frames."""
+        return RadianPrograms(self.part.started(position, rotation), self.angles)
 
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals

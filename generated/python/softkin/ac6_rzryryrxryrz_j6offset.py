@@ -29,9 +29,9 @@ Singularities:
 
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
-    forward: 142 additions, 207 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 130325 additions, 191573 multiplications, 9041 divisions, 4066 square roots, 6912 sines
-    inverse, all 16 branches: 2085473 additions, 3065264 multiplications, 144656 divisions, 65056 square
+    forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
+    inverse: 130829 additions, 191573 multiplications, 9041 divisions, 4066 square roots, 6912 sines
+    inverse, all 16 branches: 2093537 additions, 3065264 multiplications, 144656 divisions, 65056 square
     roots, 110592 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
@@ -95,6 +95,7 @@ class Constants:
         a3_by_effective_q3_tried = a3 / effective_q3_tried
         one_by_machine_scale = 1.0 / machine_scale
         quotient_in_fits = 0.5 * machine_scale * machine_scale / (a2 * effective_q3_tried)
+        one_by_effective_q3_tried = 1.0 / effective_q3_tried
         self.d1, self.a1, self.a2, self.a3, self.d4, self.j6_offset_x, self.d6 = d1, a1, a2, a3, d4, j6_offset_x, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.offset_a5, self.offset_a6, self.effective_q3_tried = offset_a5, offset_a6, effective_q3_tried
@@ -103,7 +104,7 @@ class Constants:
         self.a2_plus_effective_q3_tried = a2_plus_effective_q3_tried
         self.d4_by_effective_q3_tried = d4_by_effective_q3_tried
         self.a3_by_effective_q3_tried, self.one_by_machine_scale = a3_by_effective_q3_tried, one_by_machine_scale
-        self.quotient_in_fits = quotient_in_fits
+        self.quotient_in_fits, self.one_by_effective_q3_tried = quotient_in_fits, one_by_effective_q3_tried
 
 
 class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
@@ -115,7 +116,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset d28c026e1eb830d5"
+    KEY = "ac6_rzryryrxryrz_j6offset 9e77c305c9cd4187"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -663,9 +664,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             sin_q2 = sin(q2)
             r13_at_q2 = cos_q1 * sin_q2
             x_at_q3 = x_at_q2 + a2 * r13_at_q2
-            x_at_q4 = x_at_q3 + a3 * r13_at_q23 + d4 * r11_at_q23
+            x_at_q4 = x_at_q3 + a3 * r13_at_q23
+            x_at_q5 = x_at_q4 + d4 * r11_at_q23
             r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-            x_at_q6 = x_at_q4 + j6_offset_x * r11_at_q5
+            x_at_q6 = x_at_q5 + j6_offset_x * r11_at_q5
             x = x_at_q6 + d6 * r13_at_q5
             error_1 = (goal_x - x) * one_by_machine_scale
             r21_at_q23 = cos_q23 * sin_q1
@@ -675,18 +677,20 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             y_at_q2 = a1 * sin_q1
             r23_at_q2 = sin_q1 * sin_q2
             y_at_q3 = y_at_q2 + a2 * r23_at_q2
-            y_at_q4 = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23
+            y_at_q4 = y_at_q3 + a3 * r23_at_q23
+            y_at_q5 = y_at_q4 + d4 * r21_at_q23
             r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-            y_at_q6 = y_at_q4 + j6_offset_x * r21_at_q5
+            y_at_q6 = y_at_q5 + j6_offset_x * r21_at_q5
             y = y_at_q6 + d6 * r23_at_q5
             error_2 = (goal_y - y) * one_by_machine_scale
             r33_at_q4 = cos_q23 * cos_q4
             r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
             cos_q2 = cos(q2)
             z_at_q3 = d1 + a2 * cos_q2
-            z_at_q4 = z_at_q3 + a3 * cos_q23 - d4 * sin_q23
+            z_at_q4 = z_at_q3 + a3 * cos_q23
+            z_at_q5 = z_at_q4 - d4 * sin_q23
             r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-            z_at_q6 = z_at_q4 + j6_offset_x * r31_at_q5
+            z_at_q6 = z_at_q5 + j6_offset_x * r31_at_q5
             z = z_at_q6 + d6 * r33_at_q5
             error_3 = (goal_z - z) * one_by_machine_scale
             r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
@@ -756,7 +760,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             z_minus_z_at_q4 = z - z_at_q4
             y_minus_y_at_q4 = y - y_at_q4
             rate_1_4 = one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
-            rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4)
+            z_minus_z_at_q5 = z - z_at_q5
+            y_minus_y_at_q5 = y - y_at_q5
+            rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
             z_minus_z_at_q6 = z - z_at_q6
             y_minus_y_at_q6 = y - y_at_q6
             rate_1_6 = one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
@@ -774,7 +780,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
             x_minus_x_at_q4 = x - x_at_q4
             rate_2_4 = -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
-            rate_2_5 = (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * one_by_machine_scale
+            x_minus_x_at_q5 = x - x_at_q5
+            rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
             x_minus_x_at_q6 = x - x_at_q6
             rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
             product_1_2 = (
@@ -788,7 +795,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             rate_3_2 = one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
             rate_3_3 = one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
             rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
-            rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4)
+            rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
             rate_3_6 = one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
             product_1_3 = (
                 rate_1_2 * rate_3_2
@@ -1106,11 +1113,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        a1, a2, a3, a3_by_effective_q3_tried, d1, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3_tried, k.d1, k.d4
-        d4_by_effective_q3_tried, d6, j6_offset_x = k.d4_by_effective_q3_tried, k.d6, k.j6_offset_x
-        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
-        offset_a5, offset_a6, one_by_machine_scale = k.offset_a5, k.offset_a6, k.one_by_machine_scale
-        quotient_in_fits, searched = k.quotient_in_fits, k.searched
+        a1, a2, a3, d1, d4, d6, j6_offset_x, offset_a1 = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        offset_a6, one_by_effective_q3_tried = k.offset_a6, k.one_by_effective_q3_tried
+        one_by_machine_scale, quotient_in_fits, searched = k.one_by_machine_scale, k.quotient_in_fits, k.searched
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
@@ -1135,9 +1141,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sin_q2 = sin(q2)
         r13_at_q2 = cos_q1 * sin_q2
         x_at_q3 = x_at_q2 + a2 * r13_at_q2
-        x_at_q4 = x_at_q3 + a3 * r13_at_q23 + d4 * r11_at_q23
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + d4 * r11_at_q23
         r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-        x_at_q6 = x_at_q4 + j6_offset_x * r11_at_q5
+        x_at_q6 = x_at_q5 + j6_offset_x * r11_at_q5
         d6_times_r13_at_q5 = d6 * r13_at_q5
         x = d6_times_r13_at_q5 + x_at_q6
         r21_at_q23 = cos_q23 * sin_q1
@@ -1147,9 +1154,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         y_at_q2 = a1 * sin_q1
         r23_at_q2 = sin_q1 * sin_q2
         y_at_q3 = y_at_q2 + a2 * r23_at_q2
-        y_at_q4 = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + d4 * r21_at_q23
         r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-        y_at_q6 = y_at_q4 + j6_offset_x * r21_at_q5
+        y_at_q6 = y_at_q5 + j6_offset_x * r21_at_q5
         d6_times_r23_at_q5 = d6 * r23_at_q5
         y = d6_times_r23_at_q5 + y_at_q6
         r33_at_q4 = cos_q23 * cos_q4
@@ -1159,17 +1167,21 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         r32_at_q4 = cos_q23 * sin_q4
         cos_q2 = cos(q2)
         z_at_q3 = d1 + a2 * cos_q2
-        z_at_q4 = z_at_q3 + a3 * cos_q23 - d4 * sin_q23
+        z_at_q4 = z_at_q3 + a3 * cos_q23
+        z_at_q5 = z_at_q4 - d4 * sin_q23
         r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-        z_at_q6 = z_at_q4 + j6_offset_x * r31_at_q5
+        z_at_q6 = z_at_q5 + j6_offset_x * r31_at_q5
         z = z_at_q6 + d6 * r33_at_q5
         z_minus_d1 = z - d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
         y_minus_y_at_q4 = y - y_at_q4
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
         z_minus_z_at_q6 = z - z_at_q6
         y_minus_y_at_q6 = y - y_at_q6
         x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q5 = x - x_at_q5
         x_minus_x_at_q6 = x - x_at_q6
         cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
         sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
@@ -1181,7 +1193,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     z_minus_d1 * cos_q1_times_one_by_machine_scale,
                     z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale,
                     one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23),
-                    one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4),
+                    one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5),
                     one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6),
                 ),
                 (
@@ -1189,7 +1201,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     z_minus_d1 * sin_q1_times_one_by_machine_scale,
                     z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale,
                     -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23),
-                    (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * one_by_machine_scale,
+                    (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale,
                     (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale,
                 ),
                 (
@@ -1197,7 +1209,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1),
                     one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1),
                     one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4),
-                    one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4),
+                    one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5),
                     one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6),
                 ),
                 (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
@@ -1219,7 +1231,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
-        margin_elbow_closed = a3_by_effective_q3_tried * sin_q3_closed + d4_by_effective_q3_tried * cos_q3_closed
+        margin_elbow_closed = (a3 * sin_q3_closed + d4 * cos_q3_closed) * one_by_effective_q3_tried
         if searched:
             # wrist centre: the last joints do not move this point
             wrist_x_tried = wrist_x_closed + (r12_at_q6 * sin_q6 - r11_at_q6 * cos_q6) * j6_offset_x
@@ -1564,27 +1576,33 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
         r33_at_q4 = cos_q23 * cos_q4
         r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
-        x_at_q4 = x_at_q3 + a3 * r13_at_q23 + d4 * r11_at_q23
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + d4 * r11_at_q23
         r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-        x_at_q6 = x_at_q4 + j6_offset_x * r11_at_q5
+        x_at_q6 = x_at_q5 + j6_offset_x * r11_at_q5
         x = x_at_q6 + d6 * r13_at_q5
-        y_at_q4 = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + d4 * r21_at_q23
         r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-        y_at_q6 = y_at_q4 + j6_offset_x * r21_at_q5
+        y_at_q6 = y_at_q5 + j6_offset_x * r21_at_q5
         y = y_at_q6 + d6 * r23_at_q5
         cos_q2 = cos(q2)
         z_at_q3 = d1 + a2 * cos_q2
-        z_at_q4 = z_at_q3 + a3 * cos_q23 - d4 * sin_q23
+        z_at_q4 = z_at_q3 + a3 * cos_q23
+        z_at_q5 = z_at_q4 - d4 * sin_q23
         r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-        z_at_q6 = z_at_q4 + j6_offset_x * r31_at_q5
+        z_at_q6 = z_at_q5 + j6_offset_x * r31_at_q5
         z = z_at_q6 + d6 * r33_at_q5
         z_minus_d1 = z - d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
         y_minus_y_at_q4 = y - y_at_q4
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
         z_minus_z_at_q6 = z - z_at_q6
         y_minus_y_at_q6 = y - y_at_q6
         x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q5 = x - x_at_q5
         x_minus_x_at_q6 = x - x_at_q6
         cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
         sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
@@ -1596,7 +1614,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     z_minus_d1 * cos_q1_times_one_by_machine_scale,
                     z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale,
                     one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23),
-                    one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4),
+                    one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5),
                     one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6),
                 ),
                 (
@@ -1604,7 +1622,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     z_minus_d1 * sin_q1_times_one_by_machine_scale,
                     z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale,
                     -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23),
-                    (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * one_by_machine_scale,
+                    (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale,
                     (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale,
                 ),
                 (
@@ -1612,7 +1630,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1),
                     one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1),
                     one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4),
-                    one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4),
+                    one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5),
                     one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6),
                 ),
                 (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
@@ -1654,9 +1672,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sin_q2 = sin(q2)
         r23_at_q2 = sin_q1 * sin_q2
         y_at_q3 = y_at_q2 + a2 * r23_at_q2
-        y_at_q4 = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + d4 * r21_at_q23
         r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-        y_at_q6 = y_at_q4 + j6_offset_x * r21_at_q5
+        y_at_q6 = y_at_q5 + j6_offset_x * r21_at_q5
         y = y_at_q6 + d6 * r23_at_q5
         r33_at_q4 = cos_q23 * cos_q4
         r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
@@ -1669,24 +1688,29 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         x_at_q2 = a1 * cos_q1
         r13_at_q2 = cos_q1 * sin_q2
         x_at_q3 = x_at_q2 + a2 * r13_at_q2
-        x_at_q4 = x_at_q3 + a3 * r13_at_q23 + d4 * r11_at_q23
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + d4 * r11_at_q23
         r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-        x_at_q6 = x_at_q4 + j6_offset_x * r11_at_q5
+        x_at_q6 = x_at_q5 + j6_offset_x * r11_at_q5
         x = x_at_q6 + d6 * r13_at_q5
         r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
         cos_q2 = cos(q2)
         z_at_q3 = d1 + a2 * cos_q2
-        z_at_q4 = z_at_q3 + a3 * cos_q23 - d4 * sin_q23
+        z_at_q4 = z_at_q3 + a3 * cos_q23
+        z_at_q5 = z_at_q4 - d4 * sin_q23
         r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-        z_at_q6 = z_at_q4 + j6_offset_x * r31_at_q5
+        z_at_q6 = z_at_q5 + j6_offset_x * r31_at_q5
         z = z_at_q6 + d6 * r33_at_q5
         z_minus_d1 = z - d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
         y_minus_y_at_q4 = y - y_at_q4
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
         z_minus_z_at_q6 = z - z_at_q6
         y_minus_y_at_q6 = y - y_at_q6
         x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q5 = x - x_at_q5
         x_minus_x_at_q6 = x - x_at_q6
         return (
             (
@@ -1694,7 +1718,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 z_minus_d1 * cos_q1,
                 z_minus_z_at_q3 * cos_q1,
                 r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23,
-                r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4,
+                r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5,
                 r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6,
             ),
             (
@@ -1702,7 +1726,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 z_minus_d1 * sin_q1,
                 z_minus_z_at_q3 * sin_q1,
                 -r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23,
-                r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4,
+                r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5,
                 r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6,
             ),
             (
@@ -1710,7 +1734,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 (x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1,
                 (x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1,
                 r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4,
-                r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4,
+                r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5,
                 r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6,
             ),
             (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),

@@ -30,11 +30,13 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 51 additions, 59 multiplications, 0 divisions, 0 square roots, 13 sines
-    inverse: 80 additions, 79 multiplications, 10 divisions, 5 square roots, 6 sines
-    inverse, all 8 branches: 503 additions, 380 multiplications, 44 divisions, 19 square roots, 32 sines
+    inverse: 79 additions, 70 multiplications, 10 divisions, 5 square roots, 6 sines
+    inverse, all 8 branches: 506 additions, 322 multiplications, 42 divisions, 17 square roots, 30 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 101 additions, 154 multiplications, 17 divisions, 10 square
-    roots, 22 sines
+    a branch at a singular pose, in addition: 56125 additions, 70381 multiplications, 2788 divisions, 822
+    square roots, 4106 sines
+    steps of damped least squares on the closure, from one start after the other: at most 164 passes, all of
+    which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -49,14 +51,14 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
-from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, solve, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.ac6_threeparallel import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
     from softkin._ends import Limits
-    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Values, Vector
 
 
 class Constants:
@@ -76,37 +78,21 @@ class Constants:
         self.lowest_a6, self.highest_a6, self.single_a6, self.mid_a6 = machine._window("a6")
         machine_scale = abs(a2) + abs(a3)  # characteristic length of the machine
         rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
-        size_q1_for_q3 = 2.0 * abs(a2 * a3)
         machine_scale_times_free_angle = 1e-11 * machine_scale
-        size_q1_for_q3_times_rounding = 1e-12 * size_q1_for_q3
-        product_in_divisor_q6_q1_for_q3 = 9.999999e-13 * size_q1_for_q3
-        product_in_highest_q6_q1_for_q3 = 0.9999999 * size_q1_for_q3
-        machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
-        machine_scale_times_rounding = 1e-12 * machine_scale
-        product_in_cos_q6 = 1.000000001 * size_q1_for_q3
+        product_in_lost_digits_37 = 0.01 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
-        a2_squared_plus_a3_squared = a2 * a2 + a3 * a3
-        twice_d5 = 2.0 * d5
-        d1_times_d5_times_2 = 2.0 * d1 * d5
-        product_in_follows_q1_for_q3 = 5e-13 * size_q1_for_q3
         a2_plus_a3 = a2 + a3
         a2_minus_a3 = a2 - a3
-        quotient_in_cos_q3 = 0.25 / (a2 * a3)
-        quotient_in_sin_q3 = 0.5 / abs(a2 * a3)
+        quotient_in_closed_cos_q3 = 0.25 / (a2 * a3)
+        quotient_in_closed_sin_q3 = 0.5 / abs(a2 * a3)
         self.d1, self.a2, self.a3, self.d4, self.d5, self.d6, self.offset_a1 = d1, a2, a3, d4, d5, d6, offset_a1
         self.offset_a2, self.offset_a3, self.offset_a4, self.offset_a5 = offset_a2, offset_a3, offset_a4, offset_a5
         self.offset_a6, self.machine_scale, self.rounding_q1 = offset_a6, machine_scale, rounding_q1
-        self.size_q1_for_q3, self.machine_scale_times_free_angle = size_q1_for_q3, machine_scale_times_free_angle
-        self.size_q1_for_q3_times_rounding = size_q1_for_q3_times_rounding
-        self.product_in_divisor_q6_q1_for_q3 = product_in_divisor_q6_q1_for_q3
-        self.product_in_highest_q6_q1_for_q3 = product_in_highest_q6_q1_for_q3
-        self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
-        self.machine_scale_times_rounding, self.product_in_cos_q6 = machine_scale_times_rounding, product_in_cos_q6
-        self.one_by_machine_scale, self.a2_squared_plus_a3_squared = one_by_machine_scale, a2_squared_plus_a3_squared
-        self.twice_d5, self.d1_times_d5_times_2 = twice_d5, d1_times_d5_times_2
-        self.product_in_follows_q1_for_q3, self.a2_plus_a3 = product_in_follows_q1_for_q3, a2_plus_a3
-        self.a2_minus_a3, self.quotient_in_cos_q3 = a2_minus_a3, quotient_in_cos_q3
-        self.quotient_in_sin_q3 = quotient_in_sin_q3
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
+        self.product_in_lost_digits_37, self.one_by_machine_scale = product_in_lost_digits_37, one_by_machine_scale
+        self.a2_plus_a3, self.a2_minus_a3 = a2_plus_a3, a2_minus_a3
+        self.quotient_in_closed_cos_q3 = quotient_in_closed_cos_q3
+        self.quotient_in_closed_sin_q3 = quotient_in_closed_sin_q3
 
 
 class Ac6ThreeParallel(Mechanism):
@@ -118,7 +104,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel a7a72bc9a2c07b55"
+    KEY = "ac6_threeparallel 2b5fe9f2e3e1c85c"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -275,6 +261,526 @@ class Ac6ThreeParallel(Mechanism):
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
         self._seal()
 
+    def _meet_pose(self, given: Values) -> Values | Status:
+        """The axes that meet a pose, found by steps on the closure, and whether they do."""
+        (
+            given_ref_a1,
+            given_ref_a2,
+            given_ref_a3,
+            given_ref_a4,
+            given_ref_a5,
+            given_ref_a6,
+            given_sigma_elbow,
+            given_sigma_shoulder,
+            given_sigma_wrist,
+            given_turn_a1,
+            given_turn_a2,
+            given_turn_a3,
+            given_turn_a4,
+            given_turn_a5,
+            given_turn_a6,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            start_a1,
+            start_a2,
+            start_a3,
+            start_a4,
+            start_a5,
+            start_a6,
+        ) = given
+        k = self._constants
+        a2, a2_minus_a3, a2_plus_a3, a3, d1, d4, d5 = k.a2, k.a2_minus_a3, k.a2_plus_a3, k.a3, k.d1, k.d4, k.d5
+        d6, machine_scale, mid_a1, mid_a2, mid_a3 = k.d6, k.machine_scale, k.mid_a1, k.mid_a2, k.mid_a3
+        mid_a4, mid_a5, mid_a6, offset_a1, offset_a2 = k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1, k.offset_a2
+        offset_a3, offset_a4, offset_a5, offset_a6 = k.offset_a3, k.offset_a4, k.offset_a5, k.offset_a6
+        one_by_machine_scale, quotient_in_closed_cos_q3 = k.one_by_machine_scale, k.quotient_in_closed_cos_q3
+        quotient_in_closed_sin_q3, single_a1, single_a2 = k.quotient_in_closed_sin_q3, k.single_a1, k.single_a2
+        single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
+        closed_wrist_x = goal_x - d6 * goal_r13  # wrist centre: the last joints do not move this point
+        closed_wrist_y = goal_y - d6 * goal_r23
+        # distance of the point from the axis of q1
+        closed_distance_q1 = sqrt(closed_wrist_x * closed_wrist_x + closed_wrist_y * closed_wrist_y)
+        # Pythagoras: square of the distance ahead of the axis
+        closed_ahead_squared_q1 = (closed_distance_q1 + d4) * (closed_distance_q1 - d4)
+        # how far ahead of the axis the point is; negative: behind it
+        closed_ahead_q1 = (
+            -(sqrt(closed_ahead_squared_q1) if closed_ahead_squared_q1 > 0.0 else 0.0) * given_sigma_shoulder
+        )
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = mid_a1 if single_a1 else given_ref_a1
+        closed_near_a1 = (
+            360.0 * (given_turn_a1 - 1 if given_turn_a1 > 0 else given_turn_a1)
+            if given_turn_a1 != 0
+            else closed_open_a1
+        )
+        closed_wrist_z = goal_z - d6 * goal_r33
+        # A2: without a commanded turn, the value nearest to this
+        closed_open_a2 = mid_a2 if single_a2 else given_ref_a2
+        closed_near_a2 = (
+            360.0 * (given_turn_a2 - 1 if given_turn_a2 > 0 else given_turn_a2)
+            if given_turn_a2 != 0
+            else closed_open_a2
+        )
+        # A3: without a commanded turn, the value nearest to this
+        closed_open_a3 = mid_a3 if single_a3 else given_ref_a3
+        closed_near_a3 = (
+            360.0 * (given_turn_a3 - 1 if given_turn_a3 > 0 else given_turn_a3)
+            if given_turn_a3 != 0
+            else closed_open_a3
+        )
+        # A4: without a commanded turn, the value nearest to this
+        closed_open_a4 = mid_a4 if single_a4 else given_ref_a4
+        closed_near_a4 = (
+            360.0 * (given_turn_a4 - 1 if given_turn_a4 > 0 else given_turn_a4)
+            if given_turn_a4 != 0
+            else closed_open_a4
+        )
+        # A5: without a commanded turn, the value nearest to this
+        closed_open_a5 = mid_a5 if single_a5 else given_ref_a5
+        closed_near_a5 = (
+            360.0 * (given_turn_a5 - 1 if given_turn_a5 > 0 else given_turn_a5)
+            if given_turn_a5 != 0
+            else closed_open_a5
+        )
+        # A6: without a commanded turn, the value nearest to this
+        closed_open_a6 = mid_a6 if single_a6 else given_ref_a6
+        closed_near_a6 = (
+            360.0 * (given_turn_a6 - 1 if given_turn_a6 > 0 else given_turn_a6)
+            if given_turn_a6 != 0
+            else closed_open_a6
+        )
+        # steps of damped least squares on the closure, from one start after the other
+        tried_a1, tried_a2, tried_a3, tried_a4, tried_a5, tried_a6, passes_left, attempt, error_before = (
+            start_a1,
+            start_a2,
+            start_a3,
+            start_a4,
+            start_a5,
+            start_a6,
+            40,
+            0,
+            9.0,
+        )
+        for _ in range(164):
+            q1 = (tried_a1 - offset_a1) * DEGREE
+            sin_q1 = sin(q1)
+            cos_q1 = cos(q1)
+            q2 = (tried_a2 - offset_a2) * DEGREE
+            q3 = (tried_a3 - offset_a3) * DEGREE
+            q4 = (tried_a4 - offset_a4) * DEGREE
+            q2_plus_q3 = q2 + q3
+            q2_plus_q3_plus_q4 = q2_plus_q3 + q4
+            cos_q234 = cos(q2_plus_q3_plus_q4)
+            r11_at_q234 = cos_q1 * cos_q234
+            q5 = (tried_a5 - offset_a5) * DEGREE
+            sin_q5 = sin(q5)
+            cos_q5 = cos(q5)
+            r12_at_q5 = r11_at_q234 * sin_q5 - cos_q5 * sin_q1
+            sin_q234 = sin(q2_plus_q3_plus_q4)
+            r13_at_q234 = -cos_q1 * sin_q234
+            cos_q2 = cos(q2)
+            r11_at_q2 = cos_q1 * cos_q2
+            x_at_q3 = a2 * r11_at_q2
+            cos_q23 = cos(q2_plus_q3)
+            r11_at_q23 = cos_q1 * cos_q23
+            x_at_q4 = x_at_q3 + a3 * r11_at_q23
+            x_at_q5 = x_at_q4 + d4 * sin_q1
+            x_at_q6 = x_at_q5 - d5 * r13_at_q234
+            d6_times_r12_at_q5 = d6 * r12_at_q5
+            x = x_at_q6 - d6_times_r12_at_q5
+            wrist_x = d6_times_r12_at_q5 + x  # wrist centre: the last joints do not move this point
+            r21_at_q234 = cos_q234 * sin_q1
+            r22_at_q5 = cos_q1 * cos_q5 + r21_at_q234 * sin_q5
+            r23_at_q234 = -sin_q1 * sin_q234
+            r21_at_q2 = cos_q2 * sin_q1
+            y_at_q3 = a2 * r21_at_q2
+            r21_at_q23 = cos_q23 * sin_q1
+            y_at_q4 = y_at_q3 + a3 * r21_at_q23
+            y_at_q5 = y_at_q4 - d4 * cos_q1
+            y_at_q6 = y_at_q5 - d5 * r23_at_q234
+            d6_times_r22_at_q5 = d6 * r22_at_q5
+            y = y_at_q6 - d6_times_r22_at_q5
+            wrist_y = d6_times_r22_at_q5 + y
+            branch_shoulder = -one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
+            beside_shoulder = given_sigma_shoulder * branch_shoulder < -1e-6
+            sin_q3 = sin(q3)
+            beside_elbow = given_sigma_elbow * sin_q3 < -1e-6
+            beside_wrist = given_sigma_wrist * sin_q5 < -1e-6
+            r11_at_q5 = r11_at_q234 * cos_q5 + sin_q1 * sin_q5
+            q6 = (tried_a6 - offset_a6) * DEGREE
+            sin_q6 = sin(q6)
+            cos_q6 = cos(q6)
+            r11_at_q6 = r11_at_q5 * cos_q6 + r13_at_q234 * sin_q6
+            r21_at_q5 = r21_at_q234 * cos_q5 - cos_q1 * sin_q5
+            r21_at_q6 = r21_at_q5 * cos_q6 + r23_at_q234 * sin_q6
+            r31_at_q5 = cos_q5 * sin_q234
+            r31_at_q6 = cos_q234 * sin_q6 + r31_at_q5 * cos_q6
+            r13_at_q6 = r13_at_q234 * cos_q6 - r11_at_q5 * sin_q6
+            r23_at_q6 = r23_at_q234 * cos_q6 - r21_at_q5 * sin_q6
+            r33_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
+            r32_at_q5 = sin_q234 * sin_q5
+            error_1 = (goal_x - x) * one_by_machine_scale
+            error_2 = (goal_y - y) * one_by_machine_scale
+            sin_q2 = sin(q2)
+            z_at_q3 = d1 + a2 * sin_q2
+            sin_q23 = sin(q2_plus_q3)
+            z_at_q4 = z_at_q3 + a3 * sin_q23
+            z_at_q6 = z_at_q4 - d5 * cos_q234
+            z = z_at_q6 - d6 * r32_at_q5
+            error_3 = (goal_z - z) * one_by_machine_scale
+            error_4 = 0.5 * (
+                goal_r23 * r32_at_q5
+                + goal_r31 * r21_at_q6
+                + goal_r32 * r23_at_q6
+                - goal_r21 * r31_at_q6
+                - goal_r22 * r33_at_q6
+                - goal_r33 * r22_at_q5
+            )
+            error_5 = 0.5 * (
+                goal_r11 * r31_at_q6
+                + goal_r12 * r33_at_q6
+                + goal_r33 * r12_at_q5
+                - goal_r13 * r32_at_q5
+                - goal_r31 * r11_at_q6
+                - goal_r32 * r13_at_q6
+            )
+            error_6 = 0.5 * (
+                goal_r13 * r22_at_q5
+                + goal_r21 * r11_at_q6
+                + goal_r22 * r13_at_q6
+                - goal_r11 * r21_at_q6
+                - goal_r12 * r23_at_q6
+                - goal_r23 * r12_at_q5
+            )
+            value_in_error = (
+                0.0
+                if goal_r11 * r11_at_q6
+                + goal_r12 * r13_at_q6
+                + goal_r21 * r21_at_q6
+                + goal_r22 * r23_at_q6
+                + goal_r31 * r31_at_q6
+                + goal_r32 * r33_at_q6
+                - 1.0
+                - goal_r13 * r12_at_q5
+                - goal_r23 * r22_at_q5
+                - goal_r33 * r32_at_q5
+                > 0.0
+                else 1.0
+            )
+            # error of the pose, in characteristic lengths and radians
+            error = value_in_error + sqrt(
+                error_1 * error_1
+                + error_2 * error_2
+                + error_3 * error_3
+                + error_4 * error_4
+                + error_5 * error_5
+                + error_6 * error_6
+            )
+            another = passes_left <= 0
+            # the error is rounding, and steps make it no smaller
+            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
+            pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder) and (not beside_wrist)
+            next_attempt = attempt + (1 if another else 0)
+            mirrors = pose_is_close and (beside_elbow or beside_shoulder or beside_wrist)
+            free_angle = 1e-6 if next_attempt > 0 else 1e-11
+            free_turn = -137.5 * (1 - next_attempt if next_attempt > 1 else 0)
+            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
+            free_angle_times_machine_scale = free_angle * machine_scale
+            closed_divisor_q1 = (
+                closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = (
+                (closed_ahead_q1 * closed_wrist_x - closed_wrist_y * d4) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else cos(closed_reference_a1)
+            )
+            closed_sin_q1 = (
+                (closed_ahead_q1 * closed_wrist_y + closed_wrist_x * d4) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else sin(closed_reference_a1)
+            )
+            closed_axis_a1 = nearest_period(
+                offset_a1 + arctan2(closed_sin_q1 + 0.0, closed_cos_q1 + 0.0) * RADIAN, closed_near_a1
+            )
+            rate_1_1 = -one_by_machine_scale * y
+            rate_2_1 = one_by_machine_scale * x
+            z_minus_d1 = z - d1
+            cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
+            rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q3 = z - z_at_q3
+            rate_1_3 = -z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q4 = z - z_at_q4
+            rate_1_4 = -z_minus_z_at_q4 * cos_q1_times_one_by_machine_scale
+            y_minus_y_at_q5 = y - y_at_q5
+            rate_1_5 = one_by_machine_scale * (y_minus_y_at_q5 * cos_q234 - r23_at_q234 * z_minus_z_at_q4)
+            z_minus_z_at_q6 = z - z_at_q6
+            y_minus_y_at_q6 = y - y_at_q6
+            rate_1_6 = (r32_at_q5 * y_minus_y_at_q6 - r22_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
+            product_in_damping = 0.001 * error
+            damping = max(1e-13, product_in_damping)
+            product_1_1 = (
+                damping
+                + rate_1_1 * rate_1_1
+                + rate_1_2 * rate_1_2
+                + rate_1_3 * rate_1_3
+                + rate_1_4 * rate_1_4
+                + rate_1_5 * rate_1_5
+                + rate_1_6 * rate_1_6
+            )
+            sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
+            rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
+            rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+            rate_2_4 = -z_minus_z_at_q4 * sin_q1_times_one_by_machine_scale
+            x_minus_x_at_q5 = x - x_at_q5
+            rate_2_5 = (r13_at_q234 * z_minus_z_at_q4 - x_minus_x_at_q5 * cos_q234) * one_by_machine_scale
+            x_minus_x_at_q6 = x - x_at_q6
+            rate_2_6 = one_by_machine_scale * (r12_at_q5 * z_minus_z_at_q6 - r32_at_q5 * x_minus_x_at_q6)
+            product_1_2 = (
+                rate_1_1 * rate_2_1
+                + rate_1_2 * rate_2_2
+                + rate_1_3 * rate_2_3
+                + rate_1_4 * rate_2_4
+                + rate_1_5 * rate_2_5
+                + rate_1_6 * rate_2_6
+            )
+            rate_3_2 = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
+            rate_3_3 = -one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            rate_3_4 = -one_by_machine_scale * ((x_at_q4 - x) * cos_q1 + (y_at_q4 - y) * sin_q1)
+            rate_3_5 = (r23_at_q234 * x_minus_x_at_q5 - r13_at_q234 * y_minus_y_at_q5) * one_by_machine_scale
+            rate_3_6 = (r22_at_q5 * x_minus_x_at_q6 - r12_at_q5 * y_minus_y_at_q6) * one_by_machine_scale
+            product_1_3 = (
+                rate_1_2 * rate_3_2
+                + rate_1_3 * rate_3_3
+                + rate_1_4 * rate_3_4
+                + rate_1_5 * rate_3_5
+                + rate_1_6 * rate_3_6
+            )
+            rate_1_2_plus_rate_1_3_plus_rate_1_4 = rate_1_2 + rate_1_3 + rate_1_4
+            product_1_4 = rate_1_2_plus_rate_1_3_plus_rate_1_4 * sin_q1 - r12_at_q5 * rate_1_6 - r13_at_q234 * rate_1_5
+            product_1_5 = -rate_1_2_plus_rate_1_3_plus_rate_1_4 * cos_q1 - r22_at_q5 * rate_1_6 - r23_at_q234 * rate_1_5
+            product_1_6 = rate_1_1 - rate_1_5 * cos_q234 - r32_at_q5 * rate_1_6
+            product_2_2 = (
+                damping
+                + rate_2_1 * rate_2_1
+                + rate_2_2 * rate_2_2
+                + rate_2_3 * rate_2_3
+                + rate_2_4 * rate_2_4
+                + rate_2_5 * rate_2_5
+                + rate_2_6 * rate_2_6
+            )
+            product_2_3 = (
+                rate_2_2 * rate_3_2
+                + rate_2_3 * rate_3_3
+                + rate_2_4 * rate_3_4
+                + rate_2_5 * rate_3_5
+                + rate_2_6 * rate_3_6
+            )
+            rate_2_2_plus_rate_2_3_plus_rate_2_4 = rate_2_2 + rate_2_3 + rate_2_4
+            product_2_4 = rate_2_2_plus_rate_2_3_plus_rate_2_4 * sin_q1 - r12_at_q5 * rate_2_6 - r13_at_q234 * rate_2_5
+            product_2_5 = -rate_2_2_plus_rate_2_3_plus_rate_2_4 * cos_q1 - r22_at_q5 * rate_2_6 - r23_at_q234 * rate_2_5
+            product_2_6 = rate_2_1 - rate_2_5 * cos_q234 - r32_at_q5 * rate_2_6
+            product_3_3 = (
+                damping
+                + rate_3_2 * rate_3_2
+                + rate_3_3 * rate_3_3
+                + rate_3_4 * rate_3_4
+                + rate_3_5 * rate_3_5
+                + rate_3_6 * rate_3_6
+            )
+            rate_3_2_plus_rate_3_3_plus_rate_3_4 = rate_3_2 + rate_3_3 + rate_3_4
+            product_3_4 = rate_3_2_plus_rate_3_3_plus_rate_3_4 * sin_q1 - r12_at_q5 * rate_3_6 - r13_at_q234 * rate_3_5
+            product_3_5 = -rate_3_2_plus_rate_3_3_plus_rate_3_4 * cos_q1 - r22_at_q5 * rate_3_6 - r23_at_q234 * rate_3_5
+            product_3_6 = -rate_3_5 * cos_q234 - r32_at_q5 * rate_3_6
+            product_4_4 = damping + r12_at_q5 * r12_at_q5 + r13_at_q234 * r13_at_q234 + 3.0 * sin_q1 * sin_q1
+            product_4_5 = r12_at_q5 * r22_at_q5 + r13_at_q234 * r23_at_q234 - 3.0 * cos_q1 * sin_q1
+            product_4_6 = r13_at_q234 * cos_q234 + r12_at_q5 * r32_at_q5
+            product_5_5 = damping + 3.0 * cos_q1 * cos_q1 + r22_at_q5 * r22_at_q5 + r23_at_q234 * r23_at_q234
+            product_5_6 = r23_at_q234 * cos_q234 + r22_at_q5 * r32_at_q5
+            product_6_6 = 1.0 + damping + cos_q234 * cos_q234 + r32_at_q5 * r32_at_q5
+            _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
+                (
+                    (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
+                    (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
+                    (product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6),
+                    (product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6),
+                    (product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6),
+                    (product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6),
+                ),
+                ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
+            )
+            step_a1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            sum_in_step_a2 = multiplier_4 * sin_q1 - multiplier_5 * cos_q1
+            step_a2 = sum_in_step_a2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_a3 = sum_in_step_a2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_a4 = sum_in_step_a2 + multiplier_1 * rate_1_4 + multiplier_2 * rate_2_4 + multiplier_3 * rate_3_4
+            step_a5 = (
+                multiplier_1 * rate_1_5
+                + multiplier_2 * rate_2_5
+                + multiplier_3 * rate_3_5
+                - multiplier_6 * cos_q234
+                - multiplier_4 * r13_at_q234
+                - multiplier_5 * r23_at_q234
+            )
+            step_a6 = (
+                multiplier_1 * rate_1_6
+                + multiplier_2 * rate_2_6
+                + multiplier_3 * rate_3_6
+                - multiplier_4 * r12_at_q5
+                - multiplier_5 * r22_at_q5
+                - multiplier_6 * r32_at_q5
+            )
+            step_length = sqrt(
+                step_a1 * step_a1
+                + step_a2 * step_a2
+                + step_a3 * step_a3
+                + step_a4 * step_a4
+                + step_a5 * step_a5
+                + step_a6 * step_a6
+            )
+            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
+            closed_r21_from_q1 = closed_cos_q1 * goal_r21 - closed_sin_q1 * goal_r11
+            closed_r22_from_q1 = closed_cos_q1 * goal_r22 - closed_sin_q1 * goal_r12
+            # polar coordinates: the radius at angle q6
+            closed_radius_q6 = sqrt(closed_r21_from_q1 * closed_r21_from_q1 + closed_r22_from_q1 * closed_r22_from_q1)
+            closed_q6_radius_of_q5 = given_sigma_wrist * closed_radius_q6
+            # cosine and sine of q5 from the q6 radius and r22 equations
+            closed_cos_q5 = closed_sin_q1 * goal_r13 - closed_cos_q1 * goal_r23
+            closed_reference_a6 = DEGREE * (free_turn + given_ref_a6 - offset_a6)
+            # polar coordinates: angle q6 from the r21 and r23 equations
+            closed_along_q6 = -given_sigma_wrist * closed_r21_from_q1
+            closed_length_q6 = closed_radius_q6 if closed_radius_q6 > free_angle else 1.0
+            # at a singularity: the angle of the reference
+            closed_cos_q6 = (
+                closed_along_q6 / closed_length_q6 if closed_radius_q6 > free_angle else cos(closed_reference_a6)
+            )
+            closed_across_q6 = given_sigma_wrist * closed_r22_from_q1
+            closed_sin_q6 = (
+                closed_across_q6 / closed_length_q6 if closed_radius_q6 > free_angle else sin(closed_reference_a6)
+            )
+            closed_r31_from_q1_before_q6 = closed_cos_q6 * goal_r31 - closed_sin_q6 * goal_r32
+            closed_r31_from_q1_before_q56 = (
+                closed_cos_q5 * closed_r31_from_q1_before_q6 - closed_q6_radius_of_q5 * goal_r33
+            )
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_x_from_q1 = closed_ahead_q1 - closed_r31_from_q1_before_q56 * d5
+            closed_r33_from_q1_before_q6 = closed_cos_q6 * goal_r32 + closed_sin_q6 * goal_r31
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_z_from_q1 = closed_wrist_z + closed_r33_from_q1_before_q6 * d5 - d1
+            # distance that the remaining links must span
+            closed_reach = sqrt(
+                closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+            )
+            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - offset_a2)
+            # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+            closed_one_less_cos_q3 = (a2_plus_a3 + closed_reach) * (a2_plus_a3 - closed_reach)
+            # 1 + cosine, times the scale
+            closed_one_plus_cos_q3 = (closed_reach - a2_minus_a3) * (a2_minus_a3 + closed_reach)
+            closed_cos_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) * quotient_in_closed_cos_q3
+            closed_arm_along_q2 = a2 + a3 * closed_cos_q3
+            # sine squared, times the squared scale
+            closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
+            closed_sin_q3 = (
+                (sqrt(closed_sine_square_q3) if closed_sine_square_q3 > 0.0 else 0.0)
+                * given_sigma_elbow
+                * quotient_in_closed_sin_q3
+            )
+            closed_arm_across_q2 = a3 * closed_sin_q3
+            # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
+            # reference
+            closed_direction_x_q2 = (
+                closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
+                if closed_reach > free_angle_times_machine_scale
+                else cos(closed_reference_a2)
+            )
+            closed_direction_y_q2 = (
+                closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
+                if closed_reach > free_angle_times_machine_scale
+                else sin(closed_reference_a2)
+            )
+            closed_angle_q2 = arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0)
+            closed_axis_a2 = nearest_period(offset_a2 + closed_angle_q2 * RADIAN, closed_near_a2)
+            closed_angle_q3 = arctan2(closed_sin_q3 + 0.0, closed_cos_q3 + 0.0)
+            closed_axis_a3 = nearest_period(offset_a3 + closed_angle_q3 * RADIAN, closed_near_a3)
+            closed_angle_with_q4 = arctan2(closed_r31_from_q1_before_q56 + 0.0, closed_r33_from_q1_before_q6 + 0.0)
+            # q4 from the sum q234 of angles about parallel axes
+            closed_axis_a4 = nearest_period(
+                offset_a4 + (closed_angle_with_q4 - closed_angle_q2 - closed_angle_q3) * RADIAN, closed_near_a4
+            )
+            closed_axis_a5 = nearest_period(
+                offset_a5 + arctan2(closed_q6_radius_of_q5 + 0.0, closed_cos_q5 + 0.0) * RADIAN, closed_near_a5
+            )
+            closed_axis_a6 = nearest_period(
+                offset_a6 + arctan2(closed_sin_q6 + 0.0, closed_cos_q6 + 0.0) * RADIAN, closed_near_a6
+            )
+            shared_quotient = shrinking * RADIAN
+            if pose_is_met or (another and (next_attempt >= 4)):
+                break
+            tried_a1 = (
+                closed_axis_a1
+                if another
+                else (
+                    (2.0 * closed_axis_a1 - tried_a1 if beside_shoulder else tried_a1)
+                    if mirrors
+                    else tried_a1 + shared_quotient * step_a1
+                )
+            )
+            tried_a2 = closed_axis_a2 if another else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
+            tried_a3 = (
+                closed_axis_a3
+                if another
+                else (
+                    (2.0 * closed_axis_a3 - tried_a3 if beside_elbow else tried_a3)
+                    if mirrors
+                    else tried_a3 + shared_quotient * step_a3
+                )
+            )
+            tried_a4 = closed_axis_a4 if another else (tried_a4 if mirrors else tried_a4 + shared_quotient * step_a4)
+            tried_a5 = closed_axis_a5 if another else (tried_a5 if mirrors else tried_a5 + shared_quotient * step_a5)
+            tried_a6 = (
+                closed_axis_a6
+                if another
+                else (
+                    (2.0 * closed_axis_a6 - tried_a6 if beside_wrist else tried_a6)
+                    if mirrors
+                    else tried_a6 + shared_quotient * step_a6
+                )
+            )
+            passes_left = 40 if another else passes_left - 1
+            attempt = next_attempt
+            error_before = 9.0 if another or mirrors else error
+        else:
+            return Status.UNREACHABLE
+        chosen_a1 = tried_a1
+        if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
+            chosen_a1 = nearest_period(chosen_a1, closed_near_a1)
+        chosen_a2 = tried_a2
+        if not -180.000000001 <= chosen_a2 - closed_near_a2 < 179.999999999:
+            chosen_a2 = nearest_period(chosen_a2, closed_near_a2)
+        chosen_a3 = tried_a3
+        if not -180.000000001 <= chosen_a3 - closed_near_a3 < 179.999999999:
+            chosen_a3 = nearest_period(chosen_a3, closed_near_a3)
+        chosen_a4 = tried_a4
+        if not -180.000000001 <= chosen_a4 - closed_near_a4 < 179.999999999:
+            chosen_a4 = nearest_period(chosen_a4, closed_near_a4)
+        chosen_a5 = tried_a5
+        if not -180.000000001 <= chosen_a5 - closed_near_a5 < 179.999999999:
+            chosen_a5 = nearest_period(chosen_a5, closed_near_a5)
+        chosen_a6 = tried_a6
+        if not -180.000000001 <= chosen_a6 - closed_near_a6 < 179.999999999:
+            chosen_a6 = nearest_period(chosen_a6, closed_near_a6)
+        return (pose_is_met, chosen_a1, chosen_a2, chosen_a3, chosen_a4, chosen_a5, chosen_a6)
+
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
@@ -297,9 +803,9 @@ class Ac6ThreeParallel(Mechanism):
         cos_q234 = cos(q2_plus_q3_plus_q4)
         r11_at_q234 = cos_q1 * cos_q234
         cos_q5 = cos(q5)
-        r12_at_q5 = cos_q5 * sin_q1 - r11_at_q234 * sin_q5
+        r12_at_q5 = r11_at_q234 * sin_q5 - cos_q5 * sin_q1
         sin_q234 = sin(q2_plus_q3_plus_q4)
-        r12_at_q234 = -cos_q1 * sin_q234
+        r13_at_q234 = -cos_q1 * sin_q234
         cos_q2 = cos(q2)
         r11_at_q2 = cos_q1 * cos_q2
         x_at_q3 = a2 * r11_at_q2
@@ -307,46 +813,50 @@ class Ac6ThreeParallel(Mechanism):
         r11_at_q23 = cos_q1 * cos_q23
         x_at_q4 = x_at_q3 + a3 * r11_at_q23
         x_at_q5 = x_at_q4 + d4 * sin_q1
-        x_at_q6 = x_at_q5 - d5 * r12_at_q234
+        x_at_q6 = x_at_q5 - d5 * r13_at_q234
         d6_times_r12_at_q5 = d6 * r12_at_q5
-        x = d6_times_r12_at_q5 + x_at_q6
+        x = x_at_q6 - d6_times_r12_at_q5
         r21_at_q234 = cos_q234 * sin_q1
-        r22_at_q5 = -cos_q1 * cos_q5 - r21_at_q234 * sin_q5
-        r22_at_q234 = -sin_q1 * sin_q234
+        r22_at_q5 = cos_q1 * cos_q5 + r21_at_q234 * sin_q5
+        r23_at_q234 = -sin_q1 * sin_q234
         r21_at_q2 = cos_q2 * sin_q1
         y_at_q3 = a2 * r21_at_q2
         r21_at_q23 = cos_q23 * sin_q1
         y_at_q4 = y_at_q3 + a3 * r21_at_q23
         y_at_q5 = y_at_q4 - d4 * cos_q1
-        y_at_q6 = y_at_q5 - d5 * r22_at_q234
+        y_at_q6 = y_at_q5 - d5 * r23_at_q234
         d6_times_r22_at_q5 = d6 * r22_at_q5
-        y = d6_times_r22_at_q5 + y_at_q6
-        r32_at_q5 = -sin_q234 * sin_q5
+        y = y_at_q6 - d6_times_r22_at_q5
+        r32_at_q5 = sin_q234 * sin_q5
         sin_q2 = sin(q2)
         z_at_q3 = d1 + a2 * sin_q2
         sin_q23 = sin(q2_plus_q3)
         z_at_q4 = z_at_q3 + a3 * sin_q23
         z_at_q6 = z_at_q4 - d5 * cos_q234
-        z = z_at_q6 + d6 * r32_at_q5
+        z = z_at_q6 - d6 * r32_at_q5
         r11_at_q5 = r11_at_q234 * cos_q5 + sin_q1 * sin_q5
         q6 = DEGREE * (axis_a6 - offset_a6)
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q234 * sin_q6
-        r12_at_q6 = r12_at_q234 * cos_q6 - r11_at_q5 * sin_q6
+        r11_at_q6 = r11_at_q5 * cos_q6 + r13_at_q234 * sin_q6
+        r13_at_q6 = r13_at_q234 * cos_q6 - r11_at_q5 * sin_q6
         r21_at_q5 = r21_at_q234 * cos_q5 - cos_q1 * sin_q5
-        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q234 * sin_q6
-        r22_at_q6 = r22_at_q234 * cos_q6 - r21_at_q5 * sin_q6
+        r21_at_q6 = r21_at_q5 * cos_q6 + r23_at_q234 * sin_q6
+        r23_at_q6 = r23_at_q234 * cos_q6 - r21_at_q5 * sin_q6
         r31_at_q5 = cos_q5 * sin_q234
         r31_at_q6 = cos_q234 * sin_q6 + r31_at_q5 * cos_q6
-        r32_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
-        wrist_y = y - d6_times_r22_at_q5
+        r33_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
+        wrist_x = d6_times_r12_at_q5 + x  # wrist centre: the last joints do not move this point
+        wrist_y = d6_times_r22_at_q5 + y
         branch_shoulder = -one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         return (
             (x, y, z),
-            ((r11_at_q6, r12_at_q6, r12_at_q5), (r21_at_q6, r22_at_q6, r22_at_q5), (r31_at_q6, r32_at_q6, r32_at_q5)),
+            (
+                (r11_at_q6, r13_at_q6, -r12_at_q5),
+                (r21_at_q6, r23_at_q6, -r22_at_q5),
+                (r31_at_q6, r33_at_q6, -r32_at_q5),
+            ),
             (branch_shoulder, sin_q3, sin_q5),
         )
 
@@ -365,7 +875,7 @@ class Ac6ThreeParallel(Mechanism):
         q4 = DEGREE * (axis_a4 - offset_a4)
         q2_plus_q3_plus_q4 = q2 + q3 + q4
         sin_q234 = sin(q2_plus_q3_plus_q4)
-        r12_at_q234 = -cos_q1 * sin_q234
+        r13_at_q234 = -cos_q1 * sin_q234
         sin_q1 = sin(q1)
         cos_q234 = cos(q2_plus_q3_plus_q4)
         r11_at_q234 = cos_q1 * cos_q234
@@ -376,20 +886,24 @@ class Ac6ThreeParallel(Mechanism):
         q6 = DEGREE * (axis_a6 - offset_a6)
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q234 * sin_q6
-        r12_at_q6 = r12_at_q234 * cos_q6 - r11_at_q5 * sin_q6
-        r12_at_q5 = cos_q5 * sin_q1 - r11_at_q234 * sin_q5
-        r22_at_q234 = -sin_q1 * sin_q234
+        r11_at_q6 = r11_at_q5 * cos_q6 + r13_at_q234 * sin_q6
+        r13_at_q6 = r13_at_q234 * cos_q6 - r11_at_q5 * sin_q6
+        r12_at_q5 = r11_at_q234 * sin_q5 - cos_q5 * sin_q1
+        r23_at_q234 = -sin_q1 * sin_q234
         r21_at_q234 = cos_q234 * sin_q1
         r21_at_q5 = r21_at_q234 * cos_q5 - cos_q1 * sin_q5
-        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q234 * sin_q6
-        r22_at_q6 = r22_at_q234 * cos_q6 - r21_at_q5 * sin_q6
-        r22_at_q5 = -cos_q1 * cos_q5 - r21_at_q234 * sin_q5
+        r21_at_q6 = r21_at_q5 * cos_q6 + r23_at_q234 * sin_q6
+        r23_at_q6 = r23_at_q234 * cos_q6 - r21_at_q5 * sin_q6
+        r22_at_q5 = cos_q1 * cos_q5 + r21_at_q234 * sin_q5
         r31_at_q5 = cos_q5 * sin_q234
         r31_at_q6 = cos_q234 * sin_q6 + r31_at_q5 * cos_q6
-        r32_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
-        r32_at_q5 = -sin_q234 * sin_q5
-        return ((r11_at_q6, r12_at_q6, r12_at_q5), (r21_at_q6, r22_at_q6, r22_at_q5), (r31_at_q6, r32_at_q6, r32_at_q5))
+        r33_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
+        r32_at_q5 = sin_q234 * sin_q5
+        return (
+            (r11_at_q6, r13_at_q6, -r12_at_q5),
+            (r21_at_q6, r23_at_q6, -r22_at_q5),
+            (r31_at_q6, r33_at_q6, -r32_at_q5),
+        )
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
@@ -401,22 +915,14 @@ class Ac6ThreeParallel(Mechanism):
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
-        a2, a2_minus_a3, a2_plus_a3 = k.a2, k.a2_minus_a3, k.a2_plus_a3
-        a2_squared_plus_a3_squared, a3, d1 = k.a2_squared_plus_a3_squared, k.a3, k.d1
-        d1_times_d5_times_2, d4, d5, d6, machine_scale = k.d1_times_d5_times_2, k.d4, k.d5, k.d6, k.machine_scale
-        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
-        mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
-        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, product_in_cos_q6 = k.offset_a6, k.product_in_cos_q6
-        product_in_divisor_q6_q1_for_q3 = k.product_in_divisor_q6_q1_for_q3
-        product_in_follows_q1_for_q3 = k.product_in_follows_q1_for_q3
-        product_in_highest_q6_q1_for_q3, quotient_in_cos_q3 = k.product_in_highest_q6_q1_for_q3, k.quotient_in_cos_q3
-        quotient_in_sin_q3, rounding_q1, single_a1 = k.quotient_in_sin_q3, k.rounding_q1, k.single_a1
-        single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
-        single_a6, size_q1_for_q3 = k.single_a6, k.size_q1_for_q3
-        size_q1_for_q3_times_rounding, twice_d5 = k.size_q1_for_q3_times_rounding, k.twice_d5
+        a2, a2_minus_a3, a2_plus_a3, a3, d1, d4, d5 = k.a2, k.a2_minus_a3, k.a2_plus_a3, k.a3, k.d1, k.d4, k.d5
+        d6, machine_scale, machine_scale_times_free_angle = k.d6, k.machine_scale, k.machine_scale_times_free_angle
+        mid_a1, mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a1, k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        offset_a5, offset_a6, product_in_lost_digits_37 = k.offset_a5, k.offset_a6, k.product_in_lost_digits_37
+        quotient_in_closed_cos_q3, quotient_in_closed_sin_q3 = k.quotient_in_closed_cos_q3, k.quotient_in_closed_sin_q3
+        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
+        single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
@@ -430,409 +936,53 @@ class Ac6ThreeParallel(Mechanism):
             missing = abs(d4) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_before_q1_for_q3 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_shoulder
+        ahead_q1 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_shoulder
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d4 * wrist_y) / distance_q1_squared
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d4 * wrist_x) / distance_q1_squared
+            cos_q1 = (ahead_q1 * wrist_x - d4 * wrist_y) / distance_q1_squared
+            sin_q1 = (ahead_q1 * wrist_y + d4 * wrist_x) / distance_q1_squared
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(reference_a1)
-            sin_q1_before_q1_for_q3 = sin(reference_a1)
-        wrist_z = z - d6 * r33
-        wrist_y_from_q1_fixed = wrist_z - d1
-        # turned so that q3 has a solution
-        if ahead_squared_q1 > machine_scale_squared_times_plane:
-            ahead_q1 = ahead_q1_before_q1_for_q3
-            cos_q1 = cos_q1_before_q1_for_q3
-            sin_q1 = sin_q1_before_q1_for_q3
-        else:
-            reference_a6 = (ref_a6 - offset_a6) * DEGREE
-            cos_of_reference_a6 = cos(reference_a6)
-            sin_of_reference_a6 = sin(reference_a6)
-            r21_from_q1_before_q1_for_q3 = r21 * cos_q1_before_q1_for_q3 - r11 * sin_q1_before_q1_for_q3
-            r22_from_q1_before_q1_for_q3 = r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3
-            radius_q6_before_q1_for_q3 = sqrt(
-                r21_from_q1_before_q1_for_q3 * r21_from_q1_before_q1_for_q3
-                + r22_from_q1_before_q1_for_q3 * r22_from_q1_before_q1_for_q3
-            )
-            q6_radius_of_q5_before_q1_for_q3 = sigma_wrist * radius_q6_before_q1_for_q3
-            cos_q5_before_q1_for_q3 = r13 * sin_q1_before_q1_for_q3 - r23 * cos_q1_before_q1_for_q3
-            r21_from_q1_rate_q1_for_q3 = -r11 * cos_q1_before_q1_for_q3 - r21 * sin_q1_before_q1_for_q3
-            r22_from_q1_rate_q1_for_q3 = -r12 * cos_q1_before_q1_for_q3 - r22 * sin_q1_before_q1_for_q3
-            along_q6_rate_q1_for_q3 = -sigma_wrist * r21_from_q1_rate_q1_for_q3
-            across_q6_rate_q1_for_q3 = sigma_wrist * r22_from_q1_rate_q1_for_q3
-            if radius_q6_before_q1_for_q3 > 1e-11:
-                along_q6_before_q1_for_q3 = -sigma_wrist * r21_from_q1_before_q1_for_q3
-                one_by_radius_q6_before_q1_for_q3 = 1.0 / radius_q6_before_q1_for_q3
-                cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
-                across_q6_before_q1_for_q3 = sigma_wrist * r22_from_q1_before_q1_for_q3
-                sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
-                radius_q6_rate_q1_for_q3 = (
-                    r21_from_q1_before_q1_for_q3 * r21_from_q1_rate_q1_for_q3
-                    + r22_from_q1_before_q1_for_q3 * r22_from_q1_rate_q1_for_q3
-                ) / radius_q6_before_q1_for_q3
-                cos_q6_rate_q1_for_q3 = (
-                    along_q6_rate_q1_for_q3 - radius_q6_rate_q1_for_q3 * cos_q6_before_q1_for_q3
-                ) * one_by_radius_q6_before_q1_for_q3
-                sin_q6_rate_q1_for_q3 = (
-                    across_q6_rate_q1_for_q3 - radius_q6_rate_q1_for_q3 * sin_q6_before_q1_for_q3
-                ) * one_by_radius_q6_before_q1_for_q3
-            else:
-                cos_q6_before_q1_for_q3 = cos_of_reference_a6
-                sin_q6_before_q1_for_q3 = sin_of_reference_a6
-                if radius_q6_before_q1_for_q3 > 0.0:
-                    radius_q6_rate_q1_for_q3 = (
-                        r21_from_q1_before_q1_for_q3 * r21_from_q1_rate_q1_for_q3
-                        + r22_from_q1_before_q1_for_q3 * r22_from_q1_rate_q1_for_q3
-                    ) / radius_q6_before_q1_for_q3
-                else:
-                    radius_q6_rate_q1_for_q3 = 0.0
-                cos_q6_rate_q1_for_q3 = 0.0
-                sin_q6_rate_q1_for_q3 = 0.0
-            r21_from_q1_before_q6_before_q1_for_q3 = r31 * cos_q6_before_q1_for_q3 - r32 * sin_q6_before_q1_for_q3
-            r21_from_q1_before_q56_before_q1_for_q3 = (
-                r21_from_q1_before_q6_before_q1_for_q3 * cos_q5_before_q1_for_q3
-                - q6_radius_of_q5_before_q1_for_q3 * r33
-            )
-            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q1_for_q3
-            r22_from_q1_before_q6_before_q1_for_q3 = r32 * cos_q6_before_q1_for_q3 + r31 * sin_q6_before_q1_for_q3
-            wrist_y_from_q1_before_q1_for_q3 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q1_for_q3
-            # q3 has solutions where this is within its bound
-            value_q1_for_q3 = (
-                wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
-                + wrist_y_from_q1_before_q1_for_q3 * wrist_y_from_q1_before_q1_for_q3
-                - a2_squared_plus_a3_squared
-            )
-            # turned so that q3 has a solution
-            if abs(value_q1_for_q3) <= size_q1_for_q3:
-                ahead_q1 = ahead_q1_before_q1_for_q3
-                cos_q1 = cos_q1_before_q1_for_q3
-                sin_q1 = sin_q1_before_q1_for_q3
-            else:
-                r23_from_q1_rate_q1_for_q3 = -r13 * cos_q1_before_q1_for_q3 - r23 * sin_q1_before_q1_for_q3
-                q6_radius_of_q5_rate_q1_for_q3 = sigma_wrist * radius_q6_rate_q1_for_q3
-                r21_from_q1_before_q6_rate_q1_for_q3 = r31 * cos_q6_rate_q1_for_q3 - r32 * sin_q6_rate_q1_for_q3
-                r21_from_q1_before_q56_rate_q1_for_q3 = (
-                    r21_from_q1_before_q6_rate_q1_for_q3 * cos_q5_before_q1_for_q3
-                    - q6_radius_of_q5_rate_q1_for_q3 * r33
-                    - r21_from_q1_before_q6_before_q1_for_q3 * r23_from_q1_rate_q1_for_q3
-                )
-                wrist_x_from_q1_rate_q1_for_q3 = -d4 - d5 * r21_from_q1_before_q56_rate_q1_for_q3
-                r22_from_q1_before_q6_rate_q1_for_q3 = r32 * cos_q6_rate_q1_for_q3 + r31 * sin_q6_rate_q1_for_q3
-                wrist_y_from_q1_rate_q1_for_q3 = d5 * r22_from_q1_before_q6_rate_q1_for_q3
-                # its derivative by q1
-                rate_q1_for_q3 = 2.0 * (
-                    wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_rate_q1_for_q3
-                    + wrist_y_from_q1_before_q1_for_q3 * wrist_y_from_q1_rate_q1_for_q3
-                )
-                # turn of q1 to first order
-                if abs(rate_q1_for_q3) > size_q1_for_q3_times_rounding:
-                    excess_q1_for_q3 = (
-                        value_q1_for_q3 - size_q1_for_q3 if value_q1_for_q3 > 0.0 else size_q1_for_q3 + value_q1_for_q3
-                    )
-                    turn_q1_for_q3 = -excess_q1_for_q3 / rate_q1_for_q3
-                else:
-                    turn_q1_for_q3 = 1.0
-                turn_q1_for_q3_squared = turn_q1_for_q3 * turn_q1_for_q3
-                sum_in_across_q6_q1_for_q3 = d1_times_d5_times_2 - twice_d5 * wrist_z
-                product_in_across_q6_q1_for_q3 = ahead_q1_before_q1_for_q3 * twice_d5 * cos_q5_before_q1_for_q3
-                along_q6_q1_for_q3 = -product_in_across_q6_q1_for_q3 * r31 - r32 * sum_in_across_q6_q1_for_q3
-                across_q6_q1_for_q3 = product_in_across_q6_q1_for_q3 * r32 - r31 * sum_in_across_q6_q1_for_q3
-                swing_q6_q1_for_q3 = sqrt(
-                    across_q6_q1_for_q3 * across_q6_q1_for_q3 + along_q6_q1_for_q3 * along_q6_q1_for_q3
-                )
-                # whether the first order is not enough: then q6 is chosen first
-                follows_q1_for_q3 = (turn_q1_for_q3_squared > 1e-12) or (
-                    (
-                        across_q6_rate_q1_for_q3 * across_q6_rate_q1_for_q3
-                        + along_q6_rate_q1_for_q3 * along_q6_rate_q1_for_q3
-                    )
-                    * swing_q6_q1_for_q3
-                    * turn_q1_for_q3_squared
-                    > product_in_follows_q1_for_q3 * radius_q6_before_q1_for_q3 * radius_q6_before_q1_for_q3
-                )
-                if follows_q1_for_q3:
-                    # feasible arc: cosines of its ends
-                    if swing_q6_q1_for_q3 > product_in_divisor_q6_q1_for_q3:
-                        level_q6_q1_for_q3 = (
-                            value_q1_for_q3
-                            - across_q6_q1_for_q3 * sin_q6_before_q1_for_q3
-                            - along_q6_q1_for_q3 * cos_q6_before_q1_for_q3
-                        )
-                        quotient_in_highest_q6_q1_for_q3 = (
-                            product_in_highest_q6_q1_for_q3 - level_q6_q1_for_q3
-                        ) / swing_q6_q1_for_q3
-                        highest_q6_q1_for_q3 = (
-                            1.0
-                            if quotient_in_highest_q6_q1_for_q3 > 1.0
-                            else (-1.0 if quotient_in_highest_q6_q1_for_q3 < -1.0 else quotient_in_highest_q6_q1_for_q3)
-                        )
-                        quotient_in_lowest_q6_q1_for_q3 = (
-                            level_q6_q1_for_q3 + product_in_highest_q6_q1_for_q3
-                        ) / swing_q6_q1_for_q3
-                        lowest_q6_q1_for_q3 = (
-                            1.0
-                            if -quotient_in_lowest_q6_q1_for_q3 > 1.0
-                            else (-1.0 if -quotient_in_lowest_q6_q1_for_q3 < -1.0 else -quotient_in_lowest_q6_q1_for_q3)
-                        )
-                    else:
-                        highest_q6_q1_for_q3 = 1.0
-                        lowest_q6_q1_for_q3 = -1.0
-                    near_q6_q1_for_q3 = arctan2(
-                        root((1.0 - highest_q6_q1_for_q3) * (1.0 + highest_q6_q1_for_q3)) + 0.0,
-                        highest_q6_q1_for_q3 + 0.0,
-                    )
-                    far_q6_q1_for_q3 = arctan2(
-                        root((1.0 - lowest_q6_q1_for_q3) * (1.0 + lowest_q6_q1_for_q3)) + 0.0, lowest_q6_q1_for_q3 + 0.0
-                    )
-                    centre_q6_q1_for_q3 = arctan2(across_q6_q1_for_q3 + 0.0, along_q6_q1_for_q3 + 0.0)
-                    angle_q6_q1_for_q3 = arctan2(sin_q6_before_q1_for_q3 + 0.0, cos_q6_before_q1_for_q3 + 0.0)
-                    side_q6_q1_for_q3 = (
-                        1.0
-                        if along_q6_q1_for_q3 * sin_q6_before_q1_for_q3 - across_q6_q1_for_q3 * cos_q6_before_q1_for_q3
-                        >= 0.0
-                        else -1.0
-                    )
-                    moved_q6_q1_for_q3 = nearest_on_arc(
-                        angle_q6_q1_for_q3,
-                        centre_q6_q1_for_q3 + 0.5 * (far_q6_q1_for_q3 + near_q6_q1_for_q3) * side_q6_q1_for_q3,
-                        0.5 * (far_q6_q1_for_q3 - near_q6_q1_for_q3),
-                    )
-                    near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3)
-                    near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3)
-                    near_q_q1_for_q3 = sigma_wrist * (near_cos_q6_q1_for_q3 * r12 + near_sin_q6_q1_for_q3 * r11)
-                    near_p_q1_for_q3 = (-near_cos_q6_q1_for_q3 * r22 - near_sin_q6_q1_for_q3 * r21) * sigma_wrist
-                    near_radius_q1_for_q3 = sqrt(
-                        near_p_q1_for_q3 * near_p_q1_for_q3 + near_q_q1_for_q3 * near_q_q1_for_q3
-                    )
-                    # the earlier angle follows
-                    # it stays where it has no effect
-                    if near_radius_q1_for_q3 > 1e-12:
-                        near_along_q1_for_q3 = (
-                            sigma_wrist * (near_cos_q6_q1_for_q3 * r21 - near_sin_q6_q1_for_q3 * r22) * near_q_q1_for_q3
-                            - (near_sin_q6_q1_for_q3 * r12 - near_cos_q6_q1_for_q3 * r11)
-                            * sigma_wrist
-                            * near_p_q1_for_q3
-                        )
-                        # positive where the vector points along the later angle
-                        near_towards_q1_for_q3 = (
-                            near_p_q1_for_q3 * sin_q1_before_q1_for_q3 - near_q_q1_for_q3 * cos_q1_before_q1_for_q3
-                            if abs(near_along_q1_for_q3) <= 5e-12 * near_radius_q1_for_q3
-                            else near_along_q1_for_q3
-                        )
-                        near_side_q1_for_q3 = -1.0 if near_towards_q1_for_q3 < 0.0 else 1.0
-                        quotient_in_near_cos_q1_for_q3 = near_side_q1_for_q3 / near_radius_q1_for_q3
-                        near_cos_q1_for_q3 = -near_q_q1_for_q3 * quotient_in_near_cos_q1_for_q3
-                        near_sin_q1_for_q3 = near_p_q1_for_q3 * quotient_in_near_cos_q1_for_q3
-                    else:
-                        near_cos_q1_for_q3 = cos_q1_before_q1_for_q3
-                        near_sin_q1_for_q3 = sin_q1_before_q1_for_q3
-                    if distance_q1 > machine_scale_times_free_angle:
-                        near_cost_q1_for_q3 = abs(d4 + near_cos_q1_for_q3 * wrist_y - near_sin_q1_for_q3 * wrist_x)
-                        mirrored_q6_q1_for_q3 = (
-                            2.0 * centre_q6_q1_for_q3 - moved_q6_q1_for_q3
-                        )  # mirror image on the other arc
-                        mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
-                        mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
-                        mirrored_q_q1_for_q3 = sigma_wrist * (
-                            mirrored_cos_q6_q1_for_q3 * r12 + mirrored_sin_q6_q1_for_q3 * r11
-                        )
-                        mirrored_p_q1_for_q3 = (
-                            -mirrored_cos_q6_q1_for_q3 * r22 - mirrored_sin_q6_q1_for_q3 * r21
-                        ) * sigma_wrist
-                        mirrored_radius_q1_for_q3 = sqrt(
-                            mirrored_p_q1_for_q3 * mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3 * mirrored_q_q1_for_q3
-                        )
-                        # the earlier angle follows
-                        # it stays where it has no effect
-                        if mirrored_radius_q1_for_q3 > 1e-12:
-                            mirrored_along_q1_for_q3 = (
-                                sigma_wrist
-                                * (mirrored_cos_q6_q1_for_q3 * r21 - mirrored_sin_q6_q1_for_q3 * r22)
-                                * mirrored_q_q1_for_q3
-                                - (mirrored_sin_q6_q1_for_q3 * r12 - mirrored_cos_q6_q1_for_q3 * r11)
-                                * sigma_wrist
-                                * mirrored_p_q1_for_q3
-                            )
-                            # positive where the vector points along the later angle
-                            mirrored_towards_q1_for_q3 = (
-                                mirrored_p_q1_for_q3 * sin_q1_before_q1_for_q3
-                                - mirrored_q_q1_for_q3 * cos_q1_before_q1_for_q3
-                                if abs(mirrored_along_q1_for_q3) <= 5e-12 * mirrored_radius_q1_for_q3
-                                else mirrored_along_q1_for_q3
-                            )
-                            mirrored_side_q1_for_q3 = -1.0 if mirrored_towards_q1_for_q3 < 0.0 else 1.0
-                            quotient_in_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3 / mirrored_radius_q1_for_q3
-                            mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3 * quotient_in_mirrored_cos_q1_for_q3
-                            mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3 * quotient_in_mirrored_cos_q1_for_q3
-                        else:
-                            mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3
-                            mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3
-                        mirrored_cost_q1_for_q3 = abs(
-                            d4 + mirrored_cos_q1_for_q3 * wrist_y - mirrored_sin_q1_for_q3 * wrist_x
-                        )
-                        if near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3:
-                            best_cost_q1_for_q3 = near_cost_q1_for_q3
-                            best_cos_q1_for_q3 = near_cos_q1_for_q3
-                            best_sin_q1_for_q3 = near_sin_q1_for_q3
-                        else:
-                            best_cost_q1_for_q3 = mirrored_cost_q1_for_q3
-                            best_cos_q1_for_q3 = mirrored_cos_q1_for_q3
-                            best_sin_q1_for_q3 = mirrored_sin_q1_for_q3
-                    else:
-                        best_cost_q1_for_q3 = 0.0
-                        best_cos_q1_for_q3 = near_cos_q1_for_q3
-                        best_sin_q1_for_q3 = near_sin_q1_for_q3
-                    best_ahead_q1_for_q3 = best_cos_q1_for_q3 * wrist_x + best_sin_q1_for_q3 * wrist_y
-                else:
-                    turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3_squared)
-                    one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
-                    best_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                        cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
-                    )
-                    best_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                        sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
-                    )
-                    best_cost_q1_for_q3 = abs(d4 + best_cos_q1_for_q3 * wrist_y - best_sin_q1_for_q3 * wrist_x)
-                    best_ahead_q1_for_q3 = (
-                        ahead_q1_before_q1_for_q3 - d4 * turn_q1_for_q3
-                    ) * one_by_turned_length_q1_for_q3
-                # turned so that q3 has a solution
-                if best_cost_q1_for_q3 > machine_scale_times_rounding:
-                    ahead_q1 = ahead_q1_before_q1_for_q3
-                    cos_q1 = cos_q1_before_q1_for_q3
-                    sin_q1 = sin_q1_before_q1_for_q3
-                else:
-                    ahead_q1 = best_ahead_q1_for_q3
-                    cos_q1 = best_cos_q1_for_q3
-                    sin_q1 = best_sin_q1_for_q3
-        cos_q5 = r13 * sin_q1 - r23 * cos_q1  # cosine and sine of q5 from the q6 radius and r32 equations
+            cos_q1 = cos(reference_a1)
+            sin_q1 = sin(reference_a1)
         r21_from_q1 = r21 * cos_q1 - r11 * sin_q1
         r22_from_q1 = r22 * cos_q1 - r12 * sin_q1
         # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
         q6_radius_of_q5 = sigma_wrist * radius_q6
-        q6_radius_of_q5_times_r33 = q6_radius_of_q5 * r33
+        cos_q5 = r13 * sin_q1 - r23 * cos_q1  # cosine and sine of q5 from the q6 radius and r22 equations
         # at a singularity: the angle of the reference
         if radius_q6 > 1e-11:
-            along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
-            cos_q6_before_q6_of_q3 = along_q6 / radius_q6
+            along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r21 and r23 equations
+            cos_q6 = along_q6 / radius_q6
             across_q6 = sigma_wrist * r22_from_q1
-            sin_q6_before_q6_of_q3 = across_q6 / radius_q6
+            sin_q6 = across_q6 / radius_q6
         else:
             reference_a6 = (ref_a6 - offset_a6) * DEGREE
-            cos_of_reference_a6 = cos(reference_a6)
-            sin_of_reference_a6 = sin(reference_a6)
-            cos_q6_before_q6_of_q3 = cos_of_reference_a6
-            sin_q6_before_q6_of_q3 = sin_of_reference_a6
-        r21_from_q1_before_q6_before_q6_of_q3 = r31 * cos_q6_before_q6_of_q3 - r32 * sin_q6_before_q6_of_q3
-        r21_from_q1_before_q56_before_q6_of_q3 = (
-            r21_from_q1_before_q6_before_q6_of_q3 * cos_q5 - q6_radius_of_q5_times_r33
-        )
-        wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - d5 * r21_from_q1_before_q56_before_q6_of_q3
-        r22_from_q1_before_q6_before_q6_of_q3 = r32 * cos_q6_before_q6_of_q3 + r31 * sin_q6_before_q6_of_q3
-        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q6_of_q3
-        # q3 has solutions where this is within its bound
-        value_q6_of_q3 = (
-            wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
-            - a2_squared_plus_a3_squared
-        )
-        # moved so that q3 has a solution
-        if abs(value_q6_of_q3) <= size_q1_for_q3:
-            cos_q6 = cos_q6_before_q6_of_q3
-            sin_q6 = sin_q6_before_q6_of_q3
-        else:
-            # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6:
-                cos_q6 = cos_q6_before_q6_of_q3
-                sin_q6 = sin_q6_before_q6_of_q3
-            else:
-                wrist_x_from_q1_fixed = ahead_q1 + d5 * q6_radius_of_q5_times_r33
-                wrist_y_from_q1_across = d5 * r31
-                wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
-                wrist_y_from_q1_along = d5 * r32
-                along_q6_of_q3 = 2.0 * (
-                    wrist_x_from_q1_along * wrist_x_from_q1_fixed + wrist_y_from_q1_along * wrist_y_from_q1_fixed
-                )
-                wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
-                across_q6_of_q3 = 2.0 * (
-                    wrist_x_from_q1_across * wrist_x_from_q1_fixed + wrist_y_from_q1_across * wrist_y_from_q1_fixed
-                )
-                swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
-                # feasible arc: cosines of its ends
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3
-                        - across_q6_of_q3 * sin_q6_before_q6_of_q3
-                        - along_q6_of_q3 * cos_q6_before_q6_of_q3
-                    )
-                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
-                    highest_q6_of_q3 = (
-                        1.0
-                        if quotient_in_highest_q6_of_q3 > 1.0
-                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
-                    )
-                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
-                    lowest_q6_of_q3 = (
-                        1.0
-                        if -quotient_in_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
-                    )
-                else:
-                    highest_q6_of_q3 = 1.0
-                    lowest_q6_of_q3 = -1.0
-                near_q6_of_q3 = arctan2(
-                    root((1.0 - highest_q6_of_q3) * (1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0
-                )
-                far_q6_of_q3 = arctan2(
-                    root((1.0 - lowest_q6_of_q3) * (1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0
-                )
-                centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
-                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3 + 0.0, cos_q6_before_q6_of_q3 + 0.0)
-                side_q6_of_q3 = (
-                    1.0
-                    if along_q6_of_q3 * sin_q6_before_q6_of_q3 - across_q6_of_q3 * cos_q6_before_q6_of_q3 >= 0.0
-                    else -1.0
-                )
-                moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3,
-                    centre_q6_of_q3 + 0.5 * (far_q6_of_q3 + near_q6_of_q3) * side_q6_of_q3,
-                    0.5 * (far_q6_of_q3 - near_q6_of_q3),
-                )
-                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
-                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
-                sum_in_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
-                # change of the pose by this motion
-                cost_q6_of_q3 = (
-                    sqrt(sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3 + sum_in_cost_q6_of_q3_2 * sum_in_cost_q6_of_q3_2)
-                    * radius_q6
-                )
-                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved so that q3 has a solution
-                if stays_q6_of_q3:
-                    cos_q6 = cos_q6_before_q6_of_q3
-                    sin_q6 = sin_q6_before_q6_of_q3
-                else:
-                    cos_q6 = cos_q6_after_q6_of_q3
-                    sin_q6 = sin_q6_after_q6_of_q3
-        r21_from_q1_before_q6 = r31 * cos_q6 - r32 * sin_q6
-        r21_from_q1_before_q56 = r21_from_q1_before_q6 * cos_q5 - q6_radius_of_q5_times_r33
+            cos_q6 = cos(reference_a6)
+            sin_q6 = sin(reference_a6)
+        r31_from_q1_before_q6 = r31 * cos_q6 - r32 * sin_q6
+        r31_from_q1_before_q56 = r31_from_q1_before_q6 * cos_q5 - q6_radius_of_q5 * r33
         # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1 = ahead_q1 - d5 * r21_from_q1_before_q56
-        r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
+        wrist_x_from_q1 = ahead_q1 - d5 * r31_from_q1_before_q56
+        r33_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
+        wrist_z = z - d6 * r33
         # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
+        wrist_z_from_q1 = wrist_z + d5 * r33_from_q1_before_q6 - d1
         # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
+        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_closed_cos_q3
+        within_37 = -1.0 <= cos_q3 <= 1.0
+        lost_digits_37 = (not within_37) and (
+            (-0.01 <= q6_radius_of_q5 <= 0.01)
+            or (-0.01 <= radius_q6 <= 0.01)
+            or (abs(ahead_q1) <= product_in_lost_digits_37)
+        )
         # q3: out of reach
-        if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):
+        if not (lost_digits_37 or (-1.0000000000005 <= cos_q3 <= 1.0000000000005)):
             missing = max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
@@ -841,14 +991,14 @@ class Ac6ThreeParallel(Mechanism):
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_sin_q3
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_closed_sin_q3
         # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3 * cos_q3
             arm_across_q2 = a3 * sin_q3
-            direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
-            direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
+            direction_x_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+            direction_y_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_q2 = cos(reference_a2)
@@ -865,7 +1015,7 @@ class Ac6ThreeParallel(Mechanism):
         axis_a3 = offset_a3 + angle_q3 * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        angle_with_q4 = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
+        angle_with_q4 = arctan2(r31_from_q1_before_q56 + 0.0, r33_from_q1_before_q6 + 0.0)
         open_a4 = mid_a4 if single_a4 else ref_a4  # A4: without a commanded turn, the value nearest to this
         near_a4 = 360.0 * (turn_a4 - 1 if turn_a4 > 0 else turn_a4) if turn_a4 != 0 else open_a4
         # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
@@ -882,7 +1032,62 @@ class Ac6ThreeParallel(Mechanism):
         axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0) * RADIAN  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
-        return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
+        # digits were lost: the pose is met by steps on the closure
+        if lost_digits_37:
+            found = self._meet_pose(
+                (
+                    ref_a1,
+                    ref_a2,
+                    ref_a3,
+                    ref_a4,
+                    ref_a5,
+                    ref_a6,
+                    sigma_elbow,
+                    sigma_shoulder,
+                    sigma_wrist,
+                    turn_a1,
+                    turn_a2,
+                    turn_a3,
+                    turn_a4,
+                    turn_a5,
+                    turn_a6,
+                    r11,
+                    r12,
+                    r13,
+                    r21,
+                    r22,
+                    r23,
+                    r31,
+                    r32,
+                    r33,
+                    x,
+                    y,
+                    z,
+                    axis_a1,
+                    axis_a2,
+                    axis_a3,
+                    axis_a4,
+                    axis_a5,
+                    axis_a6,
+                )
+            )
+            if isinstance(found, Status):
+                return Diagnosis(found, "", 0.0)
+            met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = found
+        else:
+            met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        # q3: out of reach
+        if not (met or (-1.0000000000005 <= cos_q3 <= 1.0000000000005)):
+            missing = max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale)
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        return (
+            (found_a1 if met else axis_a1),
+            (found_a2 if met else axis_a2),
+            (found_a3 if met else axis_a3),
+            (found_a4 if met else axis_a4),
+            (found_a5 if met else axis_a5),
+            (found_a6 if met else axis_a6),
+        )
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
         """The test of the limits."""
@@ -927,10 +1132,10 @@ class Ac6ThreeParallel(Mechanism):
         cos_q234 = cos(q2_plus_q3_plus_q4)
         r11_at_q234 = cos_q1 * cos_q234
         cos_q5 = cos(q5)
-        r12_at_q5 = cos_q5 * sin_q1 - r11_at_q234 * sin_q5
+        r12_at_q5 = r11_at_q234 * sin_q5 - cos_q5 * sin_q1
         d6_times_r12_at_q5 = d6 * r12_at_q5
         sin_q234 = sin(q2_plus_q3_plus_q4)
-        r12_at_q234 = -cos_q1 * sin_q234
+        r13_at_q234 = -cos_q1 * sin_q234
         cos_q2 = cos(q2)
         r11_at_q2 = cos_q1 * cos_q2
         x_at_q3 = a2 * r11_at_q2
@@ -938,21 +1143,21 @@ class Ac6ThreeParallel(Mechanism):
         r11_at_q23 = cos_q1 * cos_q23
         x_at_q4 = x_at_q3 + a3 * r11_at_q23
         x_at_q5 = x_at_q4 + d4 * sin_q1
-        x_at_q6 = x_at_q5 - d5 * r12_at_q234
-        x = d6_times_r12_at_q5 + x_at_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
+        x_at_q6 = x_at_q5 - d5 * r13_at_q234
+        x = x_at_q6 - d6_times_r12_at_q5
+        wrist_x = d6_times_r12_at_q5 + x  # wrist centre: the last joints do not move this point
         r21_at_q234 = cos_q234 * sin_q1
-        r22_at_q5 = -cos_q1 * cos_q5 - r21_at_q234 * sin_q5
+        r22_at_q5 = cos_q1 * cos_q5 + r21_at_q234 * sin_q5
         d6_times_r22_at_q5 = d6 * r22_at_q5
-        r22_at_q234 = -sin_q1 * sin_q234
+        r23_at_q234 = -sin_q1 * sin_q234
         r21_at_q2 = cos_q2 * sin_q1
         y_at_q3 = a2 * r21_at_q2
         r21_at_q23 = cos_q23 * sin_q1
         y_at_q4 = y_at_q3 + a3 * r21_at_q23
         y_at_q5 = y_at_q4 - d4 * cos_q1
-        y_at_q6 = y_at_q5 - d5 * r22_at_q234
-        y = d6_times_r22_at_q5 + y_at_q6
-        wrist_y = y - d6_times_r22_at_q5
+        y_at_q6 = y_at_q5 - d5 * r23_at_q234
+        y = y_at_q6 - d6_times_r22_at_q5
+        wrist_y = d6_times_r22_at_q5 + y
         margin_wrist_on_axis_1 = -one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         return (margin_wrist_on_axis_1, sin_q3, sin_q5)
@@ -978,9 +1183,9 @@ class Ac6ThreeParallel(Mechanism):
         q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
         cos_q5 = cos(q5)
-        r22_at_q5 = -cos_q1 * cos_q5 - r21_at_q234 * sin_q5
+        r22_at_q5 = cos_q1 * cos_q5 + r21_at_q234 * sin_q5
         sin_q234 = sin(q2_plus_q3_plus_q4)
-        r22_at_q234 = -sin_q1 * sin_q234
+        r23_at_q234 = -sin_q1 * sin_q234
         cos_q2 = cos(q2)
         r21_at_q2 = cos_q2 * sin_q1
         y_at_q3 = a2 * r21_at_q2
@@ -988,31 +1193,31 @@ class Ac6ThreeParallel(Mechanism):
         r21_at_q23 = cos_q23 * sin_q1
         y_at_q4 = y_at_q3 + a3 * r21_at_q23
         y_at_q5 = y_at_q4 - d4 * cos_q1
-        y_at_q6 = y_at_q5 - d5 * r22_at_q234
-        y = y_at_q6 + d6 * r22_at_q5
-        r32_at_q5 = -sin_q234 * sin_q5
+        y_at_q6 = y_at_q5 - d5 * r23_at_q234
+        y = y_at_q6 - d6 * r22_at_q5
+        r32_at_q5 = sin_q234 * sin_q5
         r11_at_q234 = cos_q1 * cos_q234
-        r12_at_q5 = cos_q5 * sin_q1 - r11_at_q234 * sin_q5
-        r12_at_q234 = -cos_q1 * sin_q234
+        r12_at_q5 = r11_at_q234 * sin_q5 - cos_q5 * sin_q1
+        r13_at_q234 = -cos_q1 * sin_q234
         r11_at_q2 = cos_q1 * cos_q2
         x_at_q3 = a2 * r11_at_q2
         r11_at_q23 = cos_q1 * cos_q23
         x_at_q4 = x_at_q3 + a3 * r11_at_q23
         x_at_q5 = x_at_q4 + d4 * sin_q1
-        x_at_q6 = x_at_q5 - d5 * r12_at_q234
-        x = x_at_q6 + d6 * r12_at_q5
+        x_at_q6 = x_at_q5 - d5 * r13_at_q234
+        x = x_at_q6 - d6 * r12_at_q5
         sin_q2 = sin(q2)
         z_at_q3 = d1 + a2 * sin_q2
         sin_q23 = sin(q2_plus_q3)
         z_at_q4 = z_at_q3 + a3 * sin_q23
         z_at_q6 = z_at_q4 - d5 * cos_q234
-        z = z_at_q6 + d6 * r32_at_q5
+        z = z_at_q6 - d6 * r32_at_q5
         z_minus_d1 = z - d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
         y_minus_y_at_q5 = y - y_at_q5
-        y_minus_y_at_q6 = y - y_at_q6
         z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
         x_minus_x_at_q5 = x - x_at_q5
         x_minus_x_at_q6 = x - x_at_q6
         return (
@@ -1021,28 +1226,28 @@ class Ac6ThreeParallel(Mechanism):
                 -z_minus_d1 * cos_q1,
                 -z_minus_z_at_q3 * cos_q1,
                 -z_minus_z_at_q4 * cos_q1,
-                y_minus_y_at_q5 * cos_q234 - r22_at_q234 * z_minus_z_at_q4,
-                r22_at_q5 * z_minus_z_at_q6 - r32_at_q5 * y_minus_y_at_q6,
+                y_minus_y_at_q5 * cos_q234 - r23_at_q234 * z_minus_z_at_q4,
+                r32_at_q5 * y_minus_y_at_q6 - r22_at_q5 * z_minus_z_at_q6,
             ),
             (
                 x,
                 -z_minus_d1 * sin_q1,
                 -z_minus_z_at_q3 * sin_q1,
                 -z_minus_z_at_q4 * sin_q1,
-                r12_at_q234 * z_minus_z_at_q4 - x_minus_x_at_q5 * cos_q234,
-                r32_at_q5 * x_minus_x_at_q6 - r12_at_q5 * z_minus_z_at_q6,
+                r13_at_q234 * z_minus_z_at_q4 - x_minus_x_at_q5 * cos_q234,
+                r12_at_q5 * z_minus_z_at_q6 - r32_at_q5 * x_minus_x_at_q6,
             ),
             (
                 0.0,
                 x * cos_q1 + y * sin_q1,
                 (x - x_at_q3) * cos_q1 + (y - y_at_q3) * sin_q1,
                 (x - x_at_q4) * cos_q1 + (y - y_at_q4) * sin_q1,
-                r22_at_q234 * x_minus_x_at_q5 - r12_at_q234 * y_minus_y_at_q5,
-                r12_at_q5 * y_minus_y_at_q6 - r22_at_q5 * x_minus_x_at_q6,
+                r23_at_q234 * x_minus_x_at_q5 - r13_at_q234 * y_minus_y_at_q5,
+                r22_at_q5 * x_minus_x_at_q6 - r12_at_q5 * y_minus_y_at_q6,
             ),
-            (0.0, sin_q1, sin_q1, sin_q1, -r12_at_q234, r12_at_q5),
-            (0.0, -cos_q1, -cos_q1, -cos_q1, -r22_at_q234, r22_at_q5),
-            (1.0, 0.0, 0.0, 0.0, -cos_q234, r32_at_q5),
+            (0.0, sin_q1, sin_q1, sin_q1, -r13_at_q234, -r12_at_q5),
+            (0.0, -cos_q1, -cos_q1, -cos_q1, -r23_at_q234, -r22_at_q5),
+            (1.0, 0.0, 0.0, 0.0, -cos_q234, -r32_at_q5),
         )
 
     def _image(self) -> Image | Status:
@@ -1052,13 +1257,17 @@ class Ac6ThreeParallel(Mechanism):
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
         solve = self._all_trusted  # a separate statement is faster
-        return solve(frame, reference) or super().branches(frame, reference)  # near a fold, one branch after the other
+        return solve(frame, reference) or super().branches(
+            frame, reference
+        )  # where digits may be lost, one branch after the other
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         found = solve(frame, signs, reference)
-        return super().branch(frame, signs, reference) if found == () else found  # near a fold, by the complete program
+        return (
+            super().branch(frame, signs, reference) if found == () else found
+        )  # where digits may be lost, by the complete program
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         return self._finished(self._all_trusted, self._finish, position, rotation, reference)

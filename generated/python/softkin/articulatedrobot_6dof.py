@@ -29,12 +29,14 @@ Singularities:
 
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
-    forward: 59 additions, 73 multiplications, 0 divisions, 0 square roots, 14 sines
-    inverse: 82 additions, 89 multiplications, 12 divisions, 6 square roots, 6 sines
-    inverse, all 8 branches: 463 additions, 375 multiplications, 52 divisions, 17 square roots, 34 sines
+    forward: 59 additions, 74 multiplications, 0 divisions, 0 square roots, 14 sines
+    inverse: 86 additions, 89 multiplications, 12 divisions, 6 square roots, 6 sines
+    inverse, all 8 branches: 495 additions, 376 multiplications, 52 divisions, 17 square roots, 34 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 12 additions, 11 multiplications, 2 divisions, 1 square roots, 6
-    sines
+    a branch at a singular pose, in addition: 58114 additions, 75979 multiplications, 2627 divisions, 660
+    square roots, 4107 sines
+    steps of damped least squares on the closure, from one start after the other: at most 164 passes, all of
+    which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -49,14 +51,14 @@ from typing import TYPE_CHECKING
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
-from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, solve, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.articulatedrobot_6dof import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
     from softkin._ends import Limits
-    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Values, Vector
 
 
 class Constants:
@@ -75,32 +77,33 @@ class Constants:
         self.lowest_a5, self.highest_a5, self.single_a5, self.mid_a5 = machine._window("a5")
         self.lowest_a6, self.highest_a6, self.single_a6, self.mid_a6 = machine._window("a6")
         machine_scale = a1 + a2 + a3 + d4  # characteristic length of the machine
-        effective_q3 = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
+        effective_q3_2 = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
         rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
-        size_q1_for_q3 = 2.0 * abs(effective_q3) * a2
-        size_q1_for_q3_times_rounding = 1e-12 * size_q1_for_q3
+        product_in_lost_digits_23 = 0.01 * machine_scale
+        a2_minus_effective_q3_2 = a2 - effective_q3_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
-        machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
-        machine_scale_times_rounding = 1e-12 * machine_scale
-        a2_minus_effective_q3 = a2 - effective_q3
         one_by_machine_scale = 1.0 / machine_scale
-        d4_by_effective_q3 = d4 / effective_q3
-        a3_by_effective_q3 = a3 / effective_q3
-        a2_squared_plus_effective_q3_squared = a2 * a2 + effective_q3 * effective_q3
-        twice_d3 = 2.0 * d3
-        a2_plus_effective_q3 = a2 + effective_q3
+        one_by_effective_q3_2 = 1.0 / effective_q3_2
+        a2_plus_effective_q3_2 = a2 + effective_q3_2
+        a2_minus_effective_q3_2_2 = a2 - effective_q3_2
+        d4_by_effective_q3_2 = d4 / effective_q3_2
+        a3_by_effective_q3_2 = a3 / effective_q3_2
+        one_by_effective_q3_2_2 = 1.0 / effective_q3_2
+        a2_plus_effective_q3_2_2 = a2 + effective_q3_2
+        d4_by_effective_q3_2_2 = d4 / effective_q3_2
+        a3_by_effective_q3_2_2 = a3 / effective_q3_2
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.d6 = d1, a1, a2, d3, a3, d4, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.offset_a5, self.offset_a6, self.effective_q3 = offset_a5, offset_a6, effective_q3
-        self.rounding_q1, self.size_q1_for_q3 = rounding_q1, size_q1_for_q3
-        self.size_q1_for_q3_times_rounding = size_q1_for_q3_times_rounding
+        self.offset_a5, self.offset_a6, self.machine_scale = offset_a5, offset_a6, machine_scale
+        self.effective_q3_2, self.rounding_q1 = effective_q3_2, rounding_q1
+        self.product_in_lost_digits_23 = product_in_lost_digits_23
+        self.a2_minus_effective_q3_2 = a2_minus_effective_q3_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
-        self.machine_scale_times_rounding = machine_scale_times_rounding
-        self.a2_minus_effective_q3, self.one_by_machine_scale = a2_minus_effective_q3, one_by_machine_scale
-        self.d4_by_effective_q3, self.a3_by_effective_q3 = d4_by_effective_q3, a3_by_effective_q3
-        self.a2_squared_plus_effective_q3_squared, self.twice_d3 = a2_squared_plus_effective_q3_squared, twice_d3
-        self.a2_plus_effective_q3 = a2_plus_effective_q3
+        self.one_by_machine_scale, self.one_by_effective_q3_2 = one_by_machine_scale, one_by_effective_q3_2
+        self.a2_plus_effective_q3_2, self.a2_minus_effective_q3_2_2 = a2_plus_effective_q3_2, a2_minus_effective_q3_2_2
+        self.d4_by_effective_q3_2, self.a3_by_effective_q3_2 = d4_by_effective_q3_2, a3_by_effective_q3_2
+        self.one_by_effective_q3_2_2, self.a2_plus_effective_q3_2_2 = one_by_effective_q3_2_2, a2_plus_effective_q3_2_2
+        self.d4_by_effective_q3_2_2, self.a3_by_effective_q3_2_2 = d4_by_effective_q3_2_2, a3_by_effective_q3_2_2
 
 
 class ArticulatedRobot6DOF(Mechanism):
@@ -112,7 +115,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof c6cd1abe0a74d131"
+    KEY = "articulatedrobot_6dof 17afc6c91d16093e"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -273,13 +276,593 @@ class ArticulatedRobot6DOF(Mechanism):
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
         self._seal()
 
+    def _meet_pose(self, given: Values) -> Values | Status:
+        """The axes that meet a pose, found by steps on the closure, and whether they do."""
+        (
+            given_ref_a1,
+            given_ref_a2,
+            given_ref_a3,
+            given_ref_a4,
+            given_ref_a5,
+            given_ref_a6,
+            given_sigma_arm,
+            given_sigma_elbow,
+            given_sigma_hand,
+            given_turn_a1,
+            given_turn_a2,
+            given_turn_a3,
+            given_turn_a4,
+            given_turn_a5,
+            given_turn_a6,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            start_a1,
+            start_a2,
+            start_a3,
+            start_a4,
+            start_a5,
+            start_a6,
+        ) = given
+        k = self._constants
+        a1, a2, a2_minus_effective_q3_2_2 = k.a1, k.a2, k.a2_minus_effective_q3_2_2
+        a2_plus_effective_q3_2, a3, a3_by_effective_q3_2 = k.a2_plus_effective_q3_2, k.a3, k.a3_by_effective_q3_2
+        d1, d3, d4, d4_by_effective_q3_2, d6 = k.d1, k.d3, k.d4, k.d4_by_effective_q3_2, k.d6
+        effective_q3_2, machine_scale, mid_a1, mid_a2 = k.effective_q3_2, k.machine_scale, k.mid_a1, k.mid_a2
+        mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        offset_a6, one_by_effective_q3_2 = k.offset_a6, k.one_by_effective_q3_2
+        one_by_machine_scale, single_a1, single_a2 = k.one_by_machine_scale, k.single_a1, k.single_a2
+        single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
+        closed_wrist_x = goal_x - d6 * goal_r13  # wrist centre: the last joints do not move this point
+        closed_wrist_y = goal_y - d6 * goal_r23
+        # distance of the point from the axis of q1
+        closed_distance_q1 = sqrt(closed_wrist_x * closed_wrist_x + closed_wrist_y * closed_wrist_y)
+        # Pythagoras: square of the distance ahead of the axis
+        closed_ahead_squared_q1 = (closed_distance_q1 + d3) * (closed_distance_q1 - d3)
+        # how far ahead of the axis the point is; negative: behind it
+        closed_ahead_q1 = (sqrt(closed_ahead_squared_q1) if closed_ahead_squared_q1 > 0.0 else 0.0) * given_sigma_arm
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = mid_a1 if single_a1 else given_ref_a1
+        closed_near_a1 = (
+            360.0 * (given_turn_a1 - 1 if given_turn_a1 > 0 else given_turn_a1)
+            if given_turn_a1 != 0
+            else closed_open_a1
+        )
+        closed_wrist_x_from_q1 = closed_ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        closed_wrist_z = goal_z - d6 * goal_r33
+        closed_wrist_z_from_q1 = closed_wrist_z - d1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
+        closed_reach = sqrt(
+            closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+        )
+        # A2: without a commanded turn, the value nearest to this
+        closed_open_a2 = mid_a2 if single_a2 else given_ref_a2
+        closed_near_a2 = (
+            360.0 * (given_turn_a2 - 1 if given_turn_a2 > 0 else given_turn_a2)
+            if given_turn_a2 != 0
+            else closed_open_a2
+        )
+        # A3: without a commanded turn, the value nearest to this
+        closed_open_a3 = mid_a3 if single_a3 else given_ref_a3
+        closed_near_a3 = (
+            360.0 * (given_turn_a3 - 1 if given_turn_a3 > 0 else given_turn_a3)
+            if given_turn_a3 != 0
+            else closed_open_a3
+        )
+        # A4: without a commanded turn, the value nearest to this
+        closed_open_a4 = mid_a4 if single_a4 else given_ref_a4
+        closed_near_a4 = (
+            360.0 * (given_turn_a4 - 1 if given_turn_a4 > 0 else given_turn_a4)
+            if given_turn_a4 != 0
+            else closed_open_a4
+        )
+        # A5: without a commanded turn, the value nearest to this
+        closed_open_a5 = mid_a5 if single_a5 else given_ref_a5
+        closed_near_a5 = (
+            360.0 * (given_turn_a5 - 1 if given_turn_a5 > 0 else given_turn_a5)
+            if given_turn_a5 != 0
+            else closed_open_a5
+        )
+        # A6: without a commanded turn, the value nearest to this
+        closed_open_a6 = mid_a6 if single_a6 else given_ref_a6
+        closed_near_a6 = (
+            360.0 * (given_turn_a6 - 1 if given_turn_a6 > 0 else given_turn_a6)
+            if given_turn_a6 != 0
+            else closed_open_a6
+        )
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        closed_one_less_cos_q3 = (a2_plus_effective_q3_2 + closed_reach) * (a2_plus_effective_q3_2 - closed_reach)
+        # 1 + cosine, times the scale
+        closed_one_plus_cos_q3 = (closed_reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + closed_reach)
+        # sum of both, twice the scale: cosine² + sine² is then 1
+        closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
+        closed_divisor_of_cos_q3 = closed_sum_q3 if closed_sum_q3 > 0.0 else 1.0
+        # sine squared, times the squared scale
+        closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
+        closed_sin_swing_q3 = (
+            -2.0
+            * (sqrt(closed_sine_square_q3) if closed_sine_square_q3 > 0.0 else 0.0)
+            * given_sigma_elbow
+            / closed_divisor_of_cos_q3
+        )
+        closed_arm_along_q2 = -closed_sin_swing_q3 * effective_q3_2
+        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
+        closed_arm_across_q2 = a2 + closed_cos_swing_q3 * effective_q3_2
+        # rotation by q2 that takes the arm to its target point
+        closed_along_q2 = closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
+        closed_across_q2 = closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
+        sum_in_closed_length_q2 = closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        closed_cos_q3 = a3_by_effective_q3_2 * closed_cos_swing_q3 - closed_sin_swing_q3 * d4_by_effective_q3_2
+        closed_sin_q3 = a3_by_effective_q3_2 * closed_sin_swing_q3 + closed_cos_swing_q3 * d4_by_effective_q3_2
+        closed_axis_a3 = offset_a3 + arctan2(closed_sin_q3, closed_cos_q3 + 0.0) * RADIAN
+        if not -180.000000001 <= closed_axis_a3 - closed_near_a3 < 179.999999999:
+            closed_axis_a3 = nearest_period(closed_axis_a3, closed_near_a3)
+        # steps of damped least squares on the closure, from one start after the other
+        tried_a1, tried_a2, tried_a3, tried_a4, tried_a5, tried_a6, passes_left, attempt, error_before = (
+            start_a1,
+            start_a2,
+            start_a3,
+            start_a4,
+            start_a5,
+            start_a6,
+            40,
+            0,
+            9.0,
+        )
+        for _ in range(164):
+            q1 = (tried_a1 - offset_a1) * DEGREE
+            sin_q1 = sin(q1)
+            cos_q1 = cos(q1)
+            q2 = (tried_a2 - offset_a2) * DEGREE
+            q3 = (tried_a3 - offset_a3) * DEGREE
+            q2_plus_q3 = q2 + q3
+            cos_q23 = cos(q2_plus_q3)
+            r11_at_q23 = cos_q1 * cos_q23
+            sin_q23 = sin(q2_plus_q3)
+            r13_at_q23 = -cos_q1 * sin_q23
+            q4 = (tried_a4 - offset_a4) * DEGREE
+            sin_q4 = sin(q4)
+            cos_q4 = cos(q4)
+            r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+            q5 = (tried_a5 - offset_a5) * DEGREE
+            sin_q5 = sin(q5)
+            cos_q5 = cos(q5)
+            r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+            x_at_q2 = a1 * cos_q1
+            sin_q2 = sin(q2)
+            r13_at_q2 = -cos_q1 * sin_q2
+            x_at_q3 = x_at_q2 + a2 * r13_at_q2
+            x_at_q4 = x_at_q3 + a3 * r13_at_q23 + d3 * sin_q1
+            x_at_q5 = x_at_q4 + d4 * r11_at_q23
+            d6_times_r11_at_q5 = d6 * r11_at_q5
+            x = d6_times_r11_at_q5 + x_at_q5
+            wrist_x = x - d6_times_r11_at_q5  # wrist centre: the last joints do not move this point
+            r21_at_q23 = cos_q23 * sin_q1
+            r23_at_q23 = -sin_q1 * sin_q23
+            r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+            r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+            y_at_q2 = a1 * sin_q1
+            r23_at_q2 = -sin_q1 * sin_q2
+            y_at_q3 = y_at_q2 + a2 * r23_at_q2
+            y_at_q4 = y_at_q3 + a3 * r23_at_q23 - d3 * cos_q1
+            y_at_q5 = y_at_q4 + d4 * r21_at_q23
+            d6_times_r21_at_q5 = d6 * r21_at_q5
+            y = d6_times_r21_at_q5 + y_at_q5
+            wrist_y = y - d6_times_r21_at_q5
+            branch_arm = one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
+            beside_arm = given_sigma_arm * branch_arm < -1e-6
+            sin_q3 = sin(q3)
+            cos_q3 = cos(q3)
+            branch_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2
+            beside_elbow = given_sigma_elbow * branch_elbow < -1e-6
+            beside_hand = given_sigma_hand * sin_q5 < -1e-6
+            r33_at_q4 = cos_q23 * cos_q4
+            r31_at_q5 = cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+            r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+            r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+            q6 = (tried_a6 - offset_a6) * DEGREE
+            sin_q6 = sin(q6)
+            cos_q6 = cos(q6)
+            r13_at_q6 = r13_at_q5 * cos_q6 - r12_at_q4 * sin_q6
+            r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+            r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+            r23_at_q6 = r23_at_q5 * cos_q6 - r22_at_q4 * sin_q6
+            r32_at_q4 = cos_q23 * sin_q4
+            r33_at_q5 = r33_at_q4 * cos_q5 + sin_q23 * sin_q5
+            r33_at_q6 = r33_at_q5 * cos_q6 - r32_at_q4 * sin_q6
+            r12_at_q6 = r12_at_q4 * cos_q6 + r13_at_q5 * sin_q6
+            r22_at_q6 = r22_at_q4 * cos_q6 + r23_at_q5 * sin_q6
+            r32_at_q6 = r32_at_q4 * cos_q6 + r33_at_q5 * sin_q6
+            error_1 = (goal_x - x) * one_by_machine_scale
+            error_2 = (goal_y - y) * one_by_machine_scale
+            cos_q2 = cos(q2)
+            z_at_q3 = d1 + a2 * cos_q2
+            z_at_q4 = z_at_q3 + a3 * cos_q23
+            z_at_q5 = z_at_q4 + d4 * sin_q23
+            z = z_at_q5 + d6 * r31_at_q5
+            error_3 = (goal_z - z) * one_by_machine_scale
+            error_4 = 0.5 * (
+                goal_r22 * r32_at_q6
+                + goal_r31 * r23_at_q6
+                + goal_r33 * r21_at_q5
+                - goal_r21 * r33_at_q6
+                - goal_r23 * r31_at_q5
+                - goal_r32 * r22_at_q6
+            )
+            error_5 = 0.5 * (
+                goal_r11 * r33_at_q6
+                + goal_r13 * r31_at_q5
+                + goal_r32 * r12_at_q6
+                - goal_r12 * r32_at_q6
+                - goal_r31 * r13_at_q6
+                - goal_r33 * r11_at_q5
+            )
+            error_6 = 0.5 * (
+                goal_r12 * r22_at_q6
+                + goal_r21 * r13_at_q6
+                + goal_r23 * r11_at_q5
+                - goal_r11 * r23_at_q6
+                - goal_r13 * r21_at_q5
+                - goal_r22 * r12_at_q6
+            )
+            value_in_error = (
+                0.0
+                if goal_r11 * r13_at_q6
+                + goal_r13 * r11_at_q5
+                + goal_r21 * r23_at_q6
+                + goal_r23 * r21_at_q5
+                + goal_r31 * r33_at_q6
+                + goal_r33 * r31_at_q5
+                - 1.0
+                - goal_r12 * r12_at_q6
+                - goal_r22 * r22_at_q6
+                - goal_r32 * r32_at_q6
+                > 0.0
+                else 1.0
+            )
+            # error of the pose, in characteristic lengths and radians
+            error = value_in_error + sqrt(
+                error_1 * error_1
+                + error_2 * error_2
+                + error_3 * error_3
+                + error_4 * error_4
+                + error_5 * error_5
+                + error_6 * error_6
+            )
+            another = passes_left <= 0
+            # the error is rounding, and steps make it no smaller
+            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
+            pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow) and (not beside_hand)
+            next_attempt = attempt + (1 if another else 0)
+            mirrors = pose_is_close and (beside_arm or beside_elbow or beside_hand)
+            free_angle = 1e-6 if next_attempt > 0 else 1e-11
+            free_turn = -137.5 * (1 - next_attempt if next_attempt > 1 else 0)
+            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
+            free_angle_times_machine_scale = free_angle * machine_scale
+            closed_divisor_q1 = (
+                closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = (
+                (closed_ahead_q1 * closed_wrist_x - closed_wrist_y * d3) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else cos(closed_reference_a1)
+            )
+            closed_sin_q1 = (
+                (closed_ahead_q1 * closed_wrist_y + closed_wrist_x * d3) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else sin(closed_reference_a1)
+            )
+            closed_axis_a1 = nearest_period(
+                offset_a1 + arctan2(closed_sin_q1 + 0.0, closed_cos_q1 + 0.0) * RADIAN, closed_near_a1
+            )
+            rate_1_1 = -one_by_machine_scale * y
+            rate_2_1 = one_by_machine_scale * x
+            z_minus_d1 = z - d1
+            cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
+            rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q3 = z - z_at_q3
+            rate_1_3 = -z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q4 = z - z_at_q4
+            y_minus_y_at_q4 = y - y_at_q4
+            rate_1_4 = one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 - y_minus_y_at_q4 * sin_q23)
+            z_minus_z_at_q5 = z - z_at_q5
+            y_minus_y_at_q5 = y - y_at_q5
+            rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
+            rate_1_6 = one_by_machine_scale * (r21_at_q5 * z_minus_z_at_q5 - r31_at_q5 * y_minus_y_at_q5)
+            product_in_damping = 0.001 * error
+            damping = max(1e-13, product_in_damping)
+            product_1_1 = (
+                damping
+                + rate_1_1 * rate_1_1
+                + rate_1_2 * rate_1_2
+                + rate_1_3 * rate_1_3
+                + rate_1_4 * rate_1_4
+                + rate_1_5 * rate_1_5
+                + rate_1_6 * rate_1_6
+            )
+            sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
+            rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
+            rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+            x_minus_x_at_q4 = x - x_at_q4
+            rate_2_4 = (x_minus_x_at_q4 * sin_q23 - r11_at_q23 * z_minus_z_at_q4) * one_by_machine_scale
+            x_minus_x_at_q5 = x - x_at_q5
+            rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
+            rate_2_6 = (r31_at_q5 * x_minus_x_at_q5 - r11_at_q5 * z_minus_z_at_q5) * one_by_machine_scale
+            product_1_2 = (
+                rate_1_1 * rate_2_1
+                + rate_1_2 * rate_2_2
+                + rate_1_3 * rate_2_3
+                + rate_1_4 * rate_2_4
+                + rate_1_5 * rate_2_5
+                + rate_1_6 * rate_2_6
+            )
+            rate_3_2 = -one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+            rate_3_3 = -one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+            rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+            rate_3_6 = one_by_machine_scale * (r11_at_q5 * y_minus_y_at_q5 - r21_at_q5 * x_minus_x_at_q5)
+            product_1_3 = (
+                rate_1_2 * rate_3_2
+                + rate_1_3 * rate_3_3
+                + rate_1_4 * rate_3_4
+                + rate_1_5 * rate_3_5
+                + rate_1_6 * rate_3_6
+            )
+            rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
+            product_1_4 = (
+                r11_at_q23 * rate_1_4 + r11_at_q5 * rate_1_6 + r12_at_q4 * rate_1_5 + rate_1_2_plus_rate_1_3 * sin_q1
+            )
+            product_1_5 = (
+                r21_at_q23 * rate_1_4 + r21_at_q5 * rate_1_6 + r22_at_q4 * rate_1_5 - rate_1_2_plus_rate_1_3 * cos_q1
+            )
+            product_1_6 = rate_1_1 + r31_at_q5 * rate_1_6 + r32_at_q4 * rate_1_5 + rate_1_4 * sin_q23
+            product_2_2 = (
+                damping
+                + rate_2_1 * rate_2_1
+                + rate_2_2 * rate_2_2
+                + rate_2_3 * rate_2_3
+                + rate_2_4 * rate_2_4
+                + rate_2_5 * rate_2_5
+                + rate_2_6 * rate_2_6
+            )
+            product_2_3 = (
+                rate_2_2 * rate_3_2
+                + rate_2_3 * rate_3_3
+                + rate_2_4 * rate_3_4
+                + rate_2_5 * rate_3_5
+                + rate_2_6 * rate_3_6
+            )
+            rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
+            product_2_4 = (
+                r11_at_q23 * rate_2_4 + r11_at_q5 * rate_2_6 + r12_at_q4 * rate_2_5 + rate_2_2_plus_rate_2_3 * sin_q1
+            )
+            product_2_5 = (
+                r21_at_q23 * rate_2_4 + r21_at_q5 * rate_2_6 + r22_at_q4 * rate_2_5 - rate_2_2_plus_rate_2_3 * cos_q1
+            )
+            product_2_6 = rate_2_1 + r31_at_q5 * rate_2_6 + r32_at_q4 * rate_2_5 + rate_2_4 * sin_q23
+            product_3_3 = (
+                damping
+                + rate_3_2 * rate_3_2
+                + rate_3_3 * rate_3_3
+                + rate_3_4 * rate_3_4
+                + rate_3_5 * rate_3_5
+                + rate_3_6 * rate_3_6
+            )
+            rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
+            product_3_4 = (
+                r11_at_q23 * rate_3_4 + r11_at_q5 * rate_3_6 + r12_at_q4 * rate_3_5 + rate_3_2_plus_rate_3_3 * sin_q1
+            )
+            product_3_5 = (
+                r21_at_q23 * rate_3_4 + r21_at_q5 * rate_3_6 + r22_at_q4 * rate_3_5 - rate_3_2_plus_rate_3_3 * cos_q1
+            )
+            product_3_6 = r31_at_q5 * rate_3_6 + r32_at_q4 * rate_3_5 + rate_3_4 * sin_q23
+            product_4_4 = (
+                damping
+                + r11_at_q23 * r11_at_q23
+                + r11_at_q5 * r11_at_q5
+                + r12_at_q4 * r12_at_q4
+                + 2.0 * sin_q1 * sin_q1
+            )
+            product_4_5 = (
+                r11_at_q23 * r21_at_q23 + r11_at_q5 * r21_at_q5 + r12_at_q4 * r22_at_q4 - 2.0 * cos_q1 * sin_q1
+            )
+            product_4_6 = r11_at_q23 * sin_q23 + r11_at_q5 * r31_at_q5 + r12_at_q4 * r32_at_q4
+            product_5_5 = (
+                damping
+                + 2.0 * cos_q1 * cos_q1
+                + r21_at_q23 * r21_at_q23
+                + r21_at_q5 * r21_at_q5
+                + r22_at_q4 * r22_at_q4
+            )
+            product_5_6 = r21_at_q23 * sin_q23 + r21_at_q5 * r31_at_q5 + r22_at_q4 * r32_at_q4
+            product_6_6 = 1.0 + damping + r31_at_q5 * r31_at_q5 + r32_at_q4 * r32_at_q4 + sin_q23 * sin_q23
+            _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
+                (
+                    (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
+                    (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
+                    (product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6),
+                    (product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6),
+                    (product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6),
+                    (product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6),
+                ),
+                ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
+            )
+            step_a1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            sum_in_step_a2 = multiplier_4 * sin_q1 - multiplier_5 * cos_q1
+            step_a2 = sum_in_step_a2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_a3 = sum_in_step_a2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_a4 = (
+                multiplier_1 * rate_1_4
+                + multiplier_2 * rate_2_4
+                + multiplier_3 * rate_3_4
+                + multiplier_4 * r11_at_q23
+                + multiplier_5 * r21_at_q23
+                + multiplier_6 * sin_q23
+            )
+            step_a5 = (
+                multiplier_1 * rate_1_5
+                + multiplier_2 * rate_2_5
+                + multiplier_3 * rate_3_5
+                + multiplier_4 * r12_at_q4
+                + multiplier_5 * r22_at_q4
+                + multiplier_6 * r32_at_q4
+            )
+            step_a6 = (
+                multiplier_1 * rate_1_6
+                + multiplier_2 * rate_2_6
+                + multiplier_3 * rate_3_6
+                + multiplier_4 * r11_at_q5
+                + multiplier_5 * r21_at_q5
+                + multiplier_6 * r31_at_q5
+            )
+            step_length = sqrt(
+                step_a1 * step_a1
+                + step_a2 * step_a2
+                + step_a3 * step_a3
+                + step_a4 * step_a4
+                + step_a5 * step_a5
+                + step_a6 * step_a6
+            )
+            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
+            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - offset_a2)
+            closed_length_q2 = (
+                (sqrt(sum_in_closed_length_q2) if sum_in_closed_length_q2 > 0.0 else 0.0)
+                if (closed_reach > free_angle_times_machine_scale) and (sum_in_closed_length_q2 > 0.0)
+                else 1.0
+            )
+            # at a singularity: the angle of the reference
+            closed_cos_q2 = (
+                closed_along_q2 / closed_length_q2
+                if closed_reach > free_angle_times_machine_scale
+                else cos(closed_reference_a2)
+            )
+            closed_sin_q2 = (
+                closed_across_q2 / closed_length_q2
+                if closed_reach > free_angle_times_machine_scale
+                else sin(closed_reference_a2)
+            )
+            closed_axis_a2 = nearest_period(
+                offset_a2 + arctan2(closed_sin_q2 + 0.0, closed_cos_q2 + 0.0) * RADIAN, closed_near_a2
+            )
+            closed_reference_a4 = DEGREE * (free_turn + given_ref_a4 - offset_a4)
+            closed_r13_from_q1 = closed_cos_q1 * goal_r13 + closed_sin_q1 * goal_r23
+            closed_sin_q23 = closed_cos_q2 * closed_sin_q3 + closed_cos_q3 * closed_sin_q2
+            closed_cos_q23 = closed_cos_q2 * closed_cos_q3 - closed_sin_q2 * closed_sin_q3
+            closed_r33_from_q123 = closed_cos_q23 * goal_r33 - closed_r13_from_q1 * closed_sin_q23
+            closed_r23_from_q1 = closed_cos_q1 * goal_r23 - closed_sin_q1 * goal_r13
+            # polar coordinates: the radius at angle q4
+            closed_radius_q4 = sqrt(
+                closed_r23_from_q1 * closed_r23_from_q1 + closed_r33_from_q123 * closed_r33_from_q123
+            )
+            # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
+            # reference
+            closed_direction_x_q4 = (
+                -given_sigma_hand * closed_r33_from_q123 if closed_radius_q4 > free_angle else cos(closed_reference_a4)
+            )
+            closed_direction_y_q4 = (
+                given_sigma_hand * closed_r23_from_q1 if closed_radius_q4 > free_angle else sin(closed_reference_a4)
+            )
+            closed_axis_a4 = nearest_period(
+                offset_a4 + arctan2(closed_direction_y_q4 + 0.0, closed_direction_x_q4 + 0.0) * RADIAN, closed_near_a4
+            )
+            closed_r13_from_q123 = closed_cos_q23 * closed_r13_from_q1 + closed_sin_q23 * goal_r33
+            closed_q4_radius_of_q5 = given_sigma_hand * closed_radius_q4
+            closed_axis_a5 = nearest_period(
+                offset_a5 + arctan2(closed_q4_radius_of_q5 + 0.0, closed_r13_from_q123 + 0.0) * RADIAN, closed_near_a5
+            )
+            closed_r22_from_q1 = closed_cos_q1 * goal_r22 - closed_sin_q1 * goal_r12
+            closed_r12_from_q1 = closed_cos_q1 * goal_r12 + closed_sin_q1 * goal_r22
+            closed_r32_from_q123 = closed_cos_q23 * goal_r32 - closed_r12_from_q1 * closed_sin_q23
+            # cosine and sine of q6 from the r22 and r23 equations
+            closed_direction_x_q6 = (
+                -closed_direction_x_q4 * closed_r22_from_q1 - closed_direction_y_q4 * closed_r32_from_q123
+            )
+            closed_r21_from_q1 = closed_cos_q1 * goal_r21 - closed_sin_q1 * goal_r11
+            closed_r11_from_q1 = closed_cos_q1 * goal_r11 + closed_sin_q1 * goal_r21
+            closed_r31_from_q123 = closed_cos_q23 * goal_r31 - closed_r11_from_q1 * closed_sin_q23
+            closed_direction_y_q6 = (
+                -closed_direction_x_q4 * closed_r21_from_q1 - closed_direction_y_q4 * closed_r31_from_q123
+            )
+            closed_axis_a6 = nearest_period(
+                offset_a6 + arctan2(closed_direction_y_q6 + 0.0, closed_direction_x_q6 + 0.0) * RADIAN, closed_near_a6
+            )
+            shared_quotient = shrinking * RADIAN
+            if pose_is_met or (another and (next_attempt >= 4)):
+                break
+            tried_a1 = (
+                closed_axis_a1
+                if another
+                else (
+                    (2.0 * closed_axis_a1 - tried_a1 if beside_arm else tried_a1)
+                    if mirrors
+                    else tried_a1 + shared_quotient * step_a1
+                )
+            )
+            tried_a2 = closed_axis_a2 if another else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
+            tried_a3 = (
+                closed_axis_a3
+                if another
+                else (
+                    (2.0 * closed_axis_a3 - tried_a3 if beside_elbow else tried_a3)
+                    if mirrors
+                    else tried_a3 + shared_quotient * step_a3
+                )
+            )
+            tried_a4 = (
+                closed_axis_a4
+                if another
+                else (
+                    (2.0 * closed_axis_a4 - tried_a4 if beside_hand else tried_a4)
+                    if mirrors
+                    else tried_a4 + shared_quotient * step_a4
+                )
+            )
+            tried_a5 = closed_axis_a5 if another else (tried_a5 if mirrors else tried_a5 + shared_quotient * step_a5)
+            tried_a6 = closed_axis_a6 if another else (tried_a6 if mirrors else tried_a6 + shared_quotient * step_a6)
+            passes_left = 40 if another else passes_left - 1
+            attempt = next_attempt
+            error_before = 9.0 if another or mirrors else error
+        else:
+            return Status.UNREACHABLE
+        chosen_a1 = tried_a1
+        if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
+            chosen_a1 = nearest_period(chosen_a1, closed_near_a1)
+        chosen_a2 = tried_a2
+        if not -180.000000001 <= chosen_a2 - closed_near_a2 < 179.999999999:
+            chosen_a2 = nearest_period(chosen_a2, closed_near_a2)
+        chosen_a3 = tried_a3
+        if not -180.000000001 <= chosen_a3 - closed_near_a3 < 179.999999999:
+            chosen_a3 = nearest_period(chosen_a3, closed_near_a3)
+        chosen_a4 = tried_a4
+        if not -180.000000001 <= chosen_a4 - closed_near_a4 < 179.999999999:
+            chosen_a4 = nearest_period(chosen_a4, closed_near_a4)
+        chosen_a5 = tried_a5
+        if not -180.000000001 <= chosen_a5 - closed_near_a5 < 179.999999999:
+            chosen_a5 = nearest_period(chosen_a5, closed_near_a5)
+        chosen_a6 = tried_a6
+        if not -180.000000001 <= chosen_a6 - closed_near_a6 < 179.999999999:
+            chosen_a6 = nearest_period(chosen_a6, closed_near_a6)
+        return (pose_is_met, chosen_a1, chosen_a2, chosen_a3, chosen_a4, chosen_a5, chosen_a6)
+
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        a1, a2, a3, a3_by_effective_q3, d1, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3, k.d1, k.d3, k.d4
-        d4_by_effective_q3, d6, offset_a1, offset_a2 = k.d4_by_effective_q3, k.d6, k.offset_a1, k.offset_a2
-        offset_a3, offset_a4, offset_a5, offset_a6 = k.offset_a3, k.offset_a4, k.offset_a5, k.offset_a6
+        a1, a2, a3, d1, d3, d4, d6, offset_a1 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.d6, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        offset_a6, one_by_effective_q3_2_2 = k.offset_a6, k.one_by_effective_q3_2_2
         one_by_machine_scale = k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
@@ -291,66 +874,70 @@ class ArticulatedRobot6DOF(Mechanism):
         q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1 * cos_q23
+        r11_at_q23 = cos_q1 * cos_q23
         sin_q1 = sin(q1)
         sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1 * sin_q23
+        r13_at_q23 = -cos_q1 * sin_q23
         q4 = DEGREE * (axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r11_at_q4 = r11_at_q23 * cos_q4 + sin_q1 * sin_q4
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
         cos_q5 = cos(q5)
-        r12_at_q5 = -r12_at_q23 * cos_q5 - r11_at_q4 * sin_q5
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
         x_at_q2 = a1 * cos_q1
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + a2 * r11_at_q2
-        x_at_q4 = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1
-        x_at_q5 = x_at_q4 - d4 * r12_at_q23
-        d6_times_r12_at_q5 = d6 * r12_at_q5
-        x = d6_times_r12_at_q5 + x_at_q5
-        r22_at_q23 = -cos_q23 * sin_q1
-        r21_at_q23 = -sin_q1 * sin_q23
-        r21_at_q4 = r21_at_q23 * cos_q4 - cos_q1 * sin_q4
-        r22_at_q5 = -r22_at_q23 * cos_q5 - r21_at_q4 * sin_q5
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23 + d3 * sin_q1
+        x_at_q5 = x_at_q4 + d4 * r11_at_q23
+        d6_times_r11_at_q5 = d6 * r11_at_q5
+        x = d6_times_r11_at_q5 + x_at_q5
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = -sin_q1 * sin_q23
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
         y_at_q2 = a1 * sin_q1
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + a2 * r21_at_q2
-        y_at_q4 = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1
-        y_at_q5 = y_at_q4 - d4 * r22_at_q23
-        d6_times_r22_at_q5 = d6 * r22_at_q5
-        y = d6_times_r22_at_q5 + y_at_q5
-        r31_at_q4 = cos_q23 * cos_q4
-        r32_at_q5 = cos_q5 * sin_q23 - r31_at_q4 * sin_q5
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23 - d3 * cos_q1
+        y_at_q5 = y_at_q4 + d4 * r21_at_q23
+        d6_times_r21_at_q5 = d6 * r21_at_q5
+        y = d6_times_r21_at_q5 + y_at_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        r31_at_q5 = cos_q5 * sin_q23 - r33_at_q4 * sin_q5
         cos_q2 = cos(q2)
         z_at_q3 = d1 + a2 * cos_q2
         z_at_q4 = z_at_q3 + a3 * cos_q23
         z_at_q5 = z_at_q4 + d4 * sin_q23
-        z = z_at_q5 + d6 * r32_at_q5
-        r12_at_q4 = cos_q4 * sin_q1 - r11_at_q23 * sin_q4
-        r11_at_q5 = r11_at_q4 * cos_q5 - r12_at_q23 * sin_q5
+        z = z_at_q5 + d6 * r31_at_q5
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
         q6 = DEGREE * (axis_a6 - offset_a6)
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
-        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
-        r22_at_q4 = -cos_q1 * cos_q4 - r21_at_q23 * sin_q4
-        r21_at_q5 = r21_at_q4 * cos_q5 - r22_at_q23 * sin_q5
-        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
-        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
-        r32_at_q4 = -cos_q23 * sin_q4
-        r31_at_q5 = r31_at_q4 * cos_q5 + sin_q23 * sin_q5
-        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
-        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
-        wrist_y = y - d6_times_r22_at_q5
+        r13_at_q6 = r13_at_q5 * cos_q6 - r12_at_q4 * sin_q6
+        r12_at_q6 = r12_at_q4 * cos_q6 + r13_at_q5 * sin_q6
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        r23_at_q6 = r23_at_q5 * cos_q6 - r22_at_q4 * sin_q6
+        r22_at_q6 = r22_at_q4 * cos_q6 + r23_at_q5 * sin_q6
+        r32_at_q4 = cos_q23 * sin_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 + sin_q23 * sin_q5
+        r33_at_q6 = r33_at_q5 * cos_q6 - r32_at_q4 * sin_q6
+        r32_at_q6 = r32_at_q4 * cos_q6 + r33_at_q5 * sin_q6
+        wrist_x = x - d6_times_r11_at_q5  # wrist centre: the last joints do not move this point
+        wrist_y = y - d6_times_r21_at_q5
         branch_arm = one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = d4_by_effective_q3 * cos_q3 - a3_by_effective_q3 * sin_q3
+        branch_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2_2
         return (
             (x, y, z),
-            ((r11_at_q6, r12_at_q6, r12_at_q5), (r21_at_q6, r22_at_q6, r22_at_q5), (r31_at_q6, r32_at_q6, r32_at_q5)),
+            (
+                (r13_at_q6, -r12_at_q6, r11_at_q5),
+                (r23_at_q6, -r22_at_q6, r21_at_q5),
+                (r33_at_q6, -r32_at_q6, r31_at_q5),
+            ),
             (branch_arm, branch_elbow, sin_q5),
         )
 
@@ -369,39 +956,43 @@ class ArticulatedRobot6DOF(Mechanism):
         q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1 * sin_q23
+        r13_at_q23 = -cos_q1 * sin_q23
         q4 = DEGREE * (axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r12_at_q4 = cos_q4 * sin_q1 - r11_at_q23 * sin_q4
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1 * cos_q23
-        r11_at_q4 = r11_at_q23 * cos_q4 + sin_q1 * sin_q4
+        r11_at_q23 = cos_q1 * cos_q23
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
         q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
         cos_q5 = cos(q5)
-        r11_at_q5 = r11_at_q4 * cos_q5 - r12_at_q23 * sin_q5
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
         q6 = DEGREE * (axis_a6 - offset_a6)
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
-        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
-        r12_at_q5 = -r12_at_q23 * cos_q5 - r11_at_q4 * sin_q5
-        r21_at_q23 = -sin_q1 * sin_q23
-        r22_at_q4 = -cos_q1 * cos_q4 - r21_at_q23 * sin_q4
-        r22_at_q23 = -cos_q23 * sin_q1
-        r21_at_q4 = r21_at_q23 * cos_q4 - cos_q1 * sin_q4
-        r21_at_q5 = r21_at_q4 * cos_q5 - r22_at_q23 * sin_q5
-        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
-        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
-        r22_at_q5 = -r22_at_q23 * cos_q5 - r21_at_q4 * sin_q5
-        r32_at_q4 = -cos_q23 * sin_q4
-        r31_at_q4 = cos_q23 * cos_q4
-        r31_at_q5 = r31_at_q4 * cos_q5 + sin_q23 * sin_q5
-        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
-        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
-        r32_at_q5 = cos_q5 * sin_q23 - r31_at_q4 * sin_q5
-        return ((r11_at_q6, r12_at_q6, r12_at_q5), (r21_at_q6, r22_at_q6, r22_at_q5), (r31_at_q6, r32_at_q6, r32_at_q5))
+        r13_at_q6 = r13_at_q5 * cos_q6 - r12_at_q4 * sin_q6
+        r12_at_q6 = r12_at_q4 * cos_q6 + r13_at_q5 * sin_q6
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        r23_at_q23 = -sin_q1 * sin_q23
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        r23_at_q6 = r23_at_q5 * cos_q6 - r22_at_q4 * sin_q6
+        r22_at_q6 = r22_at_q4 * cos_q6 + r23_at_q5 * sin_q6
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        r32_at_q4 = cos_q23 * sin_q4
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 + sin_q23 * sin_q5
+        r33_at_q6 = r33_at_q5 * cos_q6 - r32_at_q4 * sin_q6
+        r32_at_q6 = r32_at_q4 * cos_q6 + r33_at_q5 * sin_q6
+        r31_at_q5 = cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        return (
+            (r13_at_q6, -r12_at_q6, r11_at_q5),
+            (r23_at_q6, -r22_at_q6, r21_at_q5),
+            (r33_at_q6, -r32_at_q6, r31_at_q5),
+        )
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
@@ -413,19 +1004,15 @@ class ArticulatedRobot6DOF(Mechanism):
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
-        a1, a2, a2_minus_effective_q3 = k.a1, k.a2, k.a2_minus_effective_q3
-        a2_plus_effective_q3 = k.a2_plus_effective_q3
-        a2_squared_plus_effective_q3_squared = k.a2_squared_plus_effective_q3_squared
-        a3_by_effective_q3, d1, d3, d4_by_effective_q3 = k.a3_by_effective_q3, k.d1, k.d3, k.d4_by_effective_q3
-        d6, effective_q3, machine_scale_squared_times_plane = k.d6, k.effective_q3, k.machine_scale_squared_times_plane
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
-        mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
-        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, rounding_q1, single_a1, single_a2 = k.offset_a6, k.rounding_q1, k.single_a1, k.single_a2
-        single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
-        size_q1_for_q3, size_q1_for_q3_times_rounding = k.size_q1_for_q3, k.size_q1_for_q3_times_rounding
-        twice_d3 = k.twice_d3
+        a1, a2, a2_minus_effective_q3_2 = k.a1, k.a2, k.a2_minus_effective_q3_2
+        a2_plus_effective_q3_2_2, a3_by_effective_q3_2_2 = k.a2_plus_effective_q3_2_2, k.a3_by_effective_q3_2_2
+        d1, d3, d4_by_effective_q3_2_2, d6 = k.d1, k.d3, k.d4_by_effective_q3_2_2, k.d6
+        effective_q3_2, machine_scale_times_free_angle = k.effective_q3_2, k.machine_scale_times_free_angle
+        mid_a1, mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a1, k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        offset_a5, offset_a6, product_in_lost_digits_23 = k.offset_a5, k.offset_a6, k.product_in_lost_digits_23
+        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
+        single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
@@ -438,80 +1025,34 @@ class ArticulatedRobot6DOF(Mechanism):
         if not (ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1):
             missing = abs(d3) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        wrist_z = z - d6 * r33
-        wrist_y_from_q1 = wrist_z - d1  # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
-        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
-        if distance_q1 > machine_scale_times_free_angle:
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d3 * wrist_y) / distance_q1_squared
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d3 * wrist_x) / distance_q1_squared
-        else:
-            reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(reference_a1)
-            sin_q1_before_q1_for_q3 = sin(reference_a1)
-        # turned so that q3 has a solution
-        if ahead_squared_q1 > machine_scale_squared_times_plane:
-            ahead_q1 = ahead_q1_before_q1_for_q3
-            cos_q1 = cos_q1_before_q1_for_q3
-            sin_q1 = sin_q1_before_q1_for_q3
-        else:
-            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
-            # q3 has solutions where this is within its bound
-            value_q1_for_q3 = (
-                wrist_y_from_q1_squared
-                + wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
-                - a2_squared_plus_effective_q3_squared
-            )
-            # turned so that q3 has a solution
-            if abs(value_q1_for_q3) <= size_q1_for_q3:
-                ahead_q1 = ahead_q1_before_q1_for_q3
-                cos_q1 = cos_q1_before_q1_for_q3
-                sin_q1 = sin_q1_before_q1_for_q3
-            else:
-                rate_q1_for_q3 = -twice_d3 * wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
-                # turn of q1 to first order
-                if abs(rate_q1_for_q3) > size_q1_for_q3_times_rounding:
-                    excess_q1_for_q3 = (
-                        value_q1_for_q3 - size_q1_for_q3 if value_q1_for_q3 > 0.0 else size_q1_for_q3 + value_q1_for_q3
-                    )
-                    turn_q1_for_q3 = -excess_q1_for_q3 / rate_q1_for_q3
-                else:
-                    turn_q1_for_q3 = 0.0
-                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3 * turn_q1_for_q3)
-                one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
-                turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                    cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
-                )
-                turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                    sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
-                )
-                # residual of the equation of q1
-                turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3 * wrist_y - turned_sin_q1_for_q3 * wrist_x)
-                # turned so that q3 has a solution
-                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
-                    ahead_q1 = ahead_q1_before_q1_for_q3
-                    cos_q1 = cos_q1_before_q1_for_q3
-                    sin_q1 = sin_q1_before_q1_for_q3
-                else:
-                    ahead_q1 = (ahead_q1_before_q1_for_q3 - d3 * turn_q1_for_q3) * one_by_turned_length_q1_for_q3
-                    cos_q1 = turned_cos_q1_for_q3
-                    sin_q1 = turned_sin_q1_for_q3
+        ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
         wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        wrist_z = z - d6 * r33
+        wrist_z_from_q1 = wrist_z - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
+        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        within_23 = -1.0 <= cos_swing_q3 <= 1.0
+        lost_digits_23 = (not within_23) and (abs(ahead_q1) <= product_in_lost_digits_23)
         # q3: out of reach
-        if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
-            missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
+        if not (lost_digits_23 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
+            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+        if distance_q1 > machine_scale_times_free_angle:
+            cos_q1 = (ahead_q1 * wrist_x - d3 * wrist_y) / distance_q1_squared
+            sin_q1 = (ahead_q1 * wrist_y + d3 * wrist_x) / distance_q1_squared
+        else:
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1 = cos(reference_a1)
+            sin_q1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
@@ -521,11 +1062,11 @@ class ArticulatedRobot6DOF(Mechanism):
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         # at a singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = -effective_q3 * sin_swing_q3
-            arm_across_q2 = a2 + effective_q3 * cos_swing_q3
+            arm_along_q2 = -effective_q3_2 * sin_swing_q3
+            arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
             # rotation by q2 that takes the arm to its target point
-            along_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
-            across_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
+            along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+            across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
             across_q2_squared_plus_along_q2_squared = across_q2 * across_q2 + along_q2 * along_q2
             length_q2 = (
                 sqrt(across_q2_squared_plus_along_q2_squared) if across_q2_squared_plus_along_q2_squared > 0.0 else 1.0
@@ -542,8 +1083,8 @@ class ArticulatedRobot6DOF(Mechanism):
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = a3_by_effective_q3 * cos_swing_q3 - d4_by_effective_q3 * sin_swing_q3
-        sin_q3 = a3_by_effective_q3 * sin_swing_q3 + d4_by_effective_q3 * cos_swing_q3
+        cos_q3 = a3_by_effective_q3_2_2 * cos_swing_q3 - d4_by_effective_q3_2_2 * sin_swing_q3
+        sin_q3 = a3_by_effective_q3_2_2 * sin_swing_q3 + d4_by_effective_q3_2_2 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
@@ -552,14 +1093,14 @@ class ArticulatedRobot6DOF(Mechanism):
         r13_from_q1 = r13 * cos_q1 + r23 * sin_q1
         sin_q23 = cos_q2 * sin_q3 + cos_q3 * sin_q2
         cos_q23 = cos_q2 * cos_q3 - sin_q2 * sin_q3
-        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
+        r33_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         r23_from_q1 = r23 * cos_q1 - r13 * sin_q1
         # polar coordinates: the radius at angle q4
-        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+        radius_q4 = sqrt(r23_from_q1 * r23_from_q1 + r33_from_q123 * r33_from_q123)
+        # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
         # reference
         if radius_q4 > 1e-11:
-            direction_x_q4 = -sigma_hand * r13_from_q123
+            direction_x_q4 = -sigma_hand * r33_from_q123
             direction_y_q4 = sigma_hand * r23_from_q1
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
@@ -570,28 +1111,83 @@ class ArticulatedRobot6DOF(Mechanism):
         axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4 + 0.0) * RADIAN  # A4: whole turns added
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
+        r13_from_q123 = r13_from_q1 * cos_q23 + r33 * sin_q23
         q4_radius_of_q5 = sigma_hand * radius_q4
-        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         open_a5 = mid_a5 if single_a5 else ref_a5  # A5: without a commanded turn, the value nearest to this
         near_a5 = 360.0 * (turn_a5 - 1 if turn_a5 > 0 else turn_a5) if turn_a5 != 0 else open_a5
-        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5 + 0.0) * RADIAN  # A5: whole turns added
+        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, r13_from_q123 + 0.0) * RADIAN  # A5: whole turns added
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
-        r21_from_q1 = r21 * cos_q1 - r11 * sin_q1
-        r11_from_q1 = r11 * cos_q1 + r21 * sin_q1
-        r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
-        scaled_r21_from_q1234 = -direction_x_q4 * r21_from_q1 - direction_y_q4 * r11_from_q123
         r22_from_q1 = r22 * cos_q1 - r12 * sin_q1
         r12_from_q1 = r12 * cos_q1 + r22 * sin_q1
-        r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
-        scaled_r22_from_q1234 = -direction_x_q4 * r22_from_q1 - direction_y_q4 * r12_from_q123
+        r32_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
+        # cosine and sine of q6 from the r22 and r23 equations
+        direction_x_q6 = -direction_x_q4 * r22_from_q1 - direction_y_q4 * r32_from_q123
+        r21_from_q1 = r21 * cos_q1 - r11 * sin_q1
+        r11_from_q1 = r11 * cos_q1 + r21 * sin_q1
+        r31_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
+        direction_y_q6 = -direction_x_q4 * r21_from_q1 - direction_y_q4 * r31_from_q123
         open_a6 = mid_a6 if single_a6 else ref_a6  # A6: without a commanded turn, the value nearest to this
         near_a6 = 360.0 * (turn_a6 - 1 if turn_a6 > 0 else turn_a6) if turn_a6 != 0 else open_a6
-        # A6: whole turns added
-        axis_a6 = offset_a6 + arctan2(scaled_r21_from_q1234, scaled_r22_from_q1234 + 0.0) * RADIAN
+        axis_a6 = offset_a6 + arctan2(direction_y_q6, direction_x_q6 + 0.0) * RADIAN  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
-        return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
+        # digits were lost: the pose is met by steps on the closure
+        if lost_digits_23:
+            found = self._meet_pose(
+                (
+                    ref_a1,
+                    ref_a2,
+                    ref_a3,
+                    ref_a4,
+                    ref_a5,
+                    ref_a6,
+                    sigma_arm,
+                    sigma_elbow,
+                    sigma_hand,
+                    turn_a1,
+                    turn_a2,
+                    turn_a3,
+                    turn_a4,
+                    turn_a5,
+                    turn_a6,
+                    r11,
+                    r12,
+                    r13,
+                    r21,
+                    r22,
+                    r23,
+                    r31,
+                    r32,
+                    r33,
+                    x,
+                    y,
+                    z,
+                    axis_a1,
+                    axis_a2,
+                    axis_a3,
+                    axis_a4,
+                    axis_a5,
+                    axis_a6,
+                )
+            )
+            if isinstance(found, Status):
+                return Diagnosis(found, "", 0.0)
+            met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = found
+        else:
+            met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        # q3: out of reach
+        if not (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
+            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2_2)
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        return (
+            (found_a1 if met else axis_a1),
+            (found_a2 if met else axis_a2),
+            (found_a3 if met else axis_a3),
+            (found_a4 if met else axis_a4),
+            (found_a5 if met else axis_a5),
+            (found_a6 if met else axis_a6),
+        )
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
         """The test of the limits."""
@@ -618,10 +1214,9 @@ class ArticulatedRobot6DOF(Mechanism):
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self._constants
-        a1, a2, a3, a3_by_effective_q3, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3, k.d3, k.d4
-        d4_by_effective_q3, d6, offset_a1, offset_a2 = k.d4_by_effective_q3, k.d6, k.offset_a1, k.offset_a2
+        a1, a2, a3, d3, d4, d6, offset_a1, offset_a2 = k.a1, k.a2, k.a3, k.d3, k.d4, k.d6, k.offset_a1, k.offset_a2
         offset_a3, offset_a4, offset_a5 = k.offset_a3, k.offset_a4, k.offset_a5
-        one_by_machine_scale = k.one_by_machine_scale
+        one_by_effective_q3_2_2, one_by_machine_scale = k.one_by_effective_q3_2_2, k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q5 = DEGREE * (axis_a5 - offset_a5)
@@ -633,40 +1228,40 @@ class ArticulatedRobot6DOF(Mechanism):
         q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1 * cos_q23
+        r11_at_q23 = cos_q1 * cos_q23
         sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1 * sin_q23
+        r13_at_q23 = -cos_q1 * sin_q23
         q4 = DEGREE * (axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r11_at_q4 = r11_at_q23 * cos_q4 + sin_q1 * sin_q4
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
         cos_q5 = cos(q5)
-        r12_at_q5 = -r12_at_q23 * cos_q5 - r11_at_q4 * sin_q5
-        d6_times_r12_at_q5 = d6 * r12_at_q5
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        d6_times_r11_at_q5 = d6 * r11_at_q5
         x_at_q2 = a1 * cos_q1
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + a2 * r11_at_q2
-        x_at_q4 = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1
-        x_at_q5 = x_at_q4 - d4 * r12_at_q23
-        x = d6_times_r12_at_q5 + x_at_q5
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
-        r22_at_q23 = -cos_q23 * sin_q1
-        r21_at_q23 = -sin_q1 * sin_q23
-        r21_at_q4 = r21_at_q23 * cos_q4 - cos_q1 * sin_q4
-        r22_at_q5 = -r22_at_q23 * cos_q5 - r21_at_q4 * sin_q5
-        d6_times_r22_at_q5 = d6 * r22_at_q5
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23 + d3 * sin_q1
+        x_at_q5 = x_at_q4 + d4 * r11_at_q23
+        x = d6_times_r11_at_q5 + x_at_q5
+        wrist_x = x - d6_times_r11_at_q5  # wrist centre: the last joints do not move this point
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = -sin_q1 * sin_q23
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        d6_times_r21_at_q5 = d6 * r21_at_q5
         y_at_q2 = a1 * sin_q1
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + a2 * r21_at_q2
-        y_at_q4 = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1
-        y_at_q5 = y_at_q4 - d4 * r22_at_q23
-        y = d6_times_r22_at_q5 + y_at_q5
-        wrist_y = y - d6_times_r22_at_q5
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23 - d3 * cos_q1
+        y_at_q5 = y_at_q4 + d4 * r21_at_q23
+        y = d6_times_r21_at_q5 + y_at_q5
+        wrist_y = y - d6_times_r21_at_q5
         margin_wrist_on_axis_1 = one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        margin_elbow = d4_by_effective_q3 * cos_q3 - a3_by_effective_q3 * sin_q3
+        margin_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2_2
         return (margin_wrist_on_axis_1, margin_elbow, sin_q5)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
@@ -683,51 +1278,51 @@ class ArticulatedRobot6DOF(Mechanism):
         q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         cos_q23 = cos(q2_plus_q3)
-        r22_at_q23 = -cos_q23 * sin_q1
+        r21_at_q23 = cos_q23 * sin_q1
         cos_q1 = cos(q1)
         y_at_q2 = a1 * sin_q1
         sin_q2 = sin(q2)
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + a2 * r21_at_q2
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
         sin_q23 = sin(q2_plus_q3)
-        r21_at_q23 = -sin_q1 * sin_q23
+        r23_at_q23 = -sin_q1 * sin_q23
         q4 = DEGREE * (axis_a4 - offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r21_at_q4 = r21_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
         q5 = DEGREE * (axis_a5 - offset_a5)
         sin_q5 = sin(q5)
         cos_q5 = cos(q5)
-        r22_at_q5 = -r22_at_q23 * cos_q5 - r21_at_q4 * sin_q5
-        y_at_q4 = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1
-        y_at_q5 = y_at_q4 - d4 * r22_at_q23
-        y = y_at_q5 + d6 * r22_at_q5
-        r31_at_q4 = cos_q23 * cos_q4
-        r32_at_q5 = cos_q5 * sin_q23 - r31_at_q4 * sin_q5
-        r22_at_q4 = -cos_q1 * cos_q4 - r21_at_q23 * sin_q4
-        r32_at_q4 = -cos_q23 * sin_q4
-        r12_at_q23 = -cos_q1 * cos_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23 - d3 * cos_q1
+        y_at_q5 = y_at_q4 + d4 * r21_at_q23
+        y = y_at_q5 + d6 * r21_at_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        r31_at_q5 = cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
+        r11_at_q23 = cos_q1 * cos_q23
         x_at_q2 = a1 * cos_q1
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + a2 * r11_at_q2
-        r11_at_q23 = -cos_q1 * sin_q23
-        r11_at_q4 = r11_at_q23 * cos_q4 + sin_q1 * sin_q4
-        r12_at_q5 = -r12_at_q23 * cos_q5 - r11_at_q4 * sin_q5
-        x_at_q4 = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1
-        x_at_q5 = x_at_q4 - d4 * r12_at_q23
-        x = x_at_q5 + d6 * r12_at_q5
-        r12_at_q4 = cos_q4 * sin_q1 - r11_at_q23 * sin_q4
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        r13_at_q23 = -cos_q1 * sin_q23
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23 + d3 * sin_q1
+        x_at_q5 = x_at_q4 + d4 * r11_at_q23
+        x = x_at_q5 + d6 * r11_at_q5
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
         cos_q2 = cos(q2)
         z_at_q3 = d1 + a2 * cos_q2
         z_at_q4 = z_at_q3 + a3 * cos_q23
         z_at_q5 = z_at_q4 + d4 * sin_q23
-        z = z_at_q5 + d6 * r32_at_q5
+        z = z_at_q5 + d6 * r31_at_q5
         z_minus_d1 = z - d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
         y_minus_y_at_q4 = y - y_at_q4
-        y_minus_y_at_q5 = y - y_at_q5
         z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
         x_minus_x_at_q4 = x - x_at_q4
         x_minus_x_at_q5 = x - x_at_q5
         return (
@@ -735,29 +1330,29 @@ class ArticulatedRobot6DOF(Mechanism):
                 -y,
                 -z_minus_d1 * cos_q1,
                 -z_minus_z_at_q3 * cos_q1,
-                -r22_at_q23 * z_minus_z_at_q4 - y_minus_y_at_q4 * sin_q23,
-                r32_at_q4 * y_minus_y_at_q5 - r22_at_q4 * z_minus_z_at_q5,
-                r22_at_q5 * z_minus_z_at_q5 - r32_at_q5 * y_minus_y_at_q5,
+                r21_at_q23 * z_minus_z_at_q4 - y_minus_y_at_q4 * sin_q23,
+                r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5,
+                r21_at_q5 * z_minus_z_at_q5 - r31_at_q5 * y_minus_y_at_q5,
             ),
             (
                 x,
                 -z_minus_d1 * sin_q1,
                 -z_minus_z_at_q3 * sin_q1,
-                r12_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23,
-                r12_at_q4 * z_minus_z_at_q5 - r32_at_q4 * x_minus_x_at_q5,
-                r32_at_q5 * x_minus_x_at_q5 - r12_at_q5 * z_minus_z_at_q5,
+                x_minus_x_at_q4 * sin_q23 - r11_at_q23 * z_minus_z_at_q4,
+                r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5,
+                r31_at_q5 * x_minus_x_at_q5 - r11_at_q5 * z_minus_z_at_q5,
             ),
             (
                 0.0,
                 (x - x_at_q2) * cos_q1 + (y - y_at_q2) * sin_q1,
                 (x - x_at_q3) * cos_q1 + (y - y_at_q3) * sin_q1,
-                r22_at_q23 * x_minus_x_at_q4 - r12_at_q23 * y_minus_y_at_q4,
-                r22_at_q4 * x_minus_x_at_q5 - r12_at_q4 * y_minus_y_at_q5,
-                r12_at_q5 * y_minus_y_at_q5 - r22_at_q5 * x_minus_x_at_q5,
+                r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4,
+                r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5,
+                r11_at_q5 * y_minus_y_at_q5 - r21_at_q5 * x_minus_x_at_q5,
             ),
-            (0.0, sin_q1, sin_q1, -r12_at_q23, -r12_at_q4, r12_at_q5),
-            (0.0, -cos_q1, -cos_q1, -r22_at_q23, -r22_at_q4, r22_at_q5),
-            (1.0, 0.0, 0.0, sin_q23, -r32_at_q4, r32_at_q5),
+            (0.0, sin_q1, sin_q1, r11_at_q23, r12_at_q4, r11_at_q5),
+            (0.0, -cos_q1, -cos_q1, r21_at_q23, r22_at_q4, r21_at_q5),
+            (1.0, 0.0, 0.0, sin_q23, r32_at_q4, r31_at_q5),
         )
 
     def _image(self) -> Image | Status:
@@ -767,13 +1362,17 @@ class ArticulatedRobot6DOF(Mechanism):
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
         solve = self._all_trusted  # a separate statement is faster
-        return solve(frame, reference) or super().branches(frame, reference)  # near a fold, one branch after the other
+        return solve(frame, reference) or super().branches(
+            frame, reference
+        )  # where digits may be lost, one branch after the other
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         found = solve(frame, signs, reference)
-        return super().branch(frame, signs, reference) if found == () else found  # near a fold, by the complete program
+        return (
+            super().branch(frame, signs, reference) if found == () else found
+        )  # where digits may be lost, by the complete program
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         return self._finished(self._all_trusted, self._finish, position, rotation, reference)

@@ -106,7 +106,7 @@ class BipodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Bipod_Rotary"
-    KEY = "bipod_rotary 098fc828b03a4dce"
+    KEY = "bipod_rotary d2d8603002227443"
     AXES = (
         Axis(
             name="A1",

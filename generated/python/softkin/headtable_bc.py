@@ -81,7 +81,7 @@ class HeadTableBC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_HeadTable_BC"
-    KEY = "headtable_bc 399a8c5bbd7e01a9"
+    KEY = "headtable_bc 25bc40180fd7fdec"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X: the head against the table", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),
@@ -233,14 +233,14 @@ class HeadTableBC(Mechanism):
         r11_at_b = cos_b * cos_c
         sin_b = sin(b)
         r13_at_b = cos_c * sin_b
-        joint_x = axis_x - offset_x
         joint_y = axis_y - offset_y
-        x_at_b = joint_x * cos_c + joint_y * sin_c
-        x = x_at_b + head_offset * r11_at_b - pivot_length * r13_at_b
+        joint_x = axis_x - offset_x
+        x_at_b = joint_x * cos_c
+        x = x_at_b + head_offset * r11_at_b + joint_y * sin_c - pivot_length * r13_at_b
         r21_at_b = -cos_b * sin_c
         r23_at_b = -sin_b * sin_c
-        y_at_b = joint_y * cos_c - joint_x * sin_c
-        y = y_at_b + head_offset * r21_at_b - pivot_length * r23_at_b
+        y_at_b = -joint_x * sin_c
+        y = y_at_b + joint_y * cos_c + head_offset * r21_at_b - pivot_length * r23_at_b
         joint_z = axis_z - offset_z
         z = joint_z - pivot_length * cos_b - head_offset * sin_b
         return ((x, y, z), ((r11_at_b, sin_c, r13_at_b), (r21_at_b, cos_c, r23_at_b), (-sin_b, 0.0, cos_b)), (sin_b,))
@@ -356,16 +356,16 @@ class HeadTableBC(Mechanism):
         b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
         joint_x = axis_x - offset_x
-        joint_y = axis_y - offset_y
-        y_at_b = joint_y * cos_c - joint_x * sin_c
+        y_at_b = -joint_x * sin_c
         cos_b = cos(b)
         r21_at_b = -cos_b * sin_c
+        joint_y = axis_y - offset_y
         r23_at_b = -sin_b * sin_c
-        y = y_at_b + head_offset * r21_at_b - pivot_length * r23_at_b
-        x_at_b = joint_x * cos_c + joint_y * sin_c
+        y = y_at_b + joint_y * cos_c + head_offset * r21_at_b - pivot_length * r23_at_b
+        x_at_b = joint_x * cos_c
         r11_at_b = cos_b * cos_c
         r13_at_b = cos_c * sin_b
-        x = x_at_b + head_offset * r11_at_b - pivot_length * r13_at_b
+        x = x_at_b + head_offset * r11_at_b + joint_y * sin_c - pivot_length * r13_at_b
         joint_z = axis_z - offset_z
         z = joint_z - pivot_length * cos_b - head_offset * sin_b
         z_minus_joint_z = z - joint_z
@@ -389,18 +389,18 @@ class HeadTableBC(Mechanism):
         cos_c = cos(c)
         sin_c = sin(c)
         joint_x = axis_x - offset_x
+        y_at_b = -joint_x * sin_c
         joint_y = axis_y - offset_y
-        y_at_b = joint_y * cos_c - joint_x * sin_c
         b = DEGREE * (axis_b - offset_b)
         cos_b = cos(b)
         r21_at_b = -cos_b * sin_c
         sin_b = sin(b)
         r23_at_b = -sin_b * sin_c
-        y = y_at_b + head_offset * r21_at_b - pivot_length * r23_at_b
-        x_at_b = joint_x * cos_c + joint_y * sin_c
+        y = y_at_b + joint_y * cos_c + head_offset * r21_at_b - pivot_length * r23_at_b
+        x_at_b = joint_x * cos_c
         r11_at_b = cos_b * cos_c
         r13_at_b = cos_c * sin_b
-        x = x_at_b + head_offset * r11_at_b - pivot_length * r13_at_b
+        x = x_at_b + head_offset * r11_at_b + joint_y * sin_c - pivot_length * r13_at_b
         joint_z = axis_z - offset_z
         z = joint_z - pivot_length * cos_b - head_offset * sin_b
         z_minus_joint_z = z - joint_z

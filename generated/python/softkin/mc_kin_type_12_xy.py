@@ -21,9 +21,9 @@ Singularities:
 
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
-    forward: 26 additions, 37 multiplications, 1 divisions, 2 square roots, 4 sines
-    inverse: 46 additions, 43 multiplications, 10 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches: 144 additions, 117 multiplications, 27 divisions, 9 square roots, 6 sines
+    forward: 26 additions, 39 multiplications, 1 divisions, 2 square roots, 4 sines
+    inverse: 42 additions, 49 multiplications, 10 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches: 124 additions, 133 multiplications, 27 divisions, 9 square roots, 6 sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -112,16 +112,12 @@ class Constants:
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         link_length_2_by_link_length_3 = link_length_2 / link_length_3
         one_by_link_length_2 = 1.0 / link_length_2
-        link_length_2_plus_link_length_3 = link_length_2 + link_length_3
-        product_in_branch_w = link_length_1 * link_length_2_plus_link_length_3
+        product_in_branch_w = link_length_1 * (link_length_2 + link_length_3)
         quotient_in_branch_w = 1.0 / (link_length_2 * link_length_4)
         sum_in_pivot_rear_x = link_length_1 + link_length_1 * link_length_3 / link_length_2
-        quotient_in_scaled_pivot_rear_y = link_length_2 * sum_in_pivot_rear_x / link_length_3
-        quotient_in_scaled_pivot_rear_y_2 = link_length_2 * link_length_5 / link_length_3
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_4_plus_link_length_5 = link_length_4 + link_length_5
         quotient_in_type2_arms_aligned = assembly_sign * link_length_3 / (link_length_4 * link_length_2 * link_length_2)
-        quotient_in_along_a2 = link_length_1 * link_length_2_plus_link_length_3 / link_length_2
         quotient_in_margin_arms_aligned = link_length_3 / (link_length_4 * link_length_2 * link_length_2)
         twice_link_length_1 = 2.0 * link_length_1
         link_length_3_by_link_length_2_plus_one = 1.0 + link_length_3_by_link_length_2
@@ -129,8 +125,8 @@ class Constants:
         link_length_3_times_2_by_link_length_2 = 2.0 * link_length_3 / link_length_2
         product_in_slope_2_by_a1 = 2.0 * link_length_1 * link_length_3_by_link_length_2_plus_one
         twice_link_length_5 = 2.0 * link_length_5
-        self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
-        self.link_length_5, self.swap_xy, self.offset_a1, self.offset_a2 = link_length_5, swap_xy, offset_a1, offset_a2
+        self.link_length_1, self.link_length_2, self.link_length_5 = link_length_1, link_length_2, link_length_5
+        self.swap_xy, self.offset_a1, self.offset_a2 = swap_xy, offset_a1, offset_a2
         self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
         self.product_in_normal_divisor = product_in_normal_divisor
         self.link_length_2_squared_times_rounding = link_length_2_squared_times_rounding
@@ -147,12 +143,9 @@ class Constants:
         self.link_length_2_by_link_length_3 = link_length_2_by_link_length_3
         self.one_by_link_length_2, self.product_in_branch_w = one_by_link_length_2, product_in_branch_w
         self.quotient_in_branch_w, self.sum_in_pivot_rear_x = quotient_in_branch_w, sum_in_pivot_rear_x
-        self.quotient_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y
-        self.quotient_in_scaled_pivot_rear_y_2 = quotient_in_scaled_pivot_rear_y_2
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5
         self.quotient_in_type2_arms_aligned = quotient_in_type2_arms_aligned
-        self.quotient_in_along_a2 = quotient_in_along_a2
         self.quotient_in_margin_arms_aligned = quotient_in_margin_arms_aligned
         self.twice_link_length_1, self.product_in_slope_2_by_x = twice_link_length_1, product_in_slope_2_by_x
         self.link_length_3_times_2_by_link_length_2 = link_length_3_times_2_by_link_length_2
@@ -168,7 +161,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
-    KEY = "mc_kin_type_12_xy 9b8d2f5400a80d95"
+    KEY = "mc_kin_type_12_xy 70795130f4609dbe"
     AXES = (
         Axis(
             name="A1",
@@ -292,15 +285,15 @@ class KinType12XY(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         assembly_sign, link_length_1, link_length_2 = k.assembly_sign, k.link_length_1, k.link_length_2
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
-        link_length_3_by_link_length_2, offset_a1 = k.link_length_3_by_link_length_2, k.offset_a1
-        offset_a2, one_by_link_length_2 = k.offset_a2, k.one_by_link_length_2
+        link_length_3_by_link_length_2, link_length_5 = k.link_length_3_by_link_length_2, k.link_length_5
+        offset_a1, offset_a2, one_by_link_length_2 = k.offset_a1, k.offset_a2, k.one_by_link_length_2
         product_in_branch_w, product_in_foot_fraction = k.product_in_branch_w, k.product_in_foot_fraction
         product_in_normal_divisor, quotient_in_branch_w = k.product_in_normal_divisor, k.quotient_in_branch_w
-        quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
-        quotient_in_scaled_pivot_rear_y_2, swap_xy = k.quotient_in_scaled_pivot_rear_y_2, k.swap_xy
+        sum_in_pivot_rear_x, swap_xy = k.sum_in_pivot_rear_x, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -309,23 +302,21 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1 * cos_a1
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
+        pivot_rear_x = sum_in_pivot_rear_x * sin_a1 - link_length_5 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
-        if swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_2_x = -scaled_pivot_rear_y
-            centre_1_y = pivot_upper_x
-            centre_2_y = -scaled_pivot_rear_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_2_x = -scaled_pivot_rear_x
-            centre_1_y = pivot_upper_y
-            centre_2_y = -scaled_pivot_rear_y
+        pivot_rear_y = sum_in_pivot_rear_x * cos_a1 + link_length_5 * sin_a2
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x) * link_length_2_by_link_length_3
         centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y) * link_length_2_by_link_length_3
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
@@ -387,18 +378,17 @@ class KinType12XY(OffsetKinematics):
         k = self._constants
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
+        link_length_1_times_shortest_link, link_length_2 = k.link_length_1_times_shortest_link, k.link_length_2
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-        link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
+        link_length_4_plus_link_length_5, link_length_5 = k.link_length_4_plus_link_length_5, k.link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        quotient_in_along_a2 = k.quotient_in_along_a2
-        quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
-        quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
+        one_by_link_length_2, product_in_branch_w = k.one_by_link_length_2, k.product_in_branch_w
         quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
-        single_a2, swap_xy = k.single_a2, k.swap_xy
+        single_a2, sum_in_pivot_rear_x, swap_xy = k.single_a2, k.sum_in_pivot_rear_x, k.swap_xy
         if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -433,42 +423,12 @@ class KinType12XY(OffsetKinematics):
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         pivot_upper_y = -link_length_1 * cos_a1
-        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - quotient_in_along_a2 * sin_a1
-        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        across_a2 = quotient_in_along_a2 * cos_a1 - span_rear_y
-        # effective length of the arm that a2 turns
-        effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
-        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
-        # law of cosines for a2 (rod rear): 1 - cosine, times a scale
-        one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
-            divisor_a2 + link_length_5_minus_link_length_4
-        )
-        # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
-            divisor_a2 - link_length_5_minus_link_length_4
-        )
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
-        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_w / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
-        # rod rear: centre about which it swings
-        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
-        sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
-        scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
-            centre_2_x = -scaled_pivot_rear_y
-            centre_2_y = -scaled_pivot_rear_x
         else:
             centre_1_x = pivot_upper_x
             centre_1_y = pivot_upper_y
-            centre_2_x = -scaled_pivot_rear_x
-            centre_2_y = -scaled_pivot_rear_y
         # a1: its effective length is too short
         if not (effective_a1 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
@@ -477,17 +437,45 @@ class KinType12XY(OffsetKinematics):
                 abs(link_length_1_minus_link_length_2) - divisor_a1, divisor_a1 - link_length_1_plus_link_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        along_a2 = (link_length_2 * span_rear_x - product_in_branch_w * sin_a1) * one_by_link_length_2
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
+        across_a2 = one_by_link_length_2 * (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y)
+        # effective length of the arm that a2 turns
+        effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
         if not (effective_a2 > link_length_5_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
+        # law of cosines for a2 (rod rear): 1 - cosine, times a scale
+        one_less_cos_a2 = (effective_a2 + link_length_4_plus_link_length_5) * (
+            effective_a2 + link_length_5_minus_link_length_4
+        )
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (link_length_4_plus_link_length_5 - effective_a2) * (
+            effective_a2 - link_length_5_minus_link_length_4
+        )
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = max(
-                abs(link_length_5_minus_link_length_4) - divisor_a2, divisor_a2 - link_length_4_plus_link_length_5
+                abs(link_length_5_minus_link_length_4) - effective_a2, effective_a2 - link_length_4_plus_link_length_5
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_w / divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / effective_a2
+        # rod rear: centre about which it swings
+        pivot_rear_x = sum_in_pivot_rear_x * sin_a1 - link_length_5 * cos_a2
+        sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / effective_a2
+        pivot_rear_y = sum_in_pivot_rear_x * cos_a1 + link_length_5 * sin_a2
+        centre_2_x = (-pivot_rear_y if swap_xy else -pivot_rear_x) * link_length_2_by_link_length_3
         rod_2_x = x - centre_2_x
+        centre_2_y = (-pivot_rear_x if swap_xy else -pivot_rear_y) * link_length_2_by_link_length_3
         rod_2_y = y - centre_2_y
         type2_arms_aligned = quotient_in_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
@@ -526,16 +514,16 @@ class KinType12XY(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         assembly_sign, link_length_1, link_length_2 = k.assembly_sign, k.link_length_1, k.link_length_2
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
-        link_length_3_by_link_length_2, offset_a1 = k.link_length_3_by_link_length_2, k.offset_a1
-        offset_a2, one_by_link_length_2 = k.offset_a2, k.one_by_link_length_2
+        link_length_3_by_link_length_2, link_length_5 = k.link_length_3_by_link_length_2, k.link_length_5
+        offset_a1, offset_a2, one_by_link_length_2 = k.offset_a1, k.offset_a2, k.one_by_link_length_2
         product_in_branch_w, product_in_foot_fraction = k.product_in_branch_w, k.product_in_foot_fraction
         product_in_normal_divisor, quotient_in_branch_w = k.product_in_normal_divisor, k.quotient_in_branch_w
-        quotient_in_margin_arms_aligned = k.quotient_in_margin_arms_aligned
-        quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
-        quotient_in_scaled_pivot_rear_y_2, swap_xy = k.quotient_in_scaled_pivot_rear_y_2, k.swap_xy
+        quotient_in_margin_arms_aligned, sum_in_pivot_rear_x = k.quotient_in_margin_arms_aligned, k.sum_in_pivot_rear_x
+        swap_xy = k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -544,23 +532,21 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1 * cos_a1
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
+        pivot_rear_x = sum_in_pivot_rear_x * sin_a1 - link_length_5 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
-        if swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_2_x = -scaled_pivot_rear_y
-            centre_1_y = pivot_upper_x
-            centre_2_y = -scaled_pivot_rear_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_2_x = -scaled_pivot_rear_x
-            centre_1_y = pivot_upper_y
-            centre_2_y = -scaled_pivot_rear_y
+        pivot_rear_y = sum_in_pivot_rear_x * cos_a1 + link_length_5 * sin_a2
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x) * link_length_2_by_link_length_3
         centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y) * link_length_2_by_link_length_3
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
@@ -742,18 +728,17 @@ class KinType12XY(OffsetKinematics):
         k = self._constants
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
-        link_length_1_times_shortest_link = k.link_length_1_times_shortest_link
+        link_length_1_times_shortest_link, link_length_2 = k.link_length_1_times_shortest_link, k.link_length_2
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
-        link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
+        link_length_4_plus_link_length_5, link_length_5 = k.link_length_4_plus_link_length_5, k.link_length_5
         link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        quotient_in_along_a2 = k.quotient_in_along_a2
-        quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
-        quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
+        one_by_link_length_2, product_in_branch_w = k.one_by_link_length_2, k.product_in_branch_w
         quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
-        single_a2, swap_xy = k.single_a2, k.swap_xy
+        single_a2, sum_in_pivot_rear_x, swap_xy = k.single_a2, k.sum_in_pivot_rear_x, k.swap_xy
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -790,42 +775,12 @@ class KinType12XY(OffsetKinematics):
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         pivot_upper_y = -link_length_1 * cos_a1
-        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - quotient_in_along_a2 * sin_a1
-        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        across_a2 = quotient_in_along_a2 * cos_a1 - span_rear_y
-        # effective length of the arm that a2 turns
-        effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
-        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
-        # law of cosines for a2 (rod rear): 1 - cosine, times a scale
-        one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
-            divisor_a2 + link_length_5_minus_link_length_4
-        )
-        # 1 + cosine, times the scale
-        one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
-            divisor_a2 - link_length_5_minus_link_length_4
-        )
-        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
-        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
-        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_w / divisor_of_cos_a2
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
-        # rod rear: centre about which it swings
-        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
-        sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
-        scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
         if swap_xy:
             centre_1_x = pivot_upper_y
             centre_1_y = pivot_upper_x
-            centre_2_x = -scaled_pivot_rear_y
-            centre_2_y = -scaled_pivot_rear_x
         else:
             centre_1_x = pivot_upper_x
             centre_1_y = pivot_upper_y
-            centre_2_x = -scaled_pivot_rear_x
-            centre_2_y = -scaled_pivot_rear_y
         # a1: its effective length is too short
         if not (effective_a1 > link_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
@@ -834,17 +789,45 @@ class KinType12XY(OffsetKinematics):
                 abs(link_length_1_minus_link_length_2) - divisor_a1, divisor_a1 - link_length_1_plus_link_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
+        span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
+        along_a2 = (link_length_2 * span_rear_x - product_in_branch_w * sin_a1) * one_by_link_length_2
+        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
+        across_a2 = one_by_link_length_2 * (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y)
+        # effective length of the arm that a2 turns
+        effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
         if not (effective_a2 > link_length_5_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
+        # law of cosines for a2 (rod rear): 1 - cosine, times a scale
+        one_less_cos_a2 = (effective_a2 + link_length_4_plus_link_length_5) * (
+            effective_a2 + link_length_5_minus_link_length_4
+        )
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (link_length_4_plus_link_length_5 - effective_a2) * (
+            effective_a2 - link_length_5_minus_link_length_4
+        )
+        sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
+        divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
+        # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = max(
-                abs(link_length_5_minus_link_length_4) - divisor_a2, divisor_a2 - link_length_4_plus_link_length_5
+                abs(link_length_5_minus_link_length_4) - effective_a2, effective_a2 - link_length_4_plus_link_length_5
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         rod_1_x = flange_x - centre_1_x
         rod_1_y = flange_y - centre_1_y
+        sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_w / divisor_of_cos_a2
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / effective_a2
+        # rod rear: centre about which it swings
+        pivot_rear_x = sum_in_pivot_rear_x * sin_a1 - link_length_5 * cos_a2
+        sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / effective_a2
+        pivot_rear_y = sum_in_pivot_rear_x * cos_a1 + link_length_5 * sin_a2
+        centre_2_x = (-pivot_rear_y if swap_xy else -pivot_rear_x) * link_length_2_by_link_length_3
         rod_2_x = flange_x - centre_2_x
+        centre_2_y = (-pivot_rear_x if swap_xy else -pivot_rear_y) * link_length_2_by_link_length_3
         rod_2_y = flange_y - centre_2_y
         type2_arms_aligned = quotient_in_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
@@ -872,15 +855,15 @@ class KinType12XY(OffsetKinematics):
         axis_a1, axis_a2 = axes
         k = self._constants
         assembly_sign, link_length_1, link_length_2 = k.assembly_sign, k.link_length_1, k.link_length_2
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
         link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
-        link_length_3_by_link_length_2, offset_a1 = k.link_length_3_by_link_length_2, k.offset_a1
-        offset_a2, one_by_link_length_2 = k.offset_a2, k.one_by_link_length_2
+        link_length_3_by_link_length_2, link_length_5 = k.link_length_3_by_link_length_2, k.link_length_5
+        offset_a1, offset_a2, one_by_link_length_2 = k.offset_a1, k.offset_a2, k.one_by_link_length_2
         product_in_branch_w, product_in_foot_fraction = k.product_in_branch_w, k.product_in_foot_fraction
         product_in_normal_divisor, quotient_in_branch_w = k.product_in_normal_divisor, k.quotient_in_branch_w
-        quotient_in_scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y
-        quotient_in_scaled_pivot_rear_y_2, swap_xy = k.quotient_in_scaled_pivot_rear_y_2, k.swap_xy
+        sum_in_pivot_rear_x, swap_xy = k.sum_in_pivot_rear_x, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
@@ -889,23 +872,21 @@ class KinType12XY(OffsetKinematics):
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
         pivot_upper_y = -link_length_1 * cos_a1
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
+        pivot_rear_x = sum_in_pivot_rear_x * sin_a1 - link_length_5 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
-        if swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_2_x = -scaled_pivot_rear_y
-            centre_1_y = pivot_upper_x
-            centre_2_y = -scaled_pivot_rear_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_2_x = -scaled_pivot_rear_x
-            centre_1_y = pivot_upper_y
-            centre_2_y = -scaled_pivot_rear_y
+        pivot_rear_y = sum_in_pivot_rear_x * cos_a1 + link_length_5 * sin_a2
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x) * link_length_2_by_link_length_3
         centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y) * link_length_2_by_link_length_3
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y

@@ -106,7 +106,7 @@ class P2CType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type1"
-    KEY = "p2c_type1 ce5c888ca1c283b0"
+    KEY = "p2c_type1 1bc2cf430b6a7039"
     AXES = (
         Axis(
             name="A1",

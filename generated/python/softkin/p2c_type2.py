@@ -110,7 +110,7 @@ class P2CType2(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type2"
-    KEY = "p2c_type2 0465857cc181c05c"
+    KEY = "p2c_type2 3a9cc98f906868fe"
     AXES = (
         Axis(
             name="A1",

@@ -25,7 +25,7 @@ Singularities:
 
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
-    forward: 30 additions, 28 multiplications, 0 divisions, 0 square roots, 9 sines
+    forward: 30 additions, 29 multiplications, 0 divisions, 0 square roots, 9 sines
     inverse: 48 additions, 38 multiplications, 4 divisions, 3 square roots, 4 sines
     inverse, all 4 branches: 163 additions, 111 multiplications, 11 divisions, 7 square roots, 11 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
@@ -48,7 +48,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn, turn_inside
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, solve, sqrt
 from softkin._twist import TwistChoice
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.palletizer import unrolled
@@ -56,7 +56,7 @@ from softkin._unrolled.palletizer import unrolled
 if TYPE_CHECKING:
     from softkin._array import Programs
     from softkin._ends import Limits
-    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Values, Vector
 
 
 class Constants:
@@ -75,40 +75,27 @@ class Constants:
         self.lowest_elbow, self.highest_elbow, *_ = machine._window("elbow")
         machine_scale = link_length_1 + link_length_2 + shoulder_offset  # characteristic length of the machine
         rounding_a1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
-        size_a1_for_a3_from_a2 = 2.0 * link_length_1 * link_length_2
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
-        size_a1_for_a3_from_a2_times_rounding = 1e-12 * size_a1_for_a3_from_a2
-        machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
-        machine_scale_times_rounding = 1e-12 * machine_scale
-        shoulder_offset_plus_wrist_offset_x = shoulder_offset + wrist_offset_x
+        product_in_lost_digits_16 = 0.01 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
-        quotient_in_branch_shoulder = shoulder_offset_plus_wrist_offset_x / machine_scale
-        link_length_2_by_machine_scale = link_length_2 / machine_scale
-        link_length_1_by_machine_scale = link_length_1 / machine_scale
-        base_height_plus_wrist_offset_z = base_height + wrist_offset_z
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-        quotient_in_cos_swing_a3_from_a2 = 0.25 / (link_length_1 * link_length_2)
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
-        sum_in_value_a1_for_a3_from_a2 = link_length_1 * link_length_1 + link_length_2 * link_length_2
+        quotient_in_closed_cos_swing_a3_from_a2 = 0.25 / (link_length_1 * link_length_2)
+        shoulder_offset_plus_wrist_offset_x = shoulder_offset + wrist_offset_x
+        base_height_plus_wrist_offset_z = base_height + wrist_offset_z
         self.base_height, self.shoulder_offset, self.link_length_1 = base_height, shoulder_offset, link_length_1
         self.link_length_2, self.wrist_offset_x, self.wrist_offset_z = link_length_2, wrist_offset_x, wrist_offset_z
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.rounding_a1, self.size_a1_for_a3_from_a2 = rounding_a1, size_a1_for_a3_from_a2
+        self.machine_scale, self.rounding_a1 = machine_scale, rounding_a1
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.size_a1_for_a3_from_a2_times_rounding = size_a1_for_a3_from_a2_times_rounding
-        self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
-        self.machine_scale_times_rounding = machine_scale_times_rounding
-        self.shoulder_offset_plus_wrist_offset_x = shoulder_offset_plus_wrist_offset_x
-        self.one_by_machine_scale, self.quotient_in_branch_shoulder = one_by_machine_scale, quotient_in_branch_shoulder
-        self.link_length_2_by_machine_scale = link_length_2_by_machine_scale
-        self.link_length_1_by_machine_scale = link_length_1_by_machine_scale
-        self.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z
+        self.product_in_lost_digits_16, self.one_by_machine_scale = product_in_lost_digits_16, one_by_machine_scale
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
-        self.quotient_in_cos_swing_a3_from_a2 = quotient_in_cos_swing_a3_from_a2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
-        self.sum_in_value_a1_for_a3_from_a2 = sum_in_value_a1_for_a3_from_a2
+        self.quotient_in_closed_cos_swing_a3_from_a2 = quotient_in_closed_cos_swing_a3_from_a2
+        self.shoulder_offset_plus_wrist_offset_x = shoulder_offset_plus_wrist_offset_x
+        self.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z
 
 
 class Palletizer(OffsetKinematics, TwistChoice):
@@ -120,7 +107,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer"
-    KEY = "palletizer 94d8623e19e36997"
+    KEY = "palletizer b030afe8d9260c9e"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),
@@ -262,16 +249,281 @@ class Palletizer(OffsetKinematics, TwistChoice):
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
         self._seal()
 
+    def _meet_point(self, given: Values) -> Values | Status:
+        """The axes that meet a point, found by steps on the closure, and whether they do."""
+        (
+            given_point_x,
+            given_point_y,
+            given_point_z,
+            given_ref_a1,
+            given_ref_a2,
+            given_ref_a3,
+            given_ref_a4,
+            given_sigma_elbow,
+            given_sigma_shoulder,
+            given_turn_a1,
+            given_turn_a2,
+            given_turn_a3,
+            goal_x,
+            goal_y,
+            goal_z,
+            start_a1,
+            start_a2,
+            start_a3,
+            start_a4,
+        ) = given
+        k = self._constants
+        base_height, half_by_link_length_1_by_link_length_2 = k.base_height, k.half_by_link_length_1_by_link_length_2
+        link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
+        link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
+        machine_scale, mid_a1, mid_a2, mid_a3, offset_a1 = k.machine_scale, k.mid_a1, k.mid_a2, k.mid_a3, k.offset_a1
+        offset_a2, offset_a3, offset_a4 = k.offset_a2, k.offset_a3, k.offset_a4
+        one_by_machine_scale = k.one_by_machine_scale
+        quotient_in_closed_cos_swing_a3_from_a2 = k.quotient_in_closed_cos_swing_a3_from_a2
+        shoulder_offset, single_a1, single_a2, single_a3 = k.shoulder_offset, k.single_a1, k.single_a2, k.single_a3
+        wrist_offset_x, wrist_offset_z = k.wrist_offset_x, k.wrist_offset_z
+        closed_distance_a1 = sqrt(goal_x * goal_x + goal_y * goal_y)  # distance of the point from the axis of a1
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = mid_a1 if single_a1 else given_ref_a1
+        closed_near_a1 = (
+            360.0 * (given_turn_a1 - 1 if given_turn_a1 > 0 else given_turn_a1)
+            if given_turn_a1 != 0
+            else closed_open_a1
+        )
+        closed_tool_z = given_point_z + wrist_offset_z  # commanded point, in the frame of the last moving joint
+        # coordinate of the point that the remaining links must reach
+        closed_wrist_z_from_a1 = goal_z - base_height - closed_tool_z
+        # A2: without a commanded turn, the value nearest to this
+        closed_open_a2 = mid_a2 if single_a2 else given_ref_a2
+        closed_near_a2 = (
+            360.0 * (given_turn_a2 - 1 if given_turn_a2 > 0 else given_turn_a2)
+            if given_turn_a2 != 0
+            else closed_open_a2
+        )
+        # A3: without a commanded turn, the value nearest to this
+        closed_open_a3 = mid_a3 if single_a3 else given_ref_a3
+        closed_near_a3 = (
+            360.0 * (given_turn_a3 - 1 if given_turn_a3 > 0 else given_turn_a3)
+            if given_turn_a3 != 0
+            else closed_open_a3
+        )
+        # steps of damped least squares on the closure, from one start after the other
+        tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before = (
+            start_a1,
+            start_a2,
+            start_a3,
+            start_a4,
+            40,
+            0,
+            9.0,
+        )
+        for _ in range(164):
+            a1 = (tried_a1 - offset_a1) * DEGREE
+            sin_a1 = sin(a1)
+            cos_a1 = cos(a1)
+            x_at_a2 = shoulder_offset * cos_a1
+            a2 = (tried_a2 - offset_a2) * DEGREE
+            sin_a2 = sin(a2)
+            r13_at_a2 = cos_a1 * sin_a2
+            x_at_a2_a3 = x_at_a2 + link_length_1 * r13_at_a2
+            a3 = (tried_a3 - offset_a3) * DEGREE
+            cos_a3 = cos(a3)
+            r11_at_a3 = cos_a1 * cos_a3
+            x_at_a3 = x_at_a2_a3 + link_length_2 * r11_at_a3
+            x_at_a4 = x_at_a3 + wrist_offset_x * cos_a1
+            a4 = (tried_a4 - offset_a4) * DEGREE
+            sin_a4 = sin(a4)
+            cos_a4 = cos(a4)
+            r11_at_a4 = cos_a1 * cos_a4 - sin_a1 * sin_a4
+            r12_at_a4 = -cos_a1 * sin_a4 - cos_a4 * sin_a1
+            x = x_at_a4 + given_point_x * r11_at_a4 + given_point_y * r12_at_a4
+            y_at_a2 = shoulder_offset * sin_a1
+            r23_at_a2 = sin_a1 * sin_a2
+            y_at_a2_a3 = y_at_a2 + link_length_1 * r23_at_a2
+            r21_at_a3 = cos_a3 * sin_a1
+            y_at_a3 = y_at_a2_a3 + link_length_2 * r21_at_a3
+            y_at_a4 = y_at_a3 + wrist_offset_x * sin_a1
+            y = y_at_a4 + given_point_y * r11_at_a4 - given_point_x * r12_at_a4
+            branch_shoulder = one_by_machine_scale * (x * cos_a1 + y * sin_a1)
+            beside_shoulder = given_sigma_shoulder * branch_shoulder < -1e-6
+            cos_a3_from_a2 = cos(a2 - a3)
+            beside_elbow = given_sigma_elbow * cos_a3_from_a2 < -1e-6
+            error_1 = (goal_x - x) * one_by_machine_scale
+            error_2 = (goal_y - y) * one_by_machine_scale
+            cos_a2 = cos(a2)
+            z_at_a2_a3 = base_height + link_length_1 * cos_a2
+            sin_a3 = sin(a3)
+            z_at_a3 = z_at_a2_a3 - link_length_2 * sin_a3
+            flange_z = wrist_offset_z + z_at_a3
+            z = flange_z + given_point_z
+            error_3 = (goal_z - z) * one_by_machine_scale
+            # error of the pose, in characteristic lengths and radians
+            error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
+            another = passes_left <= 0
+            # the error is rounding, and steps make it no smaller
+            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
+            pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder)
+            next_attempt = attempt + (1 if another else 0)
+            mirrors = pose_is_close and (beside_elbow or beside_shoulder)
+            free_angle = 1e-6 if next_attempt > 0 else 1e-11
+            free_turn = -137.5 * (1 - next_attempt if next_attempt > 1 else 0)
+            closed_reference_a4 = DEGREE * (free_turn + given_ref_a4 - offset_a4)
+            closed_cos_a4 = cos(closed_reference_a4)
+            closed_sin_a4 = sin(closed_reference_a4)
+            # commanded point, in the frame of the last moving joint
+            closed_tool_y = closed_cos_a4 * given_point_y + closed_sin_a4 * given_point_x
+            # Pythagoras: square of the distance ahead of the axis
+            closed_ahead_squared_a1 = (closed_distance_a1 + closed_tool_y) * (closed_distance_a1 - closed_tool_y)
+            # how far ahead of the axis the point is; negative: behind it
+            closed_ahead_a1 = (
+                sqrt(closed_ahead_squared_a1) if closed_ahead_squared_a1 > 0.0 else 0.0
+            ) * given_sigma_shoulder
+            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
+            free_angle_times_machine_scale = free_angle * machine_scale
+            closed_divisor_a1 = (
+                closed_distance_a1 * closed_distance_a1 if closed_distance_a1 > free_angle_times_machine_scale else 1.0
+            )
+            # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_a1 = (
+                (closed_ahead_a1 * goal_x + closed_tool_y * goal_y) / closed_divisor_a1
+                if closed_distance_a1 > free_angle_times_machine_scale
+                else cos(closed_reference_a1)
+            )
+            closed_sin_a1 = (
+                (closed_ahead_a1 * goal_y - closed_tool_y * goal_x) / closed_divisor_a1
+                if closed_distance_a1 > free_angle_times_machine_scale
+                else sin(closed_reference_a1)
+            )
+            closed_axis_a1 = nearest_period(
+                offset_a1 + arctan2(closed_sin_a1 + 0.0, closed_cos_a1 + 0.0) * RADIAN, closed_near_a1
+            )
+            rate_1_1 = -one_by_machine_scale * y
+            rate_2_1 = one_by_machine_scale * x
+            z_minus_z_at_a2_a3 = z - z_at_a2_a3
+            sum_in_rate_1_2 = base_height + z_minus_z_at_a2_a3 - z
+            rate_1_2 = -one_by_machine_scale * sum_in_rate_1_2 * cos_a1
+            sum_in_rate_1_3 = z_at_a3 + z_minus_z_at_a2_a3 - z
+            rate_1_3 = one_by_machine_scale * sum_in_rate_1_3 * cos_a1
+            product_in_damping = 0.001 * error
+            damping = max(1e-13, product_in_damping)
+            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            rate_2_2 = -one_by_machine_scale * sum_in_rate_1_2 * sin_a1
+            rate_2_3 = one_by_machine_scale * sum_in_rate_1_3 * sin_a1
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            x_minus_x_at_a2_a3 = x - x_at_a2_a3
+            y_minus_y_at_a2_a3 = y - y_at_a2_a3
+            rate_3_2 = one_by_machine_scale * (
+                (x_at_a2 + x_minus_x_at_a2_a3 - x) * cos_a1 + (y_at_a2 + y_minus_y_at_a2_a3 - y) * sin_a1
+            )
+            rate_3_3 = -one_by_machine_scale * (
+                (x_at_a3 + x_minus_x_at_a2_a3 - x) * cos_a1 + (y_at_a3 + y_minus_y_at_a2_a3 - y) * sin_a1
+            )
+            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
+            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
+            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            _, multiplier_1, multiplier_2, multiplier_3 = solve(
+                (
+                    (product_1_1, product_1_2, product_1_3),
+                    (product_1_2, product_2_2, product_2_3),
+                    (product_1_3, product_2_3, product_3_3),
+                ),
+                ((error_1,), (error_2,), (error_3,)),
+            )
+            step_a1 = multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
+            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
+            # commanded point, in the frame of the last moving joint
+            closed_tool_x = wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_x_from_a1 = closed_ahead_a1 - closed_tool_x - shoulder_offset
+            # distance that the remaining links must span
+            closed_reach = sqrt(
+                closed_wrist_x_from_a1 * closed_wrist_x_from_a1 + closed_wrist_z_from_a1 * closed_wrist_z_from_a1
+            )
+            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - offset_a2)
+            # law of cosines for a3_from_a2 (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
+            closed_one_less_cos_a3_from_a2 = (closed_reach + link_length_1_minus_link_length_2) * (
+                closed_reach - link_length_1_minus_link_length_2
+            )
+            # 1 + cosine, times the scale
+            closed_one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 - closed_reach) * (
+                closed_reach + link_length_1_plus_link_length_2
+            )
+            # sine squared, times the squared scale
+            closed_sine_square_a3_from_a2 = closed_one_less_cos_a3_from_a2 * closed_one_plus_cos_a3_from_a2
+            # addition theorem: plus the angle of the direction from which the cosine is measured
+            closed_cos_a3_from_a2 = (
+                (sqrt(closed_sine_square_a3_from_a2) if closed_sine_square_a3_from_a2 > 0.0 else 0.0)
+                * given_sigma_elbow
+                * half_by_link_length_1_by_link_length_2
+            )
+            closed_arm_along_a2 = closed_cos_a3_from_a2 * link_length_2
+            closed_cos_swing_a3_from_a2 = (
+                closed_one_plus_cos_a3_from_a2 - closed_one_less_cos_a3_from_a2
+            ) * quotient_in_closed_cos_swing_a3_from_a2
+            closed_arm_across_a2 = link_length_1 - closed_cos_swing_a3_from_a2 * link_length_2
+            # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
+            # reference
+            closed_direction_x_a2 = (
+                closed_arm_across_a2 * closed_wrist_z_from_a1 + closed_arm_along_a2 * closed_wrist_x_from_a1
+                if closed_reach > free_angle_times_machine_scale
+                else cos(closed_reference_a2)
+            )
+            closed_direction_y_a2 = (
+                closed_arm_across_a2 * closed_wrist_x_from_a1 - closed_arm_along_a2 * closed_wrist_z_from_a1
+                if closed_reach > free_angle_times_machine_scale
+                else sin(closed_reference_a2)
+            )
+            closed_angle_a2 = arctan2(closed_direction_y_a2 + 0.0, closed_direction_x_a2 + 0.0)
+            closed_axis_a2 = nearest_period(offset_a2 + closed_angle_a2 * RADIAN, closed_near_a2)
+            closed_angle_a3_from_a2 = arctan2(closed_cos_swing_a3_from_a2 + 0.0, closed_cos_a3_from_a2 + 0.0)
+            # a3 from the sum a3_from_a2 of angles about parallel axes
+            closed_axis_a3 = nearest_period(
+                offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) * RADIAN, closed_near_a3
+            )
+            shared_quotient = shrinking * RADIAN
+            if pose_is_met or (another and (next_attempt >= 4)):
+                break
+            tried_a1 = (
+                closed_axis_a1
+                if another
+                else (
+                    (2.0 * closed_axis_a1 - tried_a1 if beside_shoulder else tried_a1)
+                    if mirrors
+                    else tried_a1 + shared_quotient * step_a1
+                )
+            )
+            tried_a2 = closed_axis_a2 if another else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
+            tried_a3 = closed_axis_a3 if another else (tried_a3 if mirrors else tried_a3 + shared_quotient * step_a3)
+            tried_a4 = given_ref_a4 if another else tried_a4
+            passes_left = 40 if another else passes_left - 1
+            attempt = next_attempt
+            error_before = 9.0 if another or mirrors else error
+        else:
+            return Status.UNREACHABLE
+        chosen_a1 = tried_a1
+        if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
+            chosen_a1 = nearest_period(chosen_a1, closed_near_a1)
+        chosen_a2 = tried_a2
+        if not -180.000000001 <= chosen_a2 - closed_near_a2 < 179.999999999:
+            chosen_a2 = nearest_period(chosen_a2, closed_near_a2)
+        chosen_a3 = tried_a3
+        if not -180.000000001 <= chosen_a3 - closed_near_a3 < 179.999999999:
+            chosen_a3 = nearest_period(chosen_a3, closed_near_a3)
+        return (pose_is_met, chosen_a1, chosen_a2, chosen_a3, tried_a4)
+
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        base_height, link_length_1 = k.base_height, k.link_length_1
-        link_length_1_by_machine_scale, link_length_2 = k.link_length_1_by_machine_scale, k.link_length_2
-        link_length_2_by_machine_scale, offset_a1 = k.link_length_2_by_machine_scale, k.offset_a1
-        offset_a2, offset_a3, offset_a4 = k.offset_a2, k.offset_a3, k.offset_a4
-        quotient_in_branch_shoulder, shoulder_offset = k.quotient_in_branch_shoulder, k.shoulder_offset
-        wrist_offset_x, wrist_offset_z = k.wrist_offset_x, k.wrist_offset_z
+        base_height, link_length_1, link_length_2 = k.base_height, k.link_length_1, k.link_length_2
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        one_by_machine_scale, shoulder_offset = k.one_by_machine_scale, k.shoulder_offset
+        shoulder_offset_plus_wrist_offset_x, wrist_offset_x = k.shoulder_offset_plus_wrist_offset_x, k.wrist_offset_x
+        wrist_offset_z = k.wrist_offset_z
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -297,20 +549,18 @@ class Palletizer(OffsetKinematics, TwistChoice):
         z_at_a2_a3 = base_height + link_length_1 * cos_a2
         sin_a3 = sin(a3)
         z_at_a3 = z_at_a2_a3 - link_length_2 * sin_a3
-        z_at_a4 = wrist_offset_z + z_at_a3
+        z = wrist_offset_z + z_at_a3
         a4 = DEGREE * (axis_a4 - offset_a4)
         sin_a4 = sin(a4)
         cos_a4 = cos(a4)
         r11_at_a4 = cos_a1 * cos_a4 - sin_a1 * sin_a4
         r12_at_a4 = -cos_a1 * sin_a4 - cos_a4 * sin_a1
-        branch_shoulder = (
-            quotient_in_branch_shoulder
-            + link_length_2_by_machine_scale * cos_a3
-            + link_length_1_by_machine_scale * sin_a2
+        branch_shoulder = one_by_machine_scale * (
+            shoulder_offset_plus_wrist_offset_x + link_length_2 * cos_a3 + link_length_1 * sin_a2
         )
         cos_a3_from_a2 = cos(a2 - a3)
         return (
-            (x_at_a4, y_at_a4, z_at_a4),
+            (x_at_a4, y_at_a4, z),
             ((r11_at_a4, r12_at_a4, 0.0), (-r12_at_a4, r11_at_a4, 0.0), (0.0, 0.0, 1.0)),
             (branch_shoulder, cos_a3_from_a2),
         )
@@ -348,7 +598,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
-        offset_a4, quotient_in_cos_swing_a3_from_a2 = k.offset_a4, k.quotient_in_cos_swing_a3_from_a2
+        offset_a4, quotient_in_closed_cos_swing_a3_from_a2 = k.offset_a4, k.quotient_in_closed_cos_swing_a3_from_a2
         shoulder_offset_plus_wrist_offset_x, single_a1 = k.shoulder_offset_plus_wrist_offset_x, k.single_a1
         single_a2, single_a3, single_a4 = k.single_a2, k.single_a3, k.single_a4
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4):
@@ -374,7 +624,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
         one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach) * (
             link_length_1_plus_link_length_2 - reach
         )
-        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) * quotient_in_cos_swing_a3_from_a2
+        cos_swing_a3_from_a2 = (
+            one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
+        ) * quotient_in_closed_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
@@ -479,19 +731,17 @@ class Palletizer(OffsetKinematics, TwistChoice):
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3, axis_a4 = axes
         k = self._constants
-        link_length_1_by_machine_scale = k.link_length_1_by_machine_scale
-        link_length_2_by_machine_scale, offset_a2 = k.link_length_2_by_machine_scale, k.offset_a2
-        offset_a3, quotient_in_branch_shoulder = k.offset_a3, k.quotient_in_branch_shoulder
+        link_length_1, link_length_2, offset_a2, offset_a3 = k.link_length_1, k.link_length_2, k.offset_a2, k.offset_a3
+        one_by_machine_scale = k.one_by_machine_scale
+        shoulder_offset_plus_wrist_offset_x = k.shoulder_offset_plus_wrist_offset_x
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4):
             return Status.BAD_INPUT
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2 = sin(a2)
         a3 = DEGREE * (axis_a3 - offset_a3)
         cos_a3 = cos(a3)
-        margin_axis_a4_on_a1 = (
-            quotient_in_branch_shoulder
-            + link_length_2_by_machine_scale * cos_a3
-            + link_length_1_by_machine_scale * sin_a2
+        margin_axis_a4_on_a1 = one_by_machine_scale * (
+            shoulder_offset_plus_wrist_offset_x + link_length_2 * cos_a3 + link_length_1 * sin_a2
         )
         cos_a3_from_a2 = cos(a2 - a3)
         return (margin_axis_a4_on_a1, cos_a3_from_a2)
@@ -530,10 +780,10 @@ class Palletizer(OffsetKinematics, TwistChoice):
         z_at_a2_a3 = base_height + link_length_1 * cos_a2
         sin_a3 = sin(a3)
         z_at_a3 = z_at_a2_a3 - link_length_2 * sin_a3
-        z_at_a4 = wrist_offset_z + z_at_a3
-        z_at_a4_minus_z_at_a2_a3 = z_at_a4 - z_at_a2_a3
-        shared_sum = base_height + z_at_a4_minus_z_at_a2_a3 - z_at_a4
-        shared_sum_2 = z_at_a3 + z_at_a4_minus_z_at_a2_a3 - z_at_a4
+        z = wrist_offset_z + z_at_a3
+        z_minus_z_at_a2_a3 = z - z_at_a2_a3
+        shared_sum = base_height + z_minus_z_at_a2_a3 - z
+        shared_sum_2 = z_at_a3 + z_minus_z_at_a2_a3 - z
         return (
             (-y_at_a4, -shared_sum * cos_a1, shared_sum_2 * cos_a1, 0.0),
             (x_at_a4, -shared_sum * sin_a1, shared_sum_2 * sin_a1, 0.0),
@@ -592,16 +842,12 @@ class Palletizer(OffsetKinematics, TwistChoice):
         base_height, half_by_link_length_1_by_link_length_2 = k.base_height, k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
-        machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        offset_a4, quotient_in_cos_swing_a3_from_a2 = k.offset_a4, k.quotient_in_cos_swing_a3_from_a2
-        rounding_a1, shoulder_offset, single_a1, single_a2 = k.rounding_a1, k.shoulder_offset, k.single_a1, k.single_a2
-        single_a3, size_a1_for_a3_from_a2 = k.single_a3, k.size_a1_for_a3_from_a2
-        size_a1_for_a3_from_a2_times_rounding = k.size_a1_for_a3_from_a2_times_rounding
-        sum_in_value_a1_for_a3_from_a2, wrist_offset_x = k.sum_in_value_a1_for_a3_from_a2, k.wrist_offset_x
-        wrist_offset_z = k.wrist_offset_z
+        offset_a4, product_in_lost_digits_16 = k.offset_a4, k.product_in_lost_digits_16
+        quotient_in_closed_cos_swing_a3_from_a2, rounding_a1 = k.quotient_in_closed_cos_swing_a3_from_a2, k.rounding_a1
+        shoulder_offset, single_a1, single_a2, single_a3 = k.shoulder_offset, k.single_a1, k.single_a2, k.single_a3
+        wrist_offset_x, wrist_offset_z = k.wrist_offset_x, k.wrist_offset_z
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3, ref_a4):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_a1 = sqrt(x * x + y * y)  # distance of the point from the axis of a1
@@ -616,81 +862,16 @@ class Palletizer(OffsetKinematics, TwistChoice):
         if not (ahead_squared_a1 >= -1e-12 * distance_a1_squared - rounding_a1):
             missing = abs(tool_y) - distance_a1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        tool_z = point_z + wrist_offset_z  # commanded point, in the frame of the last moving joint
-        wrist_z_from_a1 = z - base_height - tool_z  # coordinate of the point that the remaining links must reach
-        wrist_z_from_a1_squared = wrist_z_from_a1 * wrist_z_from_a1
-        # how far ahead of the axis the point is; negative: behind it
-        ahead_a1_before_a1_for_a3_from_a2 = (sqrt(ahead_squared_a1) if ahead_squared_a1 > 0.0 else 0.0) * sigma_shoulder
         # commanded point, in the frame of the last moving joint
         tool_x = wrist_offset_x + point_x * cos_a4 - point_y * sin_a4
-        shoulder_offset_plus_tool_x = shoulder_offset + tool_x
-        # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
-        if distance_a1 > machine_scale_times_free_angle:
-            cos_a1_before_a1_for_a3_from_a2 = (ahead_a1_before_a1_for_a3_from_a2 * x + tool_y * y) / distance_a1_squared
-            sin_a1_before_a1_for_a3_from_a2 = (ahead_a1_before_a1_for_a3_from_a2 * y - tool_y * x) / distance_a1_squared
-        else:
-            reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_a1_before_a1_for_a3_from_a2 = cos(reference_a1)
-            sin_a1_before_a1_for_a3_from_a2 = sin(reference_a1)
-        # turned so that a3_from_a2 has a solution
-        if ahead_squared_a1 > machine_scale_squared_times_plane:
-            ahead_a1 = ahead_a1_before_a1_for_a3_from_a2
-            cos_a1 = cos_a1_before_a1_for_a3_from_a2
-            sin_a1 = sin_a1_before_a1_for_a3_from_a2
-        else:
-            wrist_x_from_a1_before_a1_for_a3_from_a2 = ahead_a1_before_a1_for_a3_from_a2 - shoulder_offset_plus_tool_x
-            # a3_from_a2 has solutions where this is within its bound
-            value_a1_for_a3_from_a2 = (
-                sum_in_value_a1_for_a3_from_a2
-                - wrist_z_from_a1_squared
-                - wrist_x_from_a1_before_a1_for_a3_from_a2 * wrist_x_from_a1_before_a1_for_a3_from_a2
-            )
-            # turned so that a3_from_a2 has a solution
-            if abs(value_a1_for_a3_from_a2) <= size_a1_for_a3_from_a2:
-                ahead_a1 = ahead_a1_before_a1_for_a3_from_a2
-                cos_a1 = cos_a1_before_a1_for_a3_from_a2
-                sin_a1 = sin_a1_before_a1_for_a3_from_a2
-            else:
-                rate_a1_for_a3_from_a2 = (
-                    -2.0 * tool_y * wrist_x_from_a1_before_a1_for_a3_from_a2
-                )  # its derivative by a1
-                # turn of a1 to first order
-                if abs(rate_a1_for_a3_from_a2) > size_a1_for_a3_from_a2_times_rounding:
-                    excess_a1_for_a3_from_a2 = (
-                        value_a1_for_a3_from_a2 - size_a1_for_a3_from_a2
-                        if value_a1_for_a3_from_a2 > 0.0
-                        else size_a1_for_a3_from_a2 + value_a1_for_a3_from_a2
-                    )
-                    turn_a1_for_a3_from_a2 = -excess_a1_for_a3_from_a2 / rate_a1_for_a3_from_a2
-                else:
-                    turn_a1_for_a3_from_a2 = 0.0
-                turned_length_a1_for_a3_from_a2 = root(1.0 + turn_a1_for_a3_from_a2 * turn_a1_for_a3_from_a2)
-                one_by_turned_length_a1_for_a3_from_a2 = 1.0 / turned_length_a1_for_a3_from_a2
-                turned_cos_a1_for_a3_from_a2 = one_by_turned_length_a1_for_a3_from_a2 * (
-                    cos_a1_before_a1_for_a3_from_a2 - turn_a1_for_a3_from_a2 * sin_a1_before_a1_for_a3_from_a2
-                )
-                turned_sin_a1_for_a3_from_a2 = one_by_turned_length_a1_for_a3_from_a2 * (
-                    sin_a1_before_a1_for_a3_from_a2 + turn_a1_for_a3_from_a2 * cos_a1_before_a1_for_a3_from_a2
-                )
-                # residual of the equation of a1
-                turned_cost_a1_for_a3_from_a2 = abs(
-                    tool_y + turned_sin_a1_for_a3_from_a2 * x - turned_cos_a1_for_a3_from_a2 * y
-                )
-                # turned so that a3_from_a2 has a solution
-                if turned_cost_a1_for_a3_from_a2 > machine_scale_times_rounding:
-                    ahead_a1 = ahead_a1_before_a1_for_a3_from_a2
-                    cos_a1 = cos_a1_before_a1_for_a3_from_a2
-                    sin_a1 = sin_a1_before_a1_for_a3_from_a2
-                else:
-                    ahead_a1 = (
-                        ahead_a1_before_a1_for_a3_from_a2 + tool_y * turn_a1_for_a3_from_a2
-                    ) * one_by_turned_length_a1_for_a3_from_a2
-                    cos_a1 = turned_cos_a1_for_a3_from_a2
-                    sin_a1 = turned_sin_a1_for_a3_from_a2
+        # how far ahead of the axis the point is; negative: behind it
+        ahead_a1 = (sqrt(ahead_squared_a1) if ahead_squared_a1 > 0.0 else 0.0) * sigma_shoulder
         # coordinate of the point that the remaining links must reach
-        wrist_x_from_a1 = ahead_a1 - shoulder_offset_plus_tool_x
+        wrist_x_from_a1 = ahead_a1 - shoulder_offset - tool_x
+        tool_z = point_z + wrist_offset_z  # commanded point, in the frame of the last moving joint
+        wrist_z_from_a1 = z - base_height - tool_z  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = root(wrist_z_from_a1_squared + wrist_x_from_a1 * wrist_x_from_a1)
+        reach = sqrt(wrist_x_from_a1 * wrist_x_from_a1 + wrist_z_from_a1 * wrist_z_from_a1)
         # law of cosines for a3_from_a2 (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
         one_less_cos_a3_from_a2 = (reach - link_length_1_minus_link_length_2) * (
             link_length_1_minus_link_length_2 + reach
@@ -699,11 +880,23 @@ class Palletizer(OffsetKinematics, TwistChoice):
         one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach) * (
             link_length_1_plus_link_length_2 - reach
         )
-        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) * quotient_in_cos_swing_a3_from_a2
+        cos_swing_a3_from_a2 = (
+            one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
+        ) * quotient_in_closed_cos_swing_a3_from_a2
+        within_16 = -1.0 <= cos_swing_a3_from_a2 <= 1.0
+        lost_digits_16 = (not within_16) and (abs(ahead_a1) <= product_in_lost_digits_16)
         # a3_from_a2: out of reach
-        if not (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005):
+        if not (lost_digits_16 or (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005)):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
+        # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
+        if distance_a1 > machine_scale_times_free_angle:
+            cos_a1 = (ahead_a1 * x + tool_y * y) / distance_a1_squared
+            sin_a1 = (ahead_a1 * y - tool_y * x) / distance_a1_squared
+        else:
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_a1 = cos(reference_a1)
+            sin_a1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
@@ -741,7 +934,46 @@ class Palletizer(OffsetKinematics, TwistChoice):
         axis_a3 = offset_a3 + (angle_a2 + angle_a3_from_a2) * RADIAN
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        return (axis_a1, axis_a2, axis_a3, ref_a4)
+        # digits were lost: the pose is met by steps on the closure
+        if lost_digits_16:
+            found = self._meet_point(
+                (
+                    point_x,
+                    point_y,
+                    point_z,
+                    ref_a1,
+                    ref_a2,
+                    ref_a3,
+                    ref_a4,
+                    sigma_elbow,
+                    sigma_shoulder,
+                    turn_a1,
+                    turn_a2,
+                    turn_a3,
+                    x,
+                    y,
+                    z,
+                    axis_a1,
+                    axis_a2,
+                    axis_a3,
+                    ref_a4,
+                )
+            )
+            if isinstance(found, Status):
+                return Diagnosis(found, "", 0.0)
+            met, found_a1, found_a2, found_a3, found_a4 = found
+        else:
+            met, found_a1, found_a2, found_a3, found_a4 = (False, 0.0, 0.0, 0.0, 0.0)
+        # a3_from_a2: out of reach
+        if not (met or (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005)):
+            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
+            return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
+        return (
+            (found_a1 if met else axis_a1),
+            (found_a2 if met else axis_a2),
+            (found_a3 if met else axis_a3),
+            (found_a4 if met else ref_a4),
+        )
 
     def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""

@@ -21,11 +21,13 @@ Singularities:
 
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
-    forward: 26 additions, 30 multiplications, 0 divisions, 0 square roots, 8 sines
-    inverse: 42 additions, 39 multiplications, 7 divisions, 4 square roots, 3 sines
-    inverse, all 4 branches: 145 additions, 117 multiplications, 20 divisions, 9 square roots, 10 sines
-    a branch at a singular pose, in addition: 11 additions, 11 multiplications, 2 divisions, 1 square roots, 4
-    sines
+    forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
+    inverse: 46 additions, 39 multiplications, 7 divisions, 4 square roots, 3 sines
+    inverse, all 4 branches: 161 additions, 118 multiplications, 20 divisions, 9 square roots, 10 sines
+    a branch at a singular pose, in addition: 14468 additions, 20693 multiplications, 1315 divisions, 332
+    square roots, 2301 sines
+    steps of damped least squares on the closure, from one start after the other: at most 164 passes, all of
+    which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -41,14 +43,14 @@ from typing import TYPE_CHECKING
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, solve, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
 from softkin._unrolled.pos_rrr import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
     from softkin._ends import Limits
-    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Vector
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Values, Vector
 
 
 class Constants:
@@ -65,33 +67,31 @@ class Constants:
         machine_scale = a1 + a2 + a3 + d4  # characteristic length of the machine
         effective_q3_2 = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
         rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
-        size_q1_for_q3_2 = 2.0 * abs(effective_q3_2) * a2
-        a2_squared = a2 * a2
-        size_q1_for_q3_2_times_rounding = 1e-12 * size_q1_for_q3_2
-        machine_scale_times_free_angle = 1e-11 * machine_scale
-        machine_scale_squared_times_plane = 1e-6 * machine_scale * machine_scale
-        machine_scale_times_rounding = 1e-12 * machine_scale
-        a2_minus_effective_q3_2 = a2 - effective_q3_2
         a2_times_shortest_link = 1e-9 * a2
+        product_in_lost_digits_19 = 0.01 * machine_scale
+        a2_minus_effective_q3_2 = a2 - effective_q3_2
+        machine_scale_times_free_angle = 1e-11 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
+        one_by_effective_q3_2 = 1.0 / effective_q3_2
+        a2_plus_effective_q3_2 = a2 + effective_q3_2
+        a2_minus_effective_q3_2_2 = a2 - effective_q3_2
         d4_by_effective_q3_2 = d4 / effective_q3_2
         a3_by_effective_q3_2 = a3 / effective_q3_2
-        a2_squared_plus_effective_q3_2_squared = a2_squared + effective_q3_2 * effective_q3_2
-        twice_d3 = 2.0 * d3
-        a2_plus_effective_q3_2 = a2 + effective_q3_2
-        twice_a2 = 2.0 * a2
+        one_by_effective_q3_2_2 = 1.0 / effective_q3_2
+        a2_plus_effective_q3_2_2 = a2 + effective_q3_2
+        d4_by_effective_q3_2_2 = d4 / effective_q3_2
+        a3_by_effective_q3_2_2 = a3 / effective_q3_2
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.offset_a1 = d1, a1, a2, d3, a3, d4, offset_a1
-        self.offset_a2, self.offset_a3, self.effective_q3_2 = offset_a2, offset_a3, effective_q3_2
-        self.rounding_q1, self.size_q1_for_q3_2, self.a2_squared = rounding_q1, size_q1_for_q3_2, a2_squared
-        self.size_q1_for_q3_2_times_rounding = size_q1_for_q3_2_times_rounding
+        self.offset_a2, self.offset_a3, self.machine_scale = offset_a2, offset_a3, machine_scale
+        self.effective_q3_2, self.rounding_q1 = effective_q3_2, rounding_q1
+        self.a2_times_shortest_link, self.product_in_lost_digits_19 = a2_times_shortest_link, product_in_lost_digits_19
+        self.a2_minus_effective_q3_2 = a2_minus_effective_q3_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.machine_scale_squared_times_plane = machine_scale_squared_times_plane
-        self.machine_scale_times_rounding = machine_scale_times_rounding
-        self.a2_minus_effective_q3_2, self.a2_times_shortest_link = a2_minus_effective_q3_2, a2_times_shortest_link
-        self.one_by_machine_scale, self.d4_by_effective_q3_2 = one_by_machine_scale, d4_by_effective_q3_2
-        self.a3_by_effective_q3_2 = a3_by_effective_q3_2
-        self.a2_squared_plus_effective_q3_2_squared, self.twice_d3 = a2_squared_plus_effective_q3_2_squared, twice_d3
-        self.a2_plus_effective_q3_2, self.twice_a2 = a2_plus_effective_q3_2, twice_a2
+        self.one_by_machine_scale, self.one_by_effective_q3_2 = one_by_machine_scale, one_by_effective_q3_2
+        self.a2_plus_effective_q3_2, self.a2_minus_effective_q3_2_2 = a2_plus_effective_q3_2, a2_minus_effective_q3_2_2
+        self.d4_by_effective_q3_2, self.a3_by_effective_q3_2 = d4_by_effective_q3_2, a3_by_effective_q3_2
+        self.one_by_effective_q3_2_2, self.a2_plus_effective_q3_2_2 = one_by_effective_q3_2_2, a2_plus_effective_q3_2_2
+        self.d4_by_effective_q3_2_2, self.a3_by_effective_q3_2_2 = d4_by_effective_q3_2_2, a3_by_effective_q3_2_2
 
 
 class PosRRR(OffsetKinematics):
@@ -103,7 +103,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr 0bd9804e7347f0f6"
+    KEY = "pos_rrr dbd5bad17b9dbf34"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -217,13 +217,495 @@ class PosRRR(OffsetKinematics):
         self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
         self._seal()
 
+    def _meet_pose(self, given: Values) -> Values | Status:
+        """The axes that meet a pose, found by steps on the closure, and whether they do."""
+        (
+            given_ref_a1,
+            given_ref_a2,
+            given_ref_a3,
+            given_sigma_arm,
+            given_sigma_elbow,
+            given_turn_a1,
+            given_turn_a2,
+            given_turn_a3,
+            goal_x,
+            goal_y,
+            goal_z,
+            start_a1,
+            start_a2,
+            start_a3,
+        ) = given
+        k = self._constants
+        a1, a2, a2_minus_effective_q3_2_2 = k.a1, k.a2, k.a2_minus_effective_q3_2_2
+        a2_plus_effective_q3_2, a3, a3_by_effective_q3_2 = k.a2_plus_effective_q3_2, k.a3, k.a3_by_effective_q3_2
+        d1, d3, d4, d4_by_effective_q3_2, effective_q3_2 = k.d1, k.d3, k.d4, k.d4_by_effective_q3_2, k.effective_q3_2
+        machine_scale, mid_a1, mid_a2, mid_a3, offset_a1 = k.machine_scale, k.mid_a1, k.mid_a2, k.mid_a3, k.offset_a1
+        offset_a2, offset_a3, one_by_effective_q3_2 = k.offset_a2, k.offset_a3, k.one_by_effective_q3_2
+        one_by_machine_scale, single_a1, single_a2 = k.one_by_machine_scale, k.single_a1, k.single_a2
+        single_a3 = k.single_a3
+        closed_distance_q1 = sqrt(goal_x * goal_x + goal_y * goal_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        closed_ahead_squared_q1 = (closed_distance_q1 + d3) * (closed_distance_q1 - d3)
+        # how far ahead of the axis the point is; negative: behind it
+        closed_ahead_q1 = (sqrt(closed_ahead_squared_q1) if closed_ahead_squared_q1 > 0.0 else 0.0) * given_sigma_arm
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = mid_a1 if single_a1 else given_ref_a1
+        closed_near_a1 = (
+            360.0 * (given_turn_a1 - 1 if given_turn_a1 > 0 else given_turn_a1)
+            if given_turn_a1 != 0
+            else closed_open_a1
+        )
+        closed_wrist_x_from_q1 = closed_ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        closed_wrist_z_from_q1 = goal_z - d1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
+        closed_reach = sqrt(
+            closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+        )
+        # A2: without a commanded turn, the value nearest to this
+        closed_open_a2 = mid_a2 if single_a2 else given_ref_a2
+        closed_near_a2 = (
+            360.0 * (given_turn_a2 - 1 if given_turn_a2 > 0 else given_turn_a2)
+            if given_turn_a2 != 0
+            else closed_open_a2
+        )
+        # A3: without a commanded turn, the value nearest to this
+        closed_open_a3 = mid_a3 if single_a3 else given_ref_a3
+        closed_near_a3 = (
+            360.0 * (given_turn_a3 - 1 if given_turn_a3 > 0 else given_turn_a3)
+            if given_turn_a3 != 0
+            else closed_open_a3
+        )
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        closed_one_less_cos_q3 = (a2_plus_effective_q3_2 + closed_reach) * (a2_plus_effective_q3_2 - closed_reach)
+        # 1 + cosine, times the scale
+        closed_one_plus_cos_q3 = (closed_reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + closed_reach)
+        # sum of both, twice the scale: cosine² + sine² is then 1
+        closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
+        closed_divisor_of_cos_q3 = closed_sum_q3 if closed_sum_q3 > 0.0 else 1.0
+        # sine squared, times the squared scale
+        closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
+        closed_sin_swing_q3 = (
+            -2.0
+            * (sqrt(closed_sine_square_q3) if closed_sine_square_q3 > 0.0 else 0.0)
+            * given_sigma_elbow
+            / closed_divisor_of_cos_q3
+        )
+        closed_arm_along_q2 = -closed_sin_swing_q3 * effective_q3_2
+        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
+        closed_arm_across_q2 = a2 + closed_cos_swing_q3 * effective_q3_2
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        closed_cos_q3 = a3_by_effective_q3_2 * closed_cos_swing_q3 - closed_sin_swing_q3 * d4_by_effective_q3_2
+        closed_sin_q3 = a3_by_effective_q3_2 * closed_sin_swing_q3 + closed_cos_swing_q3 * d4_by_effective_q3_2
+        closed_axis_a3 = offset_a3 + arctan2(closed_sin_q3, closed_cos_q3 + 0.0) * RADIAN
+        if not -180.000000001 <= closed_axis_a3 - closed_near_a3 < 179.999999999:
+            closed_axis_a3 = nearest_period(closed_axis_a3, closed_near_a3)
+        # steps of damped least squares on the closure, from one start after the other
+        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before = start_a1, start_a2, start_a3, 40, 0, 9.0
+        for _ in range(164):
+            q1 = (tried_a1 - offset_a1) * DEGREE
+            sin_q1 = sin(q1)
+            cos_q1 = cos(q1)
+            x_at_q2 = a1 * cos_q1
+            q2 = (tried_a2 - offset_a2) * DEGREE
+            sin_q2 = sin(q2)
+            r13_at_q2 = -cos_q1 * sin_q2
+            x_at_q3 = x_at_q2 + a2 * r13_at_q2
+            q3 = (tried_a3 - offset_a3) * DEGREE
+            q2_plus_q3 = q2 + q3
+            cos_q23 = cos(q2_plus_q3)
+            r11_at_q23 = cos_q1 * cos_q23
+            sin_q23 = sin(q2_plus_q3)
+            r13_at_q23 = -cos_q1 * sin_q23
+            x = x_at_q3 + a3 * r13_at_q23 + d3 * sin_q1 + d4 * r11_at_q23
+            y_at_q2 = a1 * sin_q1
+            r23_at_q2 = -sin_q1 * sin_q2
+            y_at_q3 = y_at_q2 + a2 * r23_at_q2
+            r21_at_q23 = cos_q23 * sin_q1
+            r23_at_q23 = -sin_q1 * sin_q23
+            y = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23 - d3 * cos_q1
+            branch_arm = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
+            beside_arm = given_sigma_arm * branch_arm < -1e-6
+            sin_q3 = sin(q3)
+            cos_q3 = cos(q3)
+            branch_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2
+            beside_elbow = given_sigma_elbow * branch_elbow < -1e-6
+            error_1 = (goal_x - x) * one_by_machine_scale
+            error_2 = (goal_y - y) * one_by_machine_scale
+            cos_q2 = cos(q2)
+            z_at_q3 = d1 + a2 * cos_q2
+            z = z_at_q3 + a3 * cos_q23 + d4 * sin_q23
+            error_3 = (goal_z - z) * one_by_machine_scale
+            # error of the pose, in characteristic lengths and radians
+            error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
+            another = passes_left <= 0
+            # the error is rounding, and steps make it no smaller
+            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
+            pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
+            next_attempt = attempt + (1 if another else 0)
+            mirrors = pose_is_close and (beside_arm or beside_elbow)
+            free_angle = 1e-6 if next_attempt > 0 else 1e-11
+            free_turn = -137.5 * (1 - next_attempt if next_attempt > 1 else 0)
+            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
+            free_angle_times_machine_scale = free_angle * machine_scale
+            closed_divisor_q1 = (
+                closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = (
+                (closed_ahead_q1 * goal_x - d3 * goal_y) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else cos(closed_reference_a1)
+            )
+            closed_sin_q1 = (
+                (closed_ahead_q1 * goal_y + d3 * goal_x) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else sin(closed_reference_a1)
+            )
+            closed_axis_a1 = nearest_period(
+                offset_a1 + arctan2(closed_sin_q1 + 0.0, closed_cos_q1 + 0.0) * RADIAN, closed_near_a1
+            )
+            rate_1_1 = -one_by_machine_scale * y
+            rate_2_1 = one_by_machine_scale * x
+            z_minus_d1 = z - d1
+            cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
+            rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q3 = z - z_at_q3
+            rate_1_3 = -z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+            product_in_damping = 0.001 * error
+            damping = max(1e-13, product_in_damping)
+            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
+            rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
+            rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            rate_3_2 = -one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+            rate_3_3 = -one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
+            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
+            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            _, multiplier_1, multiplier_2, multiplier_3 = solve(
+                (
+                    (product_1_1, product_1_2, product_1_3),
+                    (product_1_2, product_2_2, product_2_3),
+                    (product_1_3, product_2_3, product_3_3),
+                ),
+                ((error_1,), (error_2,), (error_3,)),
+            )
+            step_a1 = multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
+            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
+            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - offset_a2)
+            # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
+            # reference
+            closed_direction_x_q2 = (
+                closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
+                if closed_reach > free_angle_times_machine_scale
+                else cos(closed_reference_a2)
+            )
+            closed_direction_y_q2 = (
+                closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
+                if closed_reach > free_angle_times_machine_scale
+                else sin(closed_reference_a2)
+            )
+            closed_axis_a2 = nearest_period(
+                offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
+            )
+            shared_quotient = shrinking * RADIAN
+            if pose_is_met or (another and (next_attempt >= 4)):
+                break
+            tried_a1 = (
+                closed_axis_a1
+                if another
+                else (
+                    (2.0 * closed_axis_a1 - tried_a1 if beside_arm else tried_a1)
+                    if mirrors
+                    else tried_a1 + shared_quotient * step_a1
+                )
+            )
+            tried_a2 = closed_axis_a2 if another else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
+            tried_a3 = (
+                closed_axis_a3
+                if another
+                else (
+                    (2.0 * closed_axis_a3 - tried_a3 if beside_elbow else tried_a3)
+                    if mirrors
+                    else tried_a3 + shared_quotient * step_a3
+                )
+            )
+            passes_left = 40 if another else passes_left - 1
+            attempt = next_attempt
+            error_before = 9.0 if another or mirrors else error
+        else:
+            return Status.UNREACHABLE
+        chosen_a1 = tried_a1
+        if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
+            chosen_a1 = nearest_period(chosen_a1, closed_near_a1)
+        chosen_a2 = tried_a2
+        if not -180.000000001 <= chosen_a2 - closed_near_a2 < 179.999999999:
+            chosen_a2 = nearest_period(chosen_a2, closed_near_a2)
+        chosen_a3 = tried_a3
+        if not -180.000000001 <= chosen_a3 - closed_near_a3 < 179.999999999:
+            chosen_a3 = nearest_period(chosen_a3, closed_near_a3)
+        return (pose_is_met, chosen_a1, chosen_a2, chosen_a3)
+
+    def _meet_point(self, given: Values) -> Values | Status:
+        """The axes that meet a point, found by steps on the closure, and whether they do."""
+        (
+            given_point_x,
+            given_point_y,
+            given_point_z,
+            given_ref_a1,
+            given_ref_a2,
+            given_ref_a3,
+            given_sigma_arm,
+            given_sigma_elbow,
+            given_turn_a1,
+            given_turn_a2,
+            given_turn_a3,
+            goal_x,
+            goal_y,
+            goal_z,
+            start_a1,
+            start_a2,
+            start_a3,
+        ) = given
+        k = self._constants
+        a1, a2, a2_times_shortest_link, a3, d1, d3, d4 = k.a1, k.a2, k.a2_times_shortest_link, k.a3, k.d1, k.d3, k.d4
+        machine_scale, mid_a1, mid_a2, mid_a3, offset_a1 = k.machine_scale, k.mid_a1, k.mid_a2, k.mid_a3, k.offset_a1
+        offset_a2, offset_a3, one_by_machine_scale = k.offset_a2, k.offset_a3, k.one_by_machine_scale
+        single_a1, single_a2, single_a3 = k.single_a1, k.single_a2, k.single_a3
+        closed_distance_q1 = sqrt(goal_x * goal_x + goal_y * goal_y)  # distance of the point from the axis of q1
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = mid_a1 if single_a1 else given_ref_a1
+        closed_near_a1 = (
+            360.0 * (given_turn_a1 - 1 if given_turn_a1 > 0 else given_turn_a1)
+            if given_turn_a1 != 0
+            else closed_open_a1
+        )
+        closed_wrist_z_from_q1 = goal_z - d1  # coordinate of the point that the remaining links must reach
+        # A2: without a commanded turn, the value nearest to this
+        closed_open_a2 = mid_a2 if single_a2 else given_ref_a2
+        closed_near_a2 = (
+            360.0 * (given_turn_a2 - 1 if given_turn_a2 > 0 else given_turn_a2)
+            if given_turn_a2 != 0
+            else closed_open_a2
+        )
+        # A3: without a commanded turn, the value nearest to this
+        closed_open_a3 = mid_a3 if single_a3 else given_ref_a3
+        closed_near_a3 = (
+            360.0 * (given_turn_a3 - 1 if given_turn_a3 > 0 else given_turn_a3)
+            if given_turn_a3 != 0
+            else closed_open_a3
+        )
+        tool_x = d4 + given_point_z  # commanded point, in the frame of the last moving joint
+        tool_z = a3 + given_point_x  # commanded point, in the frame of the last moving joint
+        closed_tool_y = -d3 - given_point_y  # commanded point, in the frame of the last moving joint
+        # Pythagoras: square of the distance ahead of the axis
+        closed_ahead_squared_q1 = (closed_distance_q1 + closed_tool_y) * (closed_distance_q1 - closed_tool_y)
+        # how far ahead of the axis the point is; negative: behind it
+        closed_ahead_q1 = (sqrt(closed_ahead_squared_q1) if closed_ahead_squared_q1 > 0.0 else 0.0) * given_sigma_arm
+        closed_wrist_x_from_q1 = closed_ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
+        closed_reach = sqrt(
+            closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+        )
+        closed_effective_q3 = sqrt(tool_x * tool_x + tool_z * tool_z)  # effective length of the arm that q3 turns
+        closed_divisor_q3 = closed_effective_q3 if closed_effective_q3 > a2_times_shortest_link else 1.0
+        a2_minus_closed_reach = a2 - closed_reach
+        a2_plus_closed_reach = a2 + closed_reach
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        closed_one_less_cos_q3 = (a2_minus_closed_reach + closed_divisor_q3) * (
+            a2_plus_closed_reach + closed_divisor_q3
+        )
+        # 1 + cosine, times the scale
+        closed_one_plus_cos_q3 = (closed_divisor_q3 - a2_plus_closed_reach) * (
+            a2_minus_closed_reach - closed_divisor_q3
+        )
+        # sum of both, twice the scale: cosine² + sine² is then 1
+        closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
+        closed_divisor_of_cos_q3 = closed_sum_q3 if closed_sum_q3 > 0.0 else 1.0
+        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
+        # sine squared, times the squared scale
+        closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
+        closed_sin_swing_q3 = (
+            -2.0
+            * (sqrt(closed_sine_square_q3) if closed_sine_square_q3 > 0.0 else 0.0)
+            * given_sigma_elbow
+            / closed_divisor_of_cos_q3
+        )
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        closed_cos_q3 = (closed_cos_swing_q3 * tool_z - closed_sin_swing_q3 * tool_x) / closed_divisor_q3
+        closed_sin_q3 = (closed_cos_swing_q3 * tool_x + closed_sin_swing_q3 * tool_z) / closed_divisor_q3
+        closed_arm_along_q2 = closed_cos_q3 * tool_x - closed_sin_q3 * tool_z
+        closed_arm_across_q2 = a2 + closed_cos_q3 * tool_z + closed_sin_q3 * tool_x
+        closed_axis_a3 = offset_a3 + arctan2(closed_sin_q3, closed_cos_q3 + 0.0) * RADIAN
+        if not -180.000000001 <= closed_axis_a3 - closed_near_a3 < 179.999999999:
+            closed_axis_a3 = nearest_period(closed_axis_a3, closed_near_a3)
+        # steps of damped least squares on the closure, from one start after the other
+        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before = start_a1, start_a2, start_a3, 40, 0, 9.0
+        for _ in range(164):
+            q1 = (tried_a1 - offset_a1) * DEGREE
+            sin_q1 = sin(q1)
+            cos_q1 = cos(q1)
+            q2 = (tried_a2 - offset_a2) * DEGREE
+            q3 = (tried_a3 - offset_a3) * DEGREE
+            q2_plus_q3 = q2 + q3
+            cos_q23 = cos(q2_plus_q3)
+            r11_at_q23 = cos_q1 * cos_q23
+            sin_q23 = sin(q2_plus_q3)
+            r13_at_q23 = -cos_q1 * sin_q23
+            x_at_q2 = a1 * cos_q1
+            sin_q2 = sin(q2)
+            r13_at_q2 = -cos_q1 * sin_q2
+            x_at_q3 = x_at_q2 + a2 * r13_at_q2
+            flange_x = x_at_q3 + a3 * r13_at_q23 + d3 * sin_q1 + d4 * r11_at_q23
+            x = flange_x + given_point_x * r13_at_q23 + given_point_y * sin_q1 + given_point_z * r11_at_q23
+            r21_at_q23 = cos_q23 * sin_q1
+            r23_at_q23 = -sin_q1 * sin_q23
+            y_at_q2 = a1 * sin_q1
+            r23_at_q2 = -sin_q1 * sin_q2
+            y_at_q3 = y_at_q2 + a2 * r23_at_q2
+            flange_y = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23 - d3 * cos_q1
+            y = flange_y + given_point_x * r23_at_q23 + given_point_z * r21_at_q23 - given_point_y * cos_q1
+            branch_arm = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
+            beside_arm = given_sigma_arm * branch_arm < -1e-6
+            sin_q3 = sin(q3)
+            cos_q3 = cos(q3)
+            branch_elbow = one_by_machine_scale * (tool_x * cos_q3 - tool_z * sin_q3)
+            beside_elbow = given_sigma_elbow * branch_elbow < -1e-6
+            error_1 = (goal_x - x) * one_by_machine_scale
+            error_2 = (goal_y - y) * one_by_machine_scale
+            cos_q2 = cos(q2)
+            z_at_q3 = d1 + a2 * cos_q2
+            flange_z = z_at_q3 + a3 * cos_q23 + d4 * sin_q23
+            z = flange_z + given_point_x * cos_q23 + given_point_z * sin_q23
+            error_3 = (goal_z - z) * one_by_machine_scale
+            # error of the pose, in characteristic lengths and radians
+            error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
+            another = passes_left <= 0
+            # the error is rounding, and steps make it no smaller
+            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
+            pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
+            next_attempt = attempt + (1 if another else 0)
+            mirrors = pose_is_close and (beside_arm or beside_elbow)
+            free_angle = 1e-6 if next_attempt > 0 else 1e-11
+            free_turn = -137.5 * (1 - next_attempt if next_attempt > 1 else 0)
+            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
+            free_angle_times_machine_scale = free_angle * machine_scale
+            closed_divisor_q1 = (
+                closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = (
+                (closed_ahead_q1 * goal_x + closed_tool_y * goal_y) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else cos(closed_reference_a1)
+            )
+            closed_sin_q1 = (
+                (closed_ahead_q1 * goal_y - closed_tool_y * goal_x) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else sin(closed_reference_a1)
+            )
+            closed_axis_a1 = nearest_period(
+                offset_a1 + arctan2(closed_sin_q1 + 0.0, closed_cos_q1 + 0.0) * RADIAN, closed_near_a1
+            )
+            rate_1_1 = -one_by_machine_scale * y
+            rate_2_1 = one_by_machine_scale * x
+            z_minus_d1 = z - d1
+            cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
+            rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q3 = z - z_at_q3
+            rate_1_3 = -z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+            product_in_damping = 0.001 * error
+            damping = max(1e-13, product_in_damping)
+            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
+            rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
+            rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            rate_3_2 = -one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+            rate_3_3 = -one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
+            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
+            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            _, multiplier_1, multiplier_2, multiplier_3 = solve(
+                (
+                    (product_1_1, product_1_2, product_1_3),
+                    (product_1_2, product_2_2, product_2_3),
+                    (product_1_3, product_2_3, product_3_3),
+                ),
+                ((error_1,), (error_2,), (error_3,)),
+            )
+            step_a1 = multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
+            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
+            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - offset_a2)
+            # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
+            # reference
+            closed_direction_x_q2 = (
+                closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
+                if closed_reach > free_angle_times_machine_scale
+                else cos(closed_reference_a2)
+            )
+            closed_direction_y_q2 = (
+                closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
+                if closed_reach > free_angle_times_machine_scale
+                else sin(closed_reference_a2)
+            )
+            closed_axis_a2 = nearest_period(
+                offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
+            )
+            shared_quotient = shrinking * RADIAN
+            if pose_is_met or (another and (next_attempt >= 4)):
+                break
+            tried_a1 = (
+                closed_axis_a1
+                if another
+                else (
+                    (2.0 * closed_axis_a1 - tried_a1 if beside_arm else tried_a1)
+                    if mirrors
+                    else tried_a1 + shared_quotient * step_a1
+                )
+            )
+            tried_a2 = closed_axis_a2 if another else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
+            tried_a3 = (
+                closed_axis_a3
+                if another
+                else (
+                    (2.0 * closed_axis_a3 - tried_a3 if beside_elbow else tried_a3)
+                    if mirrors
+                    else tried_a3 + shared_quotient * step_a3
+                )
+            )
+            passes_left = 40 if another else passes_left - 1
+            attempt = next_attempt
+            error_before = 9.0 if another or mirrors else error
+        else:
+            return Status.UNREACHABLE
+        chosen_a1 = tried_a1
+        if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
+            chosen_a1 = nearest_period(chosen_a1, closed_near_a1)
+        chosen_a2 = tried_a2
+        if not -180.000000001 <= chosen_a2 - closed_near_a2 < 179.999999999:
+            chosen_a2 = nearest_period(chosen_a2, closed_near_a2)
+        chosen_a3 = tried_a3
+        if not -180.000000001 <= chosen_a3 - closed_near_a3 < 179.999999999:
+            chosen_a3 = nearest_period(chosen_a3, closed_near_a3)
+        return (pose_is_met, chosen_a1, chosen_a2, chosen_a3)
+
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        a1, a2, a3, a3_by_effective_q3_2, d1, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3_2, k.d1, k.d3, k.d4
-        d4_by_effective_q3_2, offset_a1, offset_a2 = k.d4_by_effective_q3_2, k.offset_a1, k.offset_a2
-        offset_a3, one_by_machine_scale = k.offset_a3, k.one_by_machine_scale
+        a1, a2, a3, d1, d3, d4, offset_a1, offset_a2 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.offset_a1, k.offset_a2
+        offset_a3, one_by_effective_q3_2_2 = k.offset_a3, k.one_by_effective_q3_2_2
+        one_by_machine_scale = k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
@@ -232,31 +714,31 @@ class PosRRR(OffsetKinematics):
         q2 = DEGREE * (axis_a2 - offset_a2)
         q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
-        sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1 * cos_q23
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = -cos_q1 * sin_q23
         x_at_q2 = a1 * cos_q1
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + a2 * r11_at_q2
-        x = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1 - d4 * r12_at_q23
-        r21_at_q23 = -sin_q1 * sin_q23
-        r22_at_q23 = -cos_q23 * sin_q1
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        x = x_at_q3 + a3 * r13_at_q23 + d3 * sin_q1 + d4 * r11_at_q23
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = -sin_q1 * sin_q23
         y_at_q2 = a1 * sin_q1
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + a2 * r21_at_q2
-        y = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1 - d4 * r22_at_q23
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        y = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23 - d3 * cos_q1
         cos_q2 = cos(q2)
         z_at_q3 = d1 + a2 * cos_q2
         z = z_at_q3 + a3 * cos_q23 + d4 * sin_q23
         branch_arm = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = d4_by_effective_q3_2 * cos_q3 - a3_by_effective_q3_2 * sin_q3
+        branch_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2_2
         return (
             (x, y, z),
-            ((r11_at_q23, sin_q1, -r12_at_q23), (r21_at_q23, -cos_q1, -r22_at_q23), (cos_q23, 0.0, sin_q23)),
+            ((r13_at_q23, sin_q1, r11_at_q23), (r23_at_q23, -cos_q1, r21_at_q23), (cos_q23, 0.0, sin_q23)),
             (branch_arm, branch_elbow),
         )
 
@@ -273,13 +755,13 @@ class PosRRR(OffsetKinematics):
         q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
         sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1 * sin_q23
+        r13_at_q23 = -cos_q1 * sin_q23
         sin_q1 = sin(q1)
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1 * cos_q23
-        r21_at_q23 = -sin_q1 * sin_q23
-        r22_at_q23 = -cos_q23 * sin_q1
-        return ((r11_at_q23, sin_q1, -r12_at_q23), (r21_at_q23, -cos_q1, -r22_at_q23), (cos_q23, 0.0, sin_q23))
+        r11_at_q23 = cos_q1 * cos_q23
+        r23_at_q23 = -sin_q1 * sin_q23
+        r21_at_q23 = cos_q23 * sin_q1
+        return ((r13_at_q23, sin_q1, r11_at_q23), (r23_at_q23, -cos_q1, r21_at_q23), (cos_q23, 0.0, sin_q23))
 
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
@@ -291,16 +773,12 @@ class PosRRR(OffsetKinematics):
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
         a1, a2, a2_minus_effective_q3_2 = k.a1, k.a2, k.a2_minus_effective_q3_2
-        a2_plus_effective_q3_2 = k.a2_plus_effective_q3_2
-        a2_squared_plus_effective_q3_2_squared = k.a2_squared_plus_effective_q3_2_squared
-        a3_by_effective_q3_2, d1, d3, d4_by_effective_q3_2 = k.a3_by_effective_q3_2, k.d1, k.d3, k.d4_by_effective_q3_2
-        effective_q3_2, machine_scale_squared_times_plane = k.effective_q3_2, k.machine_scale_squared_times_plane
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        a2_plus_effective_q3_2_2, a3_by_effective_q3_2_2 = k.a2_plus_effective_q3_2_2, k.a3_by_effective_q3_2_2
+        d1, d3, d4_by_effective_q3_2_2, effective_q3_2 = k.d1, k.d3, k.d4_by_effective_q3_2_2, k.effective_q3_2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-        size_q1_for_q3_2, size_q1_for_q3_2_times_rounding = k.size_q1_for_q3_2, k.size_q1_for_q3_2_times_rounding
-        twice_d3 = k.twice_d3
+        product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
+        single_a2, single_a3 = k.single_a2, k.single_a3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
@@ -311,81 +789,33 @@ class PosRRR(OffsetKinematics):
         if not (ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1):
             missing = abs(d3) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
-        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
-        if distance_q1 > machine_scale_times_free_angle:
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - d3 * y) / distance_q1_squared
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + d3 * x) / distance_q1_squared
-        else:
-            reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(reference_a1)
-            sin_q1_before_q1_for_q3 = sin(reference_a1)
-        # turned so that q3 has a solution
-        if ahead_squared_q1 > machine_scale_squared_times_plane:
-            ahead_q1 = ahead_q1_before_q1_for_q3
-            cos_q1 = cos_q1_before_q1_for_q3
-            sin_q1 = sin_q1_before_q1_for_q3
-        else:
-            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
-            # q3 has solutions where this is within its bound
-            value_q1_for_q3 = (
-                wrist_y_from_q1_squared
-                + wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
-                - a2_squared_plus_effective_q3_2_squared
-            )
-            # turned so that q3 has a solution
-            if abs(value_q1_for_q3) <= size_q1_for_q3_2:
-                ahead_q1 = ahead_q1_before_q1_for_q3
-                cos_q1 = cos_q1_before_q1_for_q3
-                sin_q1 = sin_q1_before_q1_for_q3
-            else:
-                rate_q1_for_q3 = -twice_d3 * wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
-                # turn of q1 to first order
-                if abs(rate_q1_for_q3) > size_q1_for_q3_2_times_rounding:
-                    excess_q1_for_q3 = (
-                        value_q1_for_q3 - size_q1_for_q3_2
-                        if value_q1_for_q3 > 0.0
-                        else size_q1_for_q3_2 + value_q1_for_q3
-                    )
-                    turn_q1_for_q3 = -excess_q1_for_q3 / rate_q1_for_q3
-                else:
-                    turn_q1_for_q3 = 0.0
-                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3 * turn_q1_for_q3)
-                one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
-                turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                    cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
-                )
-                turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                    sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
-                )
-                # residual of the equation of q1
-                turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3 * y - turned_sin_q1_for_q3 * x)
-                # turned so that q3 has a solution
-                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
-                    ahead_q1 = ahead_q1_before_q1_for_q3
-                    cos_q1 = cos_q1_before_q1_for_q3
-                    sin_q1 = sin_q1_before_q1_for_q3
-                else:
-                    ahead_q1 = (ahead_q1_before_q1_for_q3 - d3 * turn_q1_for_q3) * one_by_turned_length_q1_for_q3
-                    cos_q1 = turned_cos_q1_for_q3
-                    sin_q1 = turned_sin_q1_for_q3
+        ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
         wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
+        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        within_19 = -1.0 <= cos_swing_q3 <= 1.0
+        lost_digits_19 = (not within_19) and (abs(ahead_q1) <= product_in_lost_digits_19)
         # q3: out of reach
-        if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
-            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2)
+        if not (lost_digits_19 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
+            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+        if distance_q1 > machine_scale_times_free_angle:
+            cos_q1 = (ahead_q1 * x - d3 * y) / distance_q1_squared
+            sin_q1 = (ahead_q1 * y + d3 * x) / distance_q1_squared
+        else:
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1 = cos(reference_a1)
+            sin_q1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
@@ -398,8 +828,8 @@ class PosRRR(OffsetKinematics):
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3_2 * sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
-            direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
-            direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
+            direction_x_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+            direction_y_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_q2 = cos(reference_a2)
@@ -410,14 +840,43 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = a3_by_effective_q3_2 * cos_swing_q3 - d4_by_effective_q3_2 * sin_swing_q3
-        sin_q3 = a3_by_effective_q3_2 * sin_swing_q3 + d4_by_effective_q3_2 * cos_swing_q3
+        cos_q3 = a3_by_effective_q3_2_2 * cos_swing_q3 - d4_by_effective_q3_2_2 * sin_swing_q3
+        sin_q3 = a3_by_effective_q3_2_2 * sin_swing_q3 + d4_by_effective_q3_2_2 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        return (axis_a1, axis_a2, axis_a3)
+        # digits were lost: the pose is met by steps on the closure
+        if lost_digits_19:
+            found = self._meet_pose(
+                (
+                    ref_a1,
+                    ref_a2,
+                    ref_a3,
+                    sigma_arm,
+                    sigma_elbow,
+                    turn_a1,
+                    turn_a2,
+                    turn_a3,
+                    x,
+                    y,
+                    z,
+                    axis_a1,
+                    axis_a2,
+                    axis_a3,
+                )
+            )
+            if isinstance(found, Status):
+                return Diagnosis(found, "", 0.0)
+            met, found_a1, found_a2, found_a3 = found
+        else:
+            met, found_a1, found_a2, found_a3 = (False, 0.0, 0.0, 0.0)
+        # q3: out of reach
+        if not (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
+            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2_2)
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
         """The test of the limits."""
@@ -437,9 +896,9 @@ class PosRRR(OffsetKinematics):
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        a1, a2, a3, a3_by_effective_q3_2, d3, d4 = k.a1, k.a2, k.a3, k.a3_by_effective_q3_2, k.d3, k.d4
-        d4_by_effective_q3_2, offset_a1, offset_a2 = k.d4_by_effective_q3_2, k.offset_a1, k.offset_a2
-        offset_a3, one_by_machine_scale = k.offset_a3, k.one_by_machine_scale
+        a1, a2, a3, d3, d4, offset_a1, offset_a2 = k.a1, k.a2, k.a3, k.d3, k.d4, k.offset_a1, k.offset_a2
+        offset_a3, one_by_effective_q3_2_2 = k.offset_a3, k.one_by_effective_q3_2_2
+        one_by_machine_scale = k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         q1 = DEGREE * (axis_a1 - offset_a1)
@@ -448,25 +907,25 @@ class PosRRR(OffsetKinematics):
         x_at_q2 = a1 * cos_q1
         q2 = DEGREE * (axis_a2 - offset_a2)
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + a2 * r11_at_q2
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
         q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
-        sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1 * cos_q23
-        x = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1 - d4 * r12_at_q23
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = -cos_q1 * sin_q23
+        x = x_at_q3 + a3 * r13_at_q23 + d3 * sin_q1 + d4 * r11_at_q23
         y_at_q2 = a1 * sin_q1
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + a2 * r21_at_q2
-        r21_at_q23 = -sin_q1 * sin_q23
-        r22_at_q23 = -cos_q23 * sin_q1
-        y = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1 - d4 * r22_at_q23
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = -sin_q1 * sin_q23
+        y = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23 - d3 * cos_q1
         margin_point_on_axis_1 = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        margin_elbow = d4_by_effective_q3_2 * cos_q3 - a3_by_effective_q3_2 * sin_q3
+        margin_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2_2
         return (margin_point_on_axis_1, margin_elbow)
 
     def _twist(self, axes: Reals) -> Matrix | Status:
@@ -483,21 +942,21 @@ class PosRRR(OffsetKinematics):
         y_at_q2 = a1 * sin_q1
         q2 = DEGREE * (axis_a2 - offset_a2)
         sin_q2 = sin(q2)
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + a2 * r21_at_q2
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
         q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
-        sin_q23 = sin(q2_plus_q3)
-        r21_at_q23 = -sin_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r22_at_q23 = -cos_q23 * sin_q1
-        y = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1 - d4 * r22_at_q23
+        r21_at_q23 = cos_q23 * sin_q1
+        sin_q23 = sin(q2_plus_q3)
+        r23_at_q23 = -sin_q1 * sin_q23
+        y = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23 - d3 * cos_q1
         x_at_q2 = a1 * cos_q1
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + a2 * r11_at_q2
-        r11_at_q23 = -cos_q1 * sin_q23
-        r12_at_q23 = -cos_q1 * cos_q23
-        x = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1 - d4 * r12_at_q23
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        r11_at_q23 = cos_q1 * cos_q23
+        r13_at_q23 = -cos_q1 * sin_q23
+        x = x_at_q3 + a3 * r13_at_q23 + d3 * sin_q1 + d4 * r11_at_q23
         cos_q2 = cos(q2)
         z_at_q3 = d1 + a2 * cos_q2
         z = z_at_q3 + a3 * cos_q23 + d4 * sin_q23
@@ -526,107 +985,57 @@ class PosRRR(OffsetKinematics):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        a1, a2, a2_squared, a2_times_shortest_link, a3 = k.a1, k.a2, k.a2_squared, k.a2_times_shortest_link, k.a3
-        d1, d3, d4, machine_scale_squared_times_plane = k.d1, k.d3, k.d4, k.machine_scale_squared_times_plane
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        a1, a2, a2_times_shortest_link, a3, d1, d3, d4 = k.a1, k.a2, k.a2_times_shortest_link, k.a3, k.d1, k.d3, k.d4
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-        twice_a2 = k.twice_a2
+        product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
+        single_a2, single_a3 = k.single_a2, k.single_a3
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
-        tool_z = d3 + point_y  # commanded point, in the frame of the last moving joint
+        tool_y = -d3 - point_y  # commanded point, in the frame of the last moving joint
         # Pythagoras: square of the distance ahead of the axis
-        ahead_squared_q1 = (distance_q1 + tool_z) * (distance_q1 - tool_z)
+        ahead_squared_q1 = (distance_q1 + tool_y) * (distance_q1 - tool_y)
         distance_q1_squared = distance_q1 * distance_q1
         # q1: out of reach
         if not (ahead_squared_q1 >= -1e-12 * distance_q1_squared - rounding_q1):
-            missing = abs(tool_z) - distance_q1
+            missing = abs(tool_y) - distance_q1
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        tool_x = a3 + point_x  # commanded point, in the frame of the last moving joint
-        tool_y = -d4 - point_z  # commanded point, in the frame of the last moving joint
-        effective_q3 = sqrt(tool_x * tool_x + tool_y * tool_y)  # effective length of the arm that q3 turns
+        tool_x = d4 + point_z  # commanded point, in the frame of the last moving joint
+        tool_z = a3 + point_x  # commanded point, in the frame of the last moving joint
+        effective_q3 = sqrt(tool_x * tool_x + tool_z * tool_z)  # effective length of the arm that q3 turns
         # q3: its effective length is too short
         if not (effective_q3 > a2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
-        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
         # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
-        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
-        if distance_q1 > machine_scale_times_free_angle:
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - tool_z * y) / distance_q1_squared
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + tool_z * x) / distance_q1_squared
-        else:
-            reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(reference_a1)
-            sin_q1_before_q1_for_q3 = sin(reference_a1)
-        # turned so that q3 has a solution
-        if ahead_squared_q1 > machine_scale_squared_times_plane:
-            ahead_q1 = ahead_q1_before_q1_for_q3
-            cos_q1 = cos_q1_before_q1_for_q3
-            sin_q1 = sin_q1_before_q1_for_q3
-        else:
-            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
-            # q3 has solutions where this is within its bound
-            value_q1_for_q3 = (
-                wrist_y_from_q1_squared
-                + wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
-                - a2_squared
-                - effective_q3 * effective_q3
-            )
-            size_q1_for_q3 = abs(effective_q3) * twice_a2
-            # turned so that q3 has a solution
-            if abs(value_q1_for_q3) <= size_q1_for_q3:
-                ahead_q1 = ahead_q1_before_q1_for_q3
-                cos_q1 = cos_q1_before_q1_for_q3
-                sin_q1 = sin_q1_before_q1_for_q3
-            else:
-                rate_q1_for_q3 = -2.0 * tool_z * wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
-                # turn of q1 to first order
-                if abs(rate_q1_for_q3) > 1e-12 * size_q1_for_q3:
-                    excess_q1_for_q3 = (
-                        value_q1_for_q3 - size_q1_for_q3 if value_q1_for_q3 > 0.0 else size_q1_for_q3 + value_q1_for_q3
-                    )
-                    turn_q1_for_q3 = -excess_q1_for_q3 / rate_q1_for_q3
-                else:
-                    turn_q1_for_q3 = 0.0
-                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3 * turn_q1_for_q3)
-                one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
-                turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                    cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
-                )
-                turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                    sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
-                )
-                # residual of the equation of q1
-                turned_cost_q1_for_q3 = abs(tool_z + turned_cos_q1_for_q3 * y - turned_sin_q1_for_q3 * x)
-                # turned so that q3 has a solution
-                if turned_cost_q1_for_q3 > machine_scale_times_rounding:
-                    ahead_q1 = ahead_q1_before_q1_for_q3
-                    cos_q1 = cos_q1_before_q1_for_q3
-                    sin_q1 = sin_q1_before_q1_for_q3
-                else:
-                    ahead_q1 = (ahead_q1_before_q1_for_q3 - tool_z * turn_q1_for_q3) * one_by_turned_length_q1_for_q3
-                    cos_q1 = turned_cos_q1_for_q3
-                    sin_q1 = turned_sin_q1_for_q3
+        ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
         wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
-        a2_plus_effective_q3 = a2 + effective_q3
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
-        a2_minus_effective_q3 = a2 - effective_q3
+        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_minus_reach + effective_q3) * (a2_plus_reach + effective_q3)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
+        one_plus_cos_q3 = (effective_q3 - a2_plus_reach) * (a2_minus_reach - effective_q3)
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        within_21 = -1.0 <= cos_swing_q3 <= 1.0
+        lost_digits_21 = (not within_21) and (abs(ahead_q1) <= product_in_lost_digits_19)
         # q3: out of reach
-        if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
-            missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
+        if not (lost_digits_21 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
+            missing = max(abs(a2 - effective_q3) - reach, -a2_minus_reach - effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+        if distance_q1 > machine_scale_times_free_angle:
+            cos_q1 = (ahead_q1 * x + tool_y * y) / distance_q1_squared
+            sin_q1 = (ahead_q1 * y - tool_y * x) / distance_q1_squared
+        else:
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_q1 = cos(reference_a1)
+            sin_q1 = sin(reference_a1)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
@@ -635,15 +1044,15 @@ class PosRRR(OffsetKinematics):
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = (tool_x * cos_swing_q3 + tool_y * sin_swing_q3) / effective_q3
-        sin_q3 = (tool_x * sin_swing_q3 - tool_y * cos_swing_q3) / effective_q3
+        cos_q3 = (tool_z * cos_swing_q3 - tool_x * sin_swing_q3) / effective_q3
+        sin_q3 = (tool_x * cos_swing_q3 + tool_z * sin_swing_q3) / effective_q3
         # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = tool_y * cos_q3 + tool_x * sin_q3
-            arm_across_q2 = a2 + tool_x * cos_q3 - tool_y * sin_q3
-            direction_x_q2 = arm_across_q2 * wrist_y_from_q1 - arm_along_q2 * wrist_x_from_q1
-            direction_y_q2 = -arm_across_q2 * wrist_x_from_q1 - arm_along_q2 * wrist_y_from_q1
+            arm_along_q2 = tool_x * cos_q3 - tool_z * sin_q3
+            arm_across_q2 = a2 + tool_z * cos_q3 + tool_x * sin_q3
+            direction_x_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+            direction_y_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_q2 = cos(reference_a2)
@@ -658,7 +1067,39 @@ class PosRRR(OffsetKinematics):
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        return (axis_a1, axis_a2, axis_a3)
+        # digits were lost: the pose is met by steps on the closure
+        if lost_digits_21:
+            found = self._meet_point(
+                (
+                    point_x,
+                    point_y,
+                    point_z,
+                    ref_a1,
+                    ref_a2,
+                    ref_a3,
+                    sigma_arm,
+                    sigma_elbow,
+                    turn_a1,
+                    turn_a2,
+                    turn_a3,
+                    x,
+                    y,
+                    z,
+                    axis_a1,
+                    axis_a2,
+                    axis_a3,
+                )
+            )
+            if isinstance(found, Status):
+                return Diagnosis(found, "", 0.0)
+            met, found_a1, found_a2, found_a3 = found
+        else:
+            met, found_a1, found_a2, found_a3 = (False, 0.0, 0.0, 0.0)
+        # q3: out of reach
+        if not (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
+            missing = max(abs(a2 - effective_q3) - reach, -a2_minus_reach - effective_q3)
+            return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 
     def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
@@ -675,41 +1116,45 @@ class PosRRR(OffsetKinematics):
         q2 = DEGREE * (axis_a2 - offset_a2)
         q3 = DEGREE * (axis_a3 - offset_a3)
         q2_plus_q3 = q2 + q3
-        sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1 * cos_q23
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = -cos_q1 * sin_q23
         x_at_q2 = a1 * cos_q1
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + a2 * r11_at_q2
-        flange_x = x_at_q3 + a3 * r11_at_q23 + d3 * sin_q1 - d4 * r12_at_q23
-        x = flange_x + point_x * r11_at_q23 + point_y * sin_q1 - point_z * r12_at_q23
-        r21_at_q23 = -sin_q1 * sin_q23
-        r22_at_q23 = -cos_q23 * sin_q1
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        flange_x = x_at_q3 + a3 * r13_at_q23 + d3 * sin_q1 + d4 * r11_at_q23
+        x = flange_x + point_x * r13_at_q23 + point_y * sin_q1 + point_z * r11_at_q23
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = -sin_q1 * sin_q23
         y_at_q2 = a1 * sin_q1
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + a2 * r21_at_q2
-        flange_y = y_at_q3 + a3 * r21_at_q23 - d3 * cos_q1 - d4 * r22_at_q23
-        y = flange_y + point_x * r21_at_q23 - point_y * cos_q1 - point_z * r22_at_q23
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        flange_y = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23 - d3 * cos_q1
+        y = flange_y + point_x * r23_at_q23 + point_z * r21_at_q23 - point_y * cos_q1
         branch_arm = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        tool_x = a3 + point_x  # commanded point, in the frame of the last moving joint
-        tool_y = -d4 - point_z  # commanded point, in the frame of the last moving joint
-        branch_elbow = -one_by_machine_scale * (tool_y * cos_q3 + tool_x * sin_q3)
+        tool_x = d4 + point_z  # commanded point, in the frame of the last moving joint
+        tool_z = a3 + point_x  # commanded point, in the frame of the last moving joint
+        branch_elbow = one_by_machine_scale * (tool_x * cos_q3 - tool_z * sin_q3)
         return (branch_arm, branch_elbow)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
         solve = self._all_trusted  # a separate statement is faster
-        return solve(frame, reference) or super().branches(frame, reference)  # near a fold, one branch after the other
+        return solve(frame, reference) or super().branches(
+            frame, reference
+        )  # where digits may be lost, one branch after the other
 
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
         found = solve(frame, signs, reference)
-        return super().branch(frame, signs, reference) if found == () else found  # near a fold, by the complete program
+        return (
+            super().branch(frame, signs, reference) if found == () else found
+        )  # where digits may be lost, by the complete program
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         return self._finished(self._all_trusted, self._finish, position, rotation, reference)

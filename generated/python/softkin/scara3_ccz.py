@@ -86,7 +86,7 @@ class Scara3CCZ(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_CCZ"
-    KEY = "scara3_ccz df3704f0f3a81309"
+    KEY = "scara3_ccz d8086eeb03984c8a"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

@@ -81,7 +81,7 @@ class TableTableAC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_TableTable_AC"
-    KEY = "tabletable_ac 21ee2856e0099ee9"
+    KEY = "tabletable_ac e3ecabb1b41b5a2c"
     AXES = (
         Axis(
             name="X",
@@ -308,12 +308,12 @@ class TableTableAC(Mechanism):
         x_from_c = x * cos_c - y * sin_c
         axis_x = offset_x + x_from_c
         c_radius_of_a = sigma_tilt * radius_c
+        z_from_c = pivot_z + z
         y_from_c = y * cos_c + x * sin_c
         pivot_y_plus_y_from_c = pivot_y + y_from_c
-        pivot_z_plus_z = pivot_z + z
-        y_from_c_a = pivot_y_plus_y_from_c * r33 - c_radius_of_a * pivot_z_plus_z
+        y_from_c_a = pivot_y_plus_y_from_c * r33 - c_radius_of_a * z_from_c
         axis_y = offset_y + y_from_c_a
-        z_from_c_a = c_radius_of_a * pivot_y_plus_y_from_c + pivot_z_plus_z * r33
+        z_from_c_a = c_radius_of_a * pivot_y_plus_y_from_c + r33 * z_from_c
         joint_z = tool_length + z_from_c_a  # joint_z from the z_from_c_a equation, which is linear in it
         axis_z = joint_z + offset_z
         open_a = mid_a if single_a else ref_a  # A: without a commanded turn, the value nearest to this

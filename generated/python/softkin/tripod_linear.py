@@ -22,7 +22,7 @@ Singularities:
 
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
-    forward: 49 additions, 63 multiplications, 1 divisions, 1 square roots, 0 sines
+    forward: 49 additions, 65 multiplications, 1 divisions, 1 square roots, 0 sines
     inverse: 55 additions, 53 multiplications, 3 divisions, 5 square roots, 2 sines
     inverse, all 8 branches: 232 additions, 186 multiplications, 24 divisions, 22 square roots, 16 sines
 
@@ -89,9 +89,6 @@ class Constants:
         sin_rail_angle_times_root_of_3 = root_of_3 * sin_rail_angle
         twice_cos_rail_angle = 2.0 * cos_rail_angle
         half_by_arm_length = 0.5 / arm_length
-        sin_rail_angle_times_half_by_arm_length = 0.5 * sin_rail_angle / arm_length
-        cos_rail_angle_by_arm_length = cos_rail_angle / arm_length
-        quotient_in_branch_carriage_2 = 0.5 * root_of_3 * sin_rail_angle / arm_length
         product_in_radicand_a1 = 2.0 * cos_rail_angle * sin_rail_angle
         cos_rail_angle_squared = cos_rail_angle * cos_rail_angle
         product_in_radicand_a2 = root_of_3 * cos_rail_angle * sin_rail_angle
@@ -118,9 +115,6 @@ class Constants:
         self.half_sin_rail_angle, self.sum_in_pivot_2_x = half_sin_rail_angle, sum_in_pivot_2_x
         self.one_by_arm_length, self.sin_rail_angle_times_root_of_3 = one_by_arm_length, sin_rail_angle_times_root_of_3
         self.twice_cos_rail_angle, self.half_by_arm_length = twice_cos_rail_angle, half_by_arm_length
-        self.sin_rail_angle_times_half_by_arm_length = sin_rail_angle_times_half_by_arm_length
-        self.cos_rail_angle_by_arm_length = cos_rail_angle_by_arm_length
-        self.quotient_in_branch_carriage_2 = quotient_in_branch_carriage_2
         self.product_in_radicand_a1, self.cos_rail_angle_squared = product_in_radicand_a1, cos_rail_angle_squared
         self.product_in_radicand_a2, self.product_in_radicand_a2_2 = product_in_radicand_a2, product_in_radicand_a2_2
         self.cos_rail_angle_times_sin_rail_angle = cos_rail_angle_times_sin_rail_angle
@@ -142,7 +136,7 @@ class TripodLinear(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Linear"
-    KEY = "tripod_linear 0f65a4f87c0ced7d"
+    KEY = "tripod_linear f326c6609f583ee7"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1; positive goes down its rail", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2; positive goes down its rail", multi_turn=False),
@@ -285,13 +279,13 @@ class TripodLinear(OffsetKinematics):
         k = self._constants
         arm_length_squared = k.arm_length_squared
         arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
-        cos_rail_angle, cos_rail_angle_by_arm_length = k.cos_rail_angle, k.cos_rail_angle_by_arm_length
+        cos_rail_angle, half_by_arm_length = k.cos_rail_angle, k.half_by_arm_length
         half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
         offset_a1, offset_a2, offset_a3, one_by_arm_length = k.offset_a1, k.offset_a2, k.offset_a3, k.one_by_arm_length
         product_in_normal_divisor, product_in_pivot_2_y = k.product_in_normal_divisor, k.product_in_pivot_2_y
-        quotient_in_branch_carriage_2, sin_rail_angle = k.quotient_in_branch_carriage_2, k.sin_rail_angle
-        sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
+        sin_rail_angle, sin_rail_angle_times_root_of_3 = k.sin_rail_angle, k.sin_rail_angle_times_root_of_3
         sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        twice_cos_rail_angle = k.twice_cos_rail_angle
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
@@ -353,10 +347,14 @@ class TripodLinear(OffsetKinematics):
         branch_carriage_1 = (a1 + z * cos_rail_angle + span_1_x * sin_rail_angle) * one_by_arm_length
         span_2_y = y - sum_in_pivot_2_y
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
-        sum_in_branch_carriage_2 = span_2_x * sin_rail_angle_times_half_by_arm_length - z * cos_rail_angle_by_arm_length
-        branch_carriage_2 = a2 * one_by_arm_length + quotient_in_branch_carriage_2 * span_2_y - sum_in_branch_carriage_2
+        sum_in_branch_carriage_2 = twice_cos_rail_angle * z - span_2_x * sin_rail_angle
+        branch_carriage_2 = (
+            2.0 * a2 + sum_in_branch_carriage_2 + span_2_y * sin_rail_angle_times_root_of_3
+        ) * half_by_arm_length
         span_3_y = sum_in_pivot_2_y + y
-        branch_carriage_3 = a3 * one_by_arm_length - sum_in_branch_carriage_2 - quotient_in_branch_carriage_2 * span_3_y
+        branch_carriage_3 = (
+            2.0 * a3 + sum_in_branch_carriage_2 - span_3_y * sin_rail_angle_times_root_of_3
+        ) * half_by_arm_length
         return (
             (x, y, z),
             ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
@@ -559,14 +557,13 @@ class TripodLinear(OffsetKinematics):
         k = self._constants
         arm_length_squared = k.arm_length_squared
         arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
-        cos_rail_angle, cos_rail_angle_by_arm_length = k.cos_rail_angle, k.cos_rail_angle_by_arm_length
+        cos_rail_angle, half_by_arm_length = k.cos_rail_angle, k.half_by_arm_length
         half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
         offset_a1, offset_a2, offset_a3, one_by_arm_length = k.offset_a1, k.offset_a2, k.offset_a3, k.one_by_arm_length
         product_in_normal_divisor, product_in_pivot_2_y = k.product_in_normal_divisor, k.product_in_pivot_2_y
-        quotient_in_branch_carriage_2 = k.quotient_in_branch_carriage_2
         quotient_in_margin_rods_coplanar, sin_rail_angle = k.quotient_in_margin_rods_coplanar, k.sin_rail_angle
-        sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
-        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        sin_rail_angle_times_root_of_3, sum_in_pivot_2_x = k.sin_rail_angle_times_root_of_3, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y, twice_cos_rail_angle = k.sum_in_pivot_2_y, k.twice_cos_rail_angle
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
@@ -628,10 +625,14 @@ class TripodLinear(OffsetKinematics):
         y = foot_y + height_by_normal * normal_y
         span_2_y = y - sum_in_pivot_2_y
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
-        sum_in_margin_square_2 = span_2_x * sin_rail_angle_times_half_by_arm_length - z * cos_rail_angle_by_arm_length
-        margin_square_2 = a2 * one_by_arm_length + quotient_in_branch_carriage_2 * span_2_y - sum_in_margin_square_2
+        sum_in_margin_square_2 = twice_cos_rail_angle * z - span_2_x * sin_rail_angle
+        margin_square_2 = (
+            2.0 * a2 + sum_in_margin_square_2 + span_2_y * sin_rail_angle_times_root_of_3
+        ) * half_by_arm_length
         span_3_y = sum_in_pivot_2_y + y
-        margin_square_3 = a3 * one_by_arm_length - sum_in_margin_square_2 - quotient_in_branch_carriage_2 * span_3_y
+        margin_square_3 = (
+            2.0 * a3 + sum_in_margin_square_2 - span_3_y * sin_rail_angle_times_root_of_3
+        ) * half_by_arm_length
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
         rod_2_x = x - pivot_2_x
@@ -970,13 +971,13 @@ class TripodLinear(OffsetKinematics):
         k = self._constants
         arm_length_squared = k.arm_length_squared
         arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
-        cos_rail_angle, cos_rail_angle_by_arm_length = k.cos_rail_angle, k.cos_rail_angle_by_arm_length
+        cos_rail_angle, half_by_arm_length = k.cos_rail_angle, k.half_by_arm_length
         half_sin_rail_angle, inner_radius_minus_outer_radius = k.half_sin_rail_angle, k.inner_radius_minus_outer_radius
         offset_a1, offset_a2, offset_a3, one_by_arm_length = k.offset_a1, k.offset_a2, k.offset_a3, k.one_by_arm_length
         product_in_normal_divisor, product_in_pivot_2_y = k.product_in_normal_divisor, k.product_in_pivot_2_y
-        quotient_in_branch_carriage_2, sin_rail_angle = k.quotient_in_branch_carriage_2, k.sin_rail_angle
-        sin_rail_angle_times_half_by_arm_length = k.sin_rail_angle_times_half_by_arm_length
+        sin_rail_angle, sin_rail_angle_times_root_of_3 = k.sin_rail_angle, k.sin_rail_angle_times_root_of_3
         sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        twice_cos_rail_angle = k.twice_cos_rail_angle
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
@@ -1038,12 +1039,14 @@ class TripodLinear(OffsetKinematics):
         flange_y = foot_y + height_by_normal * normal_y
         span_2_y = flange_y - sum_in_pivot_2_y
         span_2_x = flange_x - sum_in_pivot_2_x  # rod 2: known part of its vector
-        sum_in_branch_carriage_2 = (
-            span_2_x * sin_rail_angle_times_half_by_arm_length - flange_z * cos_rail_angle_by_arm_length
-        )
-        branch_carriage_2 = a2 * one_by_arm_length + quotient_in_branch_carriage_2 * span_2_y - sum_in_branch_carriage_2
+        sum_in_branch_carriage_2 = flange_z * twice_cos_rail_angle - span_2_x * sin_rail_angle
+        branch_carriage_2 = (
+            2.0 * a2 + sum_in_branch_carriage_2 + span_2_y * sin_rail_angle_times_root_of_3
+        ) * half_by_arm_length
         span_3_y = flange_y + sum_in_pivot_2_y
-        branch_carriage_3 = a3 * one_by_arm_length - sum_in_branch_carriage_2 - quotient_in_branch_carriage_2 * span_3_y
+        branch_carriage_3 = (
+            2.0 * a3 + sum_in_branch_carriage_2 - span_3_y * sin_rail_angle_times_root_of_3
+        ) * half_by_arm_length
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:

@@ -215,7 +215,7 @@ class TripodP3Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_P3Z"
-    KEY = "tripod_p3z 6b6690d53aabf89e"
+    KEY = "tripod_p3z f8c566bddb374601"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along Z, up", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along Z, up", multi_turn=False),

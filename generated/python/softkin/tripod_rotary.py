@@ -144,7 +144,7 @@ class TripodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
-    KEY = "tripod_rotary cc70907249641b7e"
+    KEY = "tripod_rotary b11fbcca5f737ee9"
     AXES = (
         Axis(
             name="A1",

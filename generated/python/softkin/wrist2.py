@@ -88,7 +88,7 @@ class Wrist2(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist2"
-    KEY = "wrist2 7ebb3b77cdc6cf93"
+    KEY = "wrist2 0a2e30cbe2ad3291"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Yaw about Z", multi_turn=True),
         Axis(
@@ -208,11 +208,11 @@ class Wrist2(OrientationKinematics):
         sin_b = sin(b)
         r31_at_b = -tool_side * sin_b
         r13_at_b = -r31_at_b * cos_a
-        x_at_b = roll_axis_offset_x * cos_a - roll_axis_offset_y * sin_a
-        x = x_at_b + r13_at_b * tool_length_times_tool_side
+        x_at_b = roll_axis_offset_x * cos_a
+        x = x_at_b + r13_at_b * tool_length_times_tool_side - roll_axis_offset_y * sin_a
         r23_at_b = -r31_at_b * sin_a
-        y_at_b = roll_axis_offset_y * cos_a + roll_axis_offset_x * sin_a
-        y = y_at_b + r23_at_b * tool_length_times_tool_side
+        y_at_b = roll_axis_offset_x * sin_a
+        y = y_at_b + roll_axis_offset_y * cos_a + r23_at_b * tool_length_times_tool_side
         cos_b = cos(b)
         z = roll_axis_offset_z + tool_length_times_tool_side * cos_b
         r11_at_b = cos_a * cos_b
@@ -339,18 +339,18 @@ class Wrist2(OrientationKinematics):
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE * (axis_a - offset_a)
-        sin_a = sin(a)
         cos_a = cos(a)
-        y_at_b = roll_axis_offset_y * cos_a + roll_axis_offset_x * sin_a
+        sin_a = sin(a)
+        y_at_b = roll_axis_offset_x * sin_a
         sin_a_times_tool_side = tool_side * sin_a
         b = DEGREE * (axis_b - offset_b)
         sin_b = sin(b)
         r23_at_b = sin_a_times_tool_side * sin_b
-        y = y_at_b + r23_at_b * tool_length_times_tool_side
-        x_at_b = roll_axis_offset_x * cos_a - roll_axis_offset_y * sin_a
+        y = y_at_b + roll_axis_offset_y * cos_a + r23_at_b * tool_length_times_tool_side
+        x_at_b = roll_axis_offset_x * cos_a
         cos_a_times_tool_side = tool_side * cos_a
         r13_at_b = cos_a_times_tool_side * sin_b
-        x = x_at_b + r13_at_b * tool_length_times_tool_side
+        x = x_at_b + r13_at_b * tool_length_times_tool_side - roll_axis_offset_y * sin_a
         cos_b = cos(b)
         z = roll_axis_offset_z + tool_length_times_tool_side * cos_b
         z_minus_roll_axis_offset_z = z - roll_axis_offset_z

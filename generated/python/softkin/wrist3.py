@@ -74,7 +74,7 @@ class Wrist3(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist3"
-    KEY = "wrist3 9f89bd3a09fe5c70"
+    KEY = "wrist3 86d21c5502e78ab5"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Turn about Z", multi_turn=True),
         Axis(name="B", kind="rotary", unit="deg", meaning="Turn about the turned -Y", multi_turn=True),

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 120532
+    VALUES = 120538
 
     def try_joint(self, given: Values, status: Codes) -> Values:
         """The residual of the closure at a trial, its slope, and the angles that may turn fast."""
@@ -436,9 +436,10 @@ class ArrayPrograms(Programs):
             sin_q2 = sin(q2)
             r13_at_q2 = cos_q1 * sin_q2
             x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
-            x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d4 * r11_at_q23
+            x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
+            x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
             r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-            x_at_q6 = x_at_q4 + k.j6_offset_x * r11_at_q5
+            x_at_q6 = x_at_q5 + k.j6_offset_x * r11_at_q5
             x = x_at_q6 + k.d6 * r13_at_q5
             error_1 = (goal_x - x) * k.one_by_machine_scale
             r21_at_q23 = cos_q23 * sin_q1
@@ -448,18 +449,20 @@ class ArrayPrograms(Programs):
             y_at_q2 = k.a1 * sin_q1
             r23_at_q2 = sin_q1 * sin_q2
             y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
-            y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23
+            y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
+            y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
             r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-            y_at_q6 = y_at_q4 + k.j6_offset_x * r21_at_q5
+            y_at_q6 = y_at_q5 + k.j6_offset_x * r21_at_q5
             y = y_at_q6 + k.d6 * r23_at_q5
             error_2 = (goal_y - y) * k.one_by_machine_scale
             r33_at_q4 = cos_q23 * cos_q4
             r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
             cos_q2 = cos(q2)
             z_at_q3 = k.d1 + k.a2 * cos_q2
-            z_at_q4 = z_at_q3 + k.a3 * cos_q23 - k.d4 * sin_q23
+            z_at_q4 = z_at_q3 + k.a3 * cos_q23
+            z_at_q5 = z_at_q4 - k.d4 * sin_q23
             r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-            z_at_q6 = z_at_q4 + k.j6_offset_x * r31_at_q5
+            z_at_q6 = z_at_q5 + k.j6_offset_x * r31_at_q5
             z = z_at_q6 + k.d6 * r33_at_q5
             error_3 = (goal_z - z) * k.one_by_machine_scale
             r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
@@ -529,7 +532,9 @@ class ArrayPrograms(Programs):
             z_minus_z_at_q4 = z - z_at_q4
             y_minus_y_at_q4 = y - y_at_q4
             rate_1_4 = k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
-            rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4)
+            z_minus_z_at_q5 = z - z_at_q5
+            y_minus_y_at_q5 = y - y_at_q5
+            rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
             z_minus_z_at_q6 = z - z_at_q6
             y_minus_y_at_q6 = y - y_at_q6
             rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
@@ -547,7 +552,8 @@ class ArrayPrograms(Programs):
             rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
             x_minus_x_at_q4 = x - x_at_q4
             rate_2_4 = -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
-            rate_2_5 = (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * k.one_by_machine_scale
+            x_minus_x_at_q5 = x - x_at_q5
+            rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
             x_minus_x_at_q6 = x - x_at_q6
             rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
             product_1_2 = (
@@ -561,7 +567,7 @@ class ArrayPrograms(Programs):
             rate_3_2 = k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
             rate_3_3 = k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
             rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
-            rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4)
+            rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
             rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
             product_1_3 = (
                 rate_1_2 * rate_3_2
@@ -831,9 +837,10 @@ class ArrayPrograms(Programs):
         sin_q2 = sin(q2)
         r13_at_q2 = cos_q1 * sin_q2
         x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
-        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d4 * r11_at_q23
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
         r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-        x_at_q6 = x_at_q4 + k.j6_offset_x * r11_at_q5
+        x_at_q6 = x_at_q5 + k.j6_offset_x * r11_at_q5
         d6_times_r13_at_q5 = k.d6 * r13_at_q5
         x = d6_times_r13_at_q5 + x_at_q6
         r21_at_q23 = cos_q23 * sin_q1
@@ -843,9 +850,10 @@ class ArrayPrograms(Programs):
         y_at_q2 = k.a1 * sin_q1
         r23_at_q2 = sin_q1 * sin_q2
         y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
-        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
         r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-        y_at_q6 = y_at_q4 + k.j6_offset_x * r21_at_q5
+        y_at_q6 = y_at_q5 + k.j6_offset_x * r21_at_q5
         d6_times_r23_at_q5 = k.d6 * r23_at_q5
         y = d6_times_r23_at_q5 + y_at_q6
         r33_at_q4 = cos_q23 * cos_q4
@@ -855,17 +863,21 @@ class ArrayPrograms(Programs):
         r32_at_q4 = cos_q23 * sin_q4
         cos_q2 = cos(q2)
         z_at_q3 = k.d1 + k.a2 * cos_q2
-        z_at_q4 = z_at_q3 + k.a3 * cos_q23 - k.d4 * sin_q23
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23
+        z_at_q5 = z_at_q4 - k.d4 * sin_q23
         r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-        z_at_q6 = z_at_q4 + k.j6_offset_x * r31_at_q5
+        z_at_q6 = z_at_q5 + k.j6_offset_x * r31_at_q5
         z = z_at_q6 + k.d6 * r33_at_q5
         z_minus_d1 = z - k.d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
         y_minus_y_at_q4 = y - y_at_q4
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
         z_minus_z_at_q6 = z - z_at_q6
         y_minus_y_at_q6 = y - y_at_q6
         x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q5 = x - x_at_q5
         x_minus_x_at_q6 = x - x_at_q6
         cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
         sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
@@ -877,7 +889,7 @@ class ArrayPrograms(Programs):
                     z_minus_d1 * cos_q1_times_one_by_machine_scale,
                     z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale,
                     k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23),
-                    k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4),
+                    k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5),
                     k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6),
                 ),
                 (
@@ -885,7 +897,7 @@ class ArrayPrograms(Programs):
                     z_minus_d1 * sin_q1_times_one_by_machine_scale,
                     z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale,
                     -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23),
-                    (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * k.one_by_machine_scale,
+                    (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale,
                     (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale,
                 ),
                 (
@@ -893,7 +905,7 @@ class ArrayPrograms(Programs):
                     k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1),
                     k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1),
                     k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4),
-                    k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4),
+                    k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5),
                     k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6),
                 ),
                 (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
@@ -915,7 +927,7 @@ class ArrayPrograms(Programs):
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
-        margin_elbow_closed = k.a3_by_effective_q3_tried * sin_q3_closed + k.d4_by_effective_q3_tried * cos_q3_closed
+        margin_elbow_closed = (k.a3 * sin_q3_closed + k.d4 * cos_q3_closed) * k.one_by_effective_q3_tried
         branch_shoulder: Real
         branch_wrist: Real
         branch_crossing: Real
@@ -1210,27 +1222,33 @@ class ArrayPrograms(Programs):
         r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
         r33_at_q4 = cos_q23 * cos_q4
         r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
-        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d4 * r11_at_q23
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
         r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-        x_at_q6 = x_at_q4 + k.j6_offset_x * r11_at_q5
+        x_at_q6 = x_at_q5 + k.j6_offset_x * r11_at_q5
         x = x_at_q6 + k.d6 * r13_at_q5
-        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
         r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-        y_at_q6 = y_at_q4 + k.j6_offset_x * r21_at_q5
+        y_at_q6 = y_at_q5 + k.j6_offset_x * r21_at_q5
         y = y_at_q6 + k.d6 * r23_at_q5
         cos_q2 = cos(q2)
         z_at_q3 = k.d1 + k.a2 * cos_q2
-        z_at_q4 = z_at_q3 + k.a3 * cos_q23 - k.d4 * sin_q23
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23
+        z_at_q5 = z_at_q4 - k.d4 * sin_q23
         r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-        z_at_q6 = z_at_q4 + k.j6_offset_x * r31_at_q5
+        z_at_q6 = z_at_q5 + k.j6_offset_x * r31_at_q5
         z = z_at_q6 + k.d6 * r33_at_q5
         z_minus_d1 = z - k.d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
         y_minus_y_at_q4 = y - y_at_q4
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
         z_minus_z_at_q6 = z - z_at_q6
         y_minus_y_at_q6 = y - y_at_q6
         x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q5 = x - x_at_q5
         x_minus_x_at_q6 = x - x_at_q6
         cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
         sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
@@ -1242,7 +1260,7 @@ class ArrayPrograms(Programs):
                     z_minus_d1 * cos_q1_times_one_by_machine_scale,
                     z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale,
                     k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23),
-                    k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4),
+                    k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5),
                     k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6),
                 ),
                 (
@@ -1250,7 +1268,7 @@ class ArrayPrograms(Programs):
                     z_minus_d1 * sin_q1_times_one_by_machine_scale,
                     z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale,
                     -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23),
-                    (r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4) * k.one_by_machine_scale,
+                    (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale,
                     (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale,
                 ),
                 (
@@ -1258,7 +1276,7 @@ class ArrayPrograms(Programs):
                     k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1),
                     k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1),
                     k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4),
-                    k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4),
+                    k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5),
                     k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6),
                 ),
                 (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
@@ -1299,9 +1317,10 @@ class ArrayPrograms(Programs):
         sin_q2 = sin(q2)
         r23_at_q2 = sin_q1 * sin_q2
         y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
-        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
         r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-        y_at_q6 = y_at_q4 + k.j6_offset_x * r21_at_q5
+        y_at_q6 = y_at_q5 + k.j6_offset_x * r21_at_q5
         y = y_at_q6 + k.d6 * r23_at_q5
         r33_at_q4 = cos_q23 * cos_q4
         r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
@@ -1314,24 +1333,29 @@ class ArrayPrograms(Programs):
         x_at_q2 = k.a1 * cos_q1
         r13_at_q2 = cos_q1 * sin_q2
         x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
-        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d4 * r11_at_q23
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
         r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-        x_at_q6 = x_at_q4 + k.j6_offset_x * r11_at_q5
+        x_at_q6 = x_at_q5 + k.j6_offset_x * r11_at_q5
         x = x_at_q6 + k.d6 * r13_at_q5
         r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
         cos_q2 = cos(q2)
         z_at_q3 = k.d1 + k.a2 * cos_q2
-        z_at_q4 = z_at_q3 + k.a3 * cos_q23 - k.d4 * sin_q23
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23
+        z_at_q5 = z_at_q4 - k.d4 * sin_q23
         r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-        z_at_q6 = z_at_q4 + k.j6_offset_x * r31_at_q5
+        z_at_q6 = z_at_q5 + k.j6_offset_x * r31_at_q5
         z = z_at_q6 + k.d6 * r33_at_q5
         z_minus_d1 = z - k.d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
         y_minus_y_at_q4 = y - y_at_q4
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
         z_minus_z_at_q6 = z - z_at_q6
         y_minus_y_at_q6 = y - y_at_q6
         x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q5 = x - x_at_q5
         x_minus_x_at_q6 = x - x_at_q6
         return (
             (
@@ -1339,7 +1363,7 @@ class ArrayPrograms(Programs):
                 z_minus_d1 * cos_q1,
                 z_minus_z_at_q3 * cos_q1,
                 r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23,
-                r22_at_q4 * z_minus_z_at_q4 - r32_at_q4 * y_minus_y_at_q4,
+                r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5,
                 r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6,
             ),
             (
@@ -1347,7 +1371,7 @@ class ArrayPrograms(Programs):
                 z_minus_d1 * sin_q1,
                 z_minus_z_at_q3 * sin_q1,
                 -r11_at_q23 * z_minus_z_at_q4 - x_minus_x_at_q4 * sin_q23,
-                r32_at_q4 * x_minus_x_at_q4 - r12_at_q4 * z_minus_z_at_q4,
+                r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5,
                 r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6,
             ),
             (
@@ -1355,7 +1379,7 @@ class ArrayPrograms(Programs):
                 (x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1,
                 (x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1,
                 r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4,
-                r12_at_q4 * y_minus_y_at_q4 - r22_at_q4 * x_minus_x_at_q4,
+                r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5,
                 r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6,
             ),
             (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),

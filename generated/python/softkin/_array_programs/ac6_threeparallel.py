@@ -9,24 +9,29 @@ from softkin._array import (
     DEGREE,
     Programs,
     absolute,
+    advanced,
     atan2,
     cos,
     degrees,
     elsewhere,
-    nearest_on_arc,
+    initial,
     nearest_period,
+    opposite,
     passed,
     reasonable,
     require,
     root,
+    run_where,
     select,
+    settled,
     sin,
+    solve,
     sqrt,
 )
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector, Whole
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Values, Vector
     from softkin.ac6_threeparallel import Constants
 
 
@@ -34,7 +39,486 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 271
+    VALUES = 418
+
+    def meet_pose(self, given: Values, status: Codes) -> Values:
+        """The axes that meet a pose, found by steps on the closure, and whether they do."""
+        (
+            given_ref_a1,
+            given_ref_a2,
+            given_ref_a3,
+            given_ref_a4,
+            given_ref_a5,
+            given_ref_a6,
+            given_sigma_elbow,
+            given_sigma_shoulder,
+            given_sigma_wrist,
+            given_turn_a1,
+            given_turn_a2,
+            given_turn_a3,
+            given_turn_a4,
+            given_turn_a5,
+            given_turn_a6,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            start_a1,
+            start_a2,
+            start_a3,
+            start_a4,
+            start_a5,
+            start_a6,
+        ) = given
+        k = self.constants
+        closed_wrist_x = goal_x - k.d6 * goal_r13  # wrist centre: the last joints do not move this point
+        closed_wrist_y = goal_y - k.d6 * goal_r23
+        # distance of the point from the axis of q1
+        closed_distance_q1 = sqrt(closed_wrist_x * closed_wrist_x + closed_wrist_y * closed_wrist_y)
+        # Pythagoras: square of the distance ahead of the axis
+        closed_ahead_squared_q1 = (closed_distance_q1 + k.d4) * (closed_distance_q1 - k.d4)
+        # how far ahead of the axis the point is; negative: behind it
+        closed_ahead_q1 = -root(closed_ahead_squared_q1) * given_sigma_shoulder
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
+        closed_near_a1 = select(
+            given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
+        )
+        closed_wrist_z = goal_z - k.d6 * goal_r33
+        # A2: without a commanded turn, the value nearest to this
+        closed_open_a2 = select(k.single_a2, k.mid_a2, given_ref_a2)
+        closed_near_a2 = select(
+            given_turn_a2 != 0, 360.0 * select(given_turn_a2 > 0, given_turn_a2 - 1, given_turn_a2), closed_open_a2
+        )
+        # A3: without a commanded turn, the value nearest to this
+        closed_open_a3 = select(k.single_a3, k.mid_a3, given_ref_a3)
+        closed_near_a3 = select(
+            given_turn_a3 != 0, 360.0 * select(given_turn_a3 > 0, given_turn_a3 - 1, given_turn_a3), closed_open_a3
+        )
+        # A4: without a commanded turn, the value nearest to this
+        closed_open_a4 = select(k.single_a4, k.mid_a4, given_ref_a4)
+        closed_near_a4 = select(
+            given_turn_a4 != 0, 360.0 * select(given_turn_a4 > 0, given_turn_a4 - 1, given_turn_a4), closed_open_a4
+        )
+        # A5: without a commanded turn, the value nearest to this
+        closed_open_a5 = select(k.single_a5, k.mid_a5, given_ref_a5)
+        closed_near_a5 = select(
+            given_turn_a5 != 0, 360.0 * select(given_turn_a5 > 0, given_turn_a5 - 1, given_turn_a5), closed_open_a5
+        )
+        # A6: without a commanded turn, the value nearest to this
+        closed_open_a6 = select(k.single_a6, k.mid_a6, given_ref_a6)
+        closed_near_a6 = select(
+            given_turn_a6 != 0, 360.0 * select(given_turn_a6 > 0, given_turn_a6 - 1, given_turn_a6), closed_open_a6
+        )
+        # steps of damped least squares on the closure, from one start after the other
+        tried_a1, tried_a2, tried_a3, tried_a4, tried_a5, tried_a6, passes_left, attempt, error_before = initial(
+            start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 40, 0, 9.0
+        )
+        for _ in range(164):
+            q1 = (tried_a1 - k.offset_a1) * DEGREE
+            sin_q1 = sin(q1)
+            cos_q1 = cos(q1)
+            q2 = (tried_a2 - k.offset_a2) * DEGREE
+            q3 = (tried_a3 - k.offset_a3) * DEGREE
+            q4 = (tried_a4 - k.offset_a4) * DEGREE
+            q2_plus_q3 = q2 + q3
+            q2_plus_q3_plus_q4 = q2_plus_q3 + q4
+            cos_q234 = cos(q2_plus_q3_plus_q4)
+            r11_at_q234 = cos_q1 * cos_q234
+            q5 = (tried_a5 - k.offset_a5) * DEGREE
+            sin_q5 = sin(q5)
+            cos_q5 = cos(q5)
+            r12_at_q5 = r11_at_q234 * sin_q5 - cos_q5 * sin_q1
+            sin_q234 = sin(q2_plus_q3_plus_q4)
+            r13_at_q234 = -cos_q1 * sin_q234
+            cos_q2 = cos(q2)
+            r11_at_q2 = cos_q1 * cos_q2
+            x_at_q3 = k.a2 * r11_at_q2
+            cos_q23 = cos(q2_plus_q3)
+            r11_at_q23 = cos_q1 * cos_q23
+            x_at_q4 = x_at_q3 + k.a3 * r11_at_q23
+            x_at_q5 = x_at_q4 + k.d4 * sin_q1
+            x_at_q6 = x_at_q5 - k.d5 * r13_at_q234
+            d6_times_r12_at_q5 = k.d6 * r12_at_q5
+            x = x_at_q6 - d6_times_r12_at_q5
+            wrist_x = d6_times_r12_at_q5 + x  # wrist centre: the last joints do not move this point
+            r21_at_q234 = cos_q234 * sin_q1
+            r22_at_q5 = cos_q1 * cos_q5 + r21_at_q234 * sin_q5
+            r23_at_q234 = -sin_q1 * sin_q234
+            r21_at_q2 = cos_q2 * sin_q1
+            y_at_q3 = k.a2 * r21_at_q2
+            r21_at_q23 = cos_q23 * sin_q1
+            y_at_q4 = y_at_q3 + k.a3 * r21_at_q23
+            y_at_q5 = y_at_q4 - k.d4 * cos_q1
+            y_at_q6 = y_at_q5 - k.d5 * r23_at_q234
+            d6_times_r22_at_q5 = k.d6 * r22_at_q5
+            y = y_at_q6 - d6_times_r22_at_q5
+            wrist_y = d6_times_r22_at_q5 + y
+            branch_shoulder = -k.one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
+            beside_shoulder = given_sigma_shoulder * branch_shoulder < -1e-6
+            sin_q3 = sin(q3)
+            beside_elbow = given_sigma_elbow * sin_q3 < -1e-6
+            beside_wrist = given_sigma_wrist * sin_q5 < -1e-6
+            r11_at_q5 = r11_at_q234 * cos_q5 + sin_q1 * sin_q5
+            q6 = (tried_a6 - k.offset_a6) * DEGREE
+            sin_q6 = sin(q6)
+            cos_q6 = cos(q6)
+            r11_at_q6 = r11_at_q5 * cos_q6 + r13_at_q234 * sin_q6
+            r21_at_q5 = r21_at_q234 * cos_q5 - cos_q1 * sin_q5
+            r21_at_q6 = r21_at_q5 * cos_q6 + r23_at_q234 * sin_q6
+            r31_at_q5 = cos_q5 * sin_q234
+            r31_at_q6 = cos_q234 * sin_q6 + r31_at_q5 * cos_q6
+            r13_at_q6 = r13_at_q234 * cos_q6 - r11_at_q5 * sin_q6
+            r23_at_q6 = r23_at_q234 * cos_q6 - r21_at_q5 * sin_q6
+            r33_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
+            r32_at_q5 = sin_q234 * sin_q5
+            error_1 = (goal_x - x) * k.one_by_machine_scale
+            error_2 = (goal_y - y) * k.one_by_machine_scale
+            sin_q2 = sin(q2)
+            z_at_q3 = k.d1 + k.a2 * sin_q2
+            sin_q23 = sin(q2_plus_q3)
+            z_at_q4 = z_at_q3 + k.a3 * sin_q23
+            z_at_q6 = z_at_q4 - k.d5 * cos_q234
+            z = z_at_q6 - k.d6 * r32_at_q5
+            error_3 = (goal_z - z) * k.one_by_machine_scale
+            error_4 = 0.5 * (
+                goal_r23 * r32_at_q5
+                + goal_r31 * r21_at_q6
+                + goal_r32 * r23_at_q6
+                - goal_r21 * r31_at_q6
+                - goal_r22 * r33_at_q6
+                - goal_r33 * r22_at_q5
+            )
+            error_5 = 0.5 * (
+                goal_r11 * r31_at_q6
+                + goal_r12 * r33_at_q6
+                + goal_r33 * r12_at_q5
+                - goal_r13 * r32_at_q5
+                - goal_r31 * r11_at_q6
+                - goal_r32 * r13_at_q6
+            )
+            error_6 = 0.5 * (
+                goal_r13 * r22_at_q5
+                + goal_r21 * r11_at_q6
+                + goal_r22 * r13_at_q6
+                - goal_r11 * r21_at_q6
+                - goal_r12 * r23_at_q6
+                - goal_r23 * r12_at_q5
+            )
+            value_in_error = select(
+                goal_r11 * r11_at_q6
+                + goal_r12 * r13_at_q6
+                + goal_r21 * r21_at_q6
+                + goal_r22 * r23_at_q6
+                + goal_r31 * r31_at_q6
+                + goal_r32 * r33_at_q6
+                - 1.0
+                - goal_r13 * r12_at_q5
+                - goal_r23 * r22_at_q5
+                - goal_r33 * r32_at_q5
+                > 0.0,
+                0.0,
+                1.0,
+            )
+            # error of the pose, in characteristic lengths and radians
+            error = value_in_error + sqrt(
+                error_1 * error_1
+                + error_2 * error_2
+                + error_3 * error_3
+                + error_4 * error_4
+                + error_5 * error_5
+                + error_6 * error_6
+            )
+            another = passes_left <= 0
+            # the error is rounding, and steps make it no smaller
+            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
+            pose_is_met = (
+                pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder)) & (opposite(beside_wrist))
+            )
+            next_attempt = attempt + select(another, 1, 0)
+            mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_wrist)
+            free_angle = select(next_attempt > 0, 1e-6, 1e-11)
+            free_turn = -137.5 * select(next_attempt > 1, 1 - next_attempt, 0)
+            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            closed_divisor_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * closed_wrist_x - closed_wrist_y * k.d4) / closed_divisor_q1,
+                cos(closed_reference_a1),
+            )
+            closed_sin_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * closed_wrist_y + closed_wrist_x * k.d4) / closed_divisor_q1,
+                sin(closed_reference_a1),
+            )
+            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
+            rate_1_1 = -k.one_by_machine_scale * y
+            rate_2_1 = k.one_by_machine_scale * x
+            z_minus_d1 = z - k.d1
+            cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
+            rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q3 = z - z_at_q3
+            rate_1_3 = -z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q4 = z - z_at_q4
+            rate_1_4 = -z_minus_z_at_q4 * cos_q1_times_one_by_machine_scale
+            y_minus_y_at_q5 = y - y_at_q5
+            rate_1_5 = k.one_by_machine_scale * (y_minus_y_at_q5 * cos_q234 - r23_at_q234 * z_minus_z_at_q4)
+            z_minus_z_at_q6 = z - z_at_q6
+            y_minus_y_at_q6 = y - y_at_q6
+            rate_1_6 = (r32_at_q5 * y_minus_y_at_q6 - r22_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
+            product_in_damping = 0.001 * error
+            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
+            product_1_1 = (
+                damping
+                + rate_1_1 * rate_1_1
+                + rate_1_2 * rate_1_2
+                + rate_1_3 * rate_1_3
+                + rate_1_4 * rate_1_4
+                + rate_1_5 * rate_1_5
+                + rate_1_6 * rate_1_6
+            )
+            sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
+            rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
+            rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+            rate_2_4 = -z_minus_z_at_q4 * sin_q1_times_one_by_machine_scale
+            x_minus_x_at_q5 = x - x_at_q5
+            rate_2_5 = (r13_at_q234 * z_minus_z_at_q4 - x_minus_x_at_q5 * cos_q234) * k.one_by_machine_scale
+            x_minus_x_at_q6 = x - x_at_q6
+            rate_2_6 = k.one_by_machine_scale * (r12_at_q5 * z_minus_z_at_q6 - r32_at_q5 * x_minus_x_at_q6)
+            product_1_2 = (
+                rate_1_1 * rate_2_1
+                + rate_1_2 * rate_2_2
+                + rate_1_3 * rate_2_3
+                + rate_1_4 * rate_2_4
+                + rate_1_5 * rate_2_5
+                + rate_1_6 * rate_2_6
+            )
+            rate_3_2 = k.one_by_machine_scale * (x * cos_q1 + y * sin_q1)
+            rate_3_3 = -k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            rate_3_4 = -k.one_by_machine_scale * ((x_at_q4 - x) * cos_q1 + (y_at_q4 - y) * sin_q1)
+            rate_3_5 = (r23_at_q234 * x_minus_x_at_q5 - r13_at_q234 * y_minus_y_at_q5) * k.one_by_machine_scale
+            rate_3_6 = (r22_at_q5 * x_minus_x_at_q6 - r12_at_q5 * y_minus_y_at_q6) * k.one_by_machine_scale
+            product_1_3 = (
+                rate_1_2 * rate_3_2
+                + rate_1_3 * rate_3_3
+                + rate_1_4 * rate_3_4
+                + rate_1_5 * rate_3_5
+                + rate_1_6 * rate_3_6
+            )
+            rate_1_2_plus_rate_1_3_plus_rate_1_4 = rate_1_2 + rate_1_3 + rate_1_4
+            product_1_4 = rate_1_2_plus_rate_1_3_plus_rate_1_4 * sin_q1 - r12_at_q5 * rate_1_6 - r13_at_q234 * rate_1_5
+            product_1_5 = -rate_1_2_plus_rate_1_3_plus_rate_1_4 * cos_q1 - r22_at_q5 * rate_1_6 - r23_at_q234 * rate_1_5
+            product_1_6 = rate_1_1 - rate_1_5 * cos_q234 - r32_at_q5 * rate_1_6
+            product_2_2 = (
+                damping
+                + rate_2_1 * rate_2_1
+                + rate_2_2 * rate_2_2
+                + rate_2_3 * rate_2_3
+                + rate_2_4 * rate_2_4
+                + rate_2_5 * rate_2_5
+                + rate_2_6 * rate_2_6
+            )
+            product_2_3 = (
+                rate_2_2 * rate_3_2
+                + rate_2_3 * rate_3_3
+                + rate_2_4 * rate_3_4
+                + rate_2_5 * rate_3_5
+                + rate_2_6 * rate_3_6
+            )
+            rate_2_2_plus_rate_2_3_plus_rate_2_4 = rate_2_2 + rate_2_3 + rate_2_4
+            product_2_4 = rate_2_2_plus_rate_2_3_plus_rate_2_4 * sin_q1 - r12_at_q5 * rate_2_6 - r13_at_q234 * rate_2_5
+            product_2_5 = -rate_2_2_plus_rate_2_3_plus_rate_2_4 * cos_q1 - r22_at_q5 * rate_2_6 - r23_at_q234 * rate_2_5
+            product_2_6 = rate_2_1 - rate_2_5 * cos_q234 - r32_at_q5 * rate_2_6
+            product_3_3 = (
+                damping
+                + rate_3_2 * rate_3_2
+                + rate_3_3 * rate_3_3
+                + rate_3_4 * rate_3_4
+                + rate_3_5 * rate_3_5
+                + rate_3_6 * rate_3_6
+            )
+            rate_3_2_plus_rate_3_3_plus_rate_3_4 = rate_3_2 + rate_3_3 + rate_3_4
+            product_3_4 = rate_3_2_plus_rate_3_3_plus_rate_3_4 * sin_q1 - r12_at_q5 * rate_3_6 - r13_at_q234 * rate_3_5
+            product_3_5 = -rate_3_2_plus_rate_3_3_plus_rate_3_4 * cos_q1 - r22_at_q5 * rate_3_6 - r23_at_q234 * rate_3_5
+            product_3_6 = -rate_3_5 * cos_q234 - r32_at_q5 * rate_3_6
+            product_4_4 = damping + r12_at_q5 * r12_at_q5 + r13_at_q234 * r13_at_q234 + 3.0 * sin_q1 * sin_q1
+            product_4_5 = r12_at_q5 * r22_at_q5 + r13_at_q234 * r23_at_q234 - 3.0 * cos_q1 * sin_q1
+            product_4_6 = r13_at_q234 * cos_q234 + r12_at_q5 * r32_at_q5
+            product_5_5 = damping + 3.0 * cos_q1 * cos_q1 + r22_at_q5 * r22_at_q5 + r23_at_q234 * r23_at_q234
+            product_5_6 = r23_at_q234 * cos_q234 + r22_at_q5 * r32_at_q5
+            product_6_6 = 1.0 + damping + cos_q234 * cos_q234 + r32_at_q5 * r32_at_q5
+            _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
+                (
+                    (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
+                    (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
+                    (product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6),
+                    (product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6),
+                    (product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6),
+                    (product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6),
+                ),
+                ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
+            )
+            step_a1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            sum_in_step_a2 = multiplier_4 * sin_q1 - multiplier_5 * cos_q1
+            step_a2 = sum_in_step_a2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_a3 = sum_in_step_a2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_a4 = sum_in_step_a2 + multiplier_1 * rate_1_4 + multiplier_2 * rate_2_4 + multiplier_3 * rate_3_4
+            step_a5 = (
+                multiplier_1 * rate_1_5
+                + multiplier_2 * rate_2_5
+                + multiplier_3 * rate_3_5
+                - multiplier_6 * cos_q234
+                - multiplier_4 * r13_at_q234
+                - multiplier_5 * r23_at_q234
+            )
+            step_a6 = (
+                multiplier_1 * rate_1_6
+                + multiplier_2 * rate_2_6
+                + multiplier_3 * rate_3_6
+                - multiplier_4 * r12_at_q5
+                - multiplier_5 * r22_at_q5
+                - multiplier_6 * r32_at_q5
+            )
+            step_length = sqrt(
+                step_a1 * step_a1
+                + step_a2 * step_a2
+                + step_a3 * step_a3
+                + step_a4 * step_a4
+                + step_a5 * step_a5
+                + step_a6 * step_a6
+            )
+            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+            closed_r21_from_q1 = closed_cos_q1 * goal_r21 - closed_sin_q1 * goal_r11
+            closed_r22_from_q1 = closed_cos_q1 * goal_r22 - closed_sin_q1 * goal_r12
+            # polar coordinates: the radius at angle q6
+            closed_radius_q6 = sqrt(closed_r21_from_q1 * closed_r21_from_q1 + closed_r22_from_q1 * closed_r22_from_q1)
+            closed_q6_radius_of_q5 = given_sigma_wrist * closed_radius_q6
+            # cosine and sine of q5 from the q6 radius and r22 equations
+            closed_cos_q5 = closed_sin_q1 * goal_r13 - closed_cos_q1 * goal_r23
+            closed_reference_a6 = DEGREE * (free_turn + given_ref_a6 - k.offset_a6)
+            # polar coordinates: angle q6 from the r21 and r23 equations
+            closed_along_q6 = -given_sigma_wrist * closed_r21_from_q1
+            closed_length_q6 = select(closed_radius_q6 > free_angle, closed_radius_q6, 1.0)
+            # at a singularity: the angle of the reference
+            closed_cos_q6 = select(
+                closed_radius_q6 > free_angle, closed_along_q6 / closed_length_q6, cos(closed_reference_a6)
+            )
+            closed_across_q6 = given_sigma_wrist * closed_r22_from_q1
+            closed_sin_q6 = select(
+                closed_radius_q6 > free_angle, closed_across_q6 / closed_length_q6, sin(closed_reference_a6)
+            )
+            closed_r31_from_q1_before_q6 = closed_cos_q6 * goal_r31 - closed_sin_q6 * goal_r32
+            closed_r31_from_q1_before_q56 = (
+                closed_cos_q5 * closed_r31_from_q1_before_q6 - closed_q6_radius_of_q5 * goal_r33
+            )
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_x_from_q1 = closed_ahead_q1 - closed_r31_from_q1_before_q56 * k.d5
+            closed_r33_from_q1_before_q6 = closed_cos_q6 * goal_r32 + closed_sin_q6 * goal_r31
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_z_from_q1 = closed_wrist_z + closed_r33_from_q1_before_q6 * k.d5 - k.d1
+            # distance that the remaining links must span
+            closed_reach = sqrt(
+                closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+            )
+            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
+            # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+            closed_one_less_cos_q3 = (k.a2_plus_a3 + closed_reach) * (k.a2_plus_a3 - closed_reach)
+            # 1 + cosine, times the scale
+            closed_one_plus_cos_q3 = (closed_reach - k.a2_minus_a3) * (k.a2_minus_a3 + closed_reach)
+            closed_cos_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) * k.quotient_in_closed_cos_q3
+            closed_arm_along_q2 = k.a2 + k.a3 * closed_cos_q3
+            # sine squared, times the squared scale
+            closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
+            closed_sin_q3 = root(closed_sine_square_q3) * given_sigma_elbow * k.quotient_in_closed_sin_q3
+            closed_arm_across_q2 = k.a3 * closed_sin_q3
+            # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
+            # reference
+            closed_direction_x_q2 = select(
+                closed_reach > free_angle_times_machine_scale,
+                closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1,
+                cos(closed_reference_a2),
+            )
+            closed_direction_y_q2 = select(
+                closed_reach > free_angle_times_machine_scale,
+                closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1,
+                sin(closed_reference_a2),
+            )
+            closed_angle_q2 = atan2(closed_direction_y_q2, closed_direction_x_q2)
+            closed_axis_a2 = nearest_period(k.offset_a2 + closed_angle_q2 / DEGREE, closed_near_a2)
+            closed_angle_q3 = atan2(closed_sin_q3, closed_cos_q3)
+            closed_axis_a3 = nearest_period(k.offset_a3 + closed_angle_q3 / DEGREE, closed_near_a3)
+            closed_angle_with_q4 = atan2(closed_r31_from_q1_before_q56, closed_r33_from_q1_before_q6)
+            # q4 from the sum q234 of angles about parallel axes
+            closed_axis_a4 = nearest_period(
+                k.offset_a4 + (closed_angle_with_q4 - closed_angle_q2 - closed_angle_q3) / DEGREE, closed_near_a4
+            )
+            closed_axis_a5 = nearest_period(
+                k.offset_a5 + atan2(closed_q6_radius_of_q5, closed_cos_q5) / DEGREE, closed_near_a5
+            )
+            closed_axis_a6 = nearest_period(k.offset_a6 + atan2(closed_sin_q6, closed_cos_q6) / DEGREE, closed_near_a6)
+            shared_quotient = shrinking / DEGREE
+            done = pose_is_met | (another & (next_attempt >= 4))
+            if settled(done, status):
+                break
+            tried_a1, tried_a2, tried_a3, tried_a4, tried_a5, tried_a6, passes_left, attempt, error_before = advanced(
+                done,
+                (tried_a1, tried_a2, tried_a3, tried_a4, tried_a5, tried_a6, passes_left, attempt, error_before),
+                (
+                    select(
+                        another,
+                        closed_axis_a1,
+                        select(
+                            mirrors,
+                            select(beside_shoulder, 2.0 * closed_axis_a1 - tried_a1, tried_a1),
+                            tried_a1 + shared_quotient * step_a1,
+                        ),
+                    ),
+                    select(another, closed_axis_a2, select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2)),
+                    select(
+                        another,
+                        closed_axis_a3,
+                        select(
+                            mirrors,
+                            select(beside_elbow, 2.0 * closed_axis_a3 - tried_a3, tried_a3),
+                            tried_a3 + shared_quotient * step_a3,
+                        ),
+                    ),
+                    select(another, closed_axis_a4, select(mirrors, tried_a4, tried_a4 + shared_quotient * step_a4)),
+                    select(another, closed_axis_a5, select(mirrors, tried_a5, tried_a5 + shared_quotient * step_a5)),
+                    select(
+                        another,
+                        closed_axis_a6,
+                        select(
+                            mirrors,
+                            select(beside_wrist, 2.0 * closed_axis_a6 - tried_a6, tried_a6),
+                            tried_a6 + shared_quotient * step_a6,
+                        ),
+                    ),
+                    select(another, 40, passes_left - 1),
+                    next_attempt,
+                    select(another | mirrors, 9.0, error),
+                ),
+            )
+        require(status, done, Status.UNREACHABLE)
+        chosen_a1 = nearest_period(tried_a1, closed_near_a1)
+        chosen_a2 = nearest_period(tried_a2, closed_near_a2)
+        chosen_a3 = nearest_period(tried_a3, closed_near_a3)
+        chosen_a4 = nearest_period(tried_a4, closed_near_a4)
+        chosen_a5 = nearest_period(tried_a5, closed_near_a5)
+        chosen_a6 = nearest_period(tried_a6, closed_near_a6)
+        return (pose_is_met, chosen_a1, chosen_a2, chosen_a3, chosen_a4, chosen_a5, chosen_a6)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -56,9 +540,9 @@ class ArrayPrograms(Programs):
         cos_q234 = cos(q2_plus_q3_plus_q4)
         r11_at_q234 = cos_q1 * cos_q234
         cos_q5 = cos(q5)
-        r12_at_q5 = cos_q5 * sin_q1 - r11_at_q234 * sin_q5
+        r12_at_q5 = r11_at_q234 * sin_q5 - cos_q5 * sin_q1
         sin_q234 = sin(q2_plus_q3_plus_q4)
-        r12_at_q234 = -cos_q1 * sin_q234
+        r13_at_q234 = -cos_q1 * sin_q234
         cos_q2 = cos(q2)
         r11_at_q2 = cos_q1 * cos_q2
         x_at_q3 = k.a2 * r11_at_q2
@@ -66,46 +550,50 @@ class ArrayPrograms(Programs):
         r11_at_q23 = cos_q1 * cos_q23
         x_at_q4 = x_at_q3 + k.a3 * r11_at_q23
         x_at_q5 = x_at_q4 + k.d4 * sin_q1
-        x_at_q6 = x_at_q5 - k.d5 * r12_at_q234
+        x_at_q6 = x_at_q5 - k.d5 * r13_at_q234
         d6_times_r12_at_q5 = k.d6 * r12_at_q5
-        x = d6_times_r12_at_q5 + x_at_q6
+        x = x_at_q6 - d6_times_r12_at_q5
         r21_at_q234 = cos_q234 * sin_q1
-        r22_at_q5 = -cos_q1 * cos_q5 - r21_at_q234 * sin_q5
-        r22_at_q234 = -sin_q1 * sin_q234
+        r22_at_q5 = cos_q1 * cos_q5 + r21_at_q234 * sin_q5
+        r23_at_q234 = -sin_q1 * sin_q234
         r21_at_q2 = cos_q2 * sin_q1
         y_at_q3 = k.a2 * r21_at_q2
         r21_at_q23 = cos_q23 * sin_q1
         y_at_q4 = y_at_q3 + k.a3 * r21_at_q23
         y_at_q5 = y_at_q4 - k.d4 * cos_q1
-        y_at_q6 = y_at_q5 - k.d5 * r22_at_q234
+        y_at_q6 = y_at_q5 - k.d5 * r23_at_q234
         d6_times_r22_at_q5 = k.d6 * r22_at_q5
-        y = d6_times_r22_at_q5 + y_at_q6
-        r32_at_q5 = -sin_q234 * sin_q5
+        y = y_at_q6 - d6_times_r22_at_q5
+        r32_at_q5 = sin_q234 * sin_q5
         sin_q2 = sin(q2)
         z_at_q3 = k.d1 + k.a2 * sin_q2
         sin_q23 = sin(q2_plus_q3)
         z_at_q4 = z_at_q3 + k.a3 * sin_q23
         z_at_q6 = z_at_q4 - k.d5 * cos_q234
-        z = z_at_q6 + k.d6 * r32_at_q5
+        z = z_at_q6 - k.d6 * r32_at_q5
         r11_at_q5 = r11_at_q234 * cos_q5 + sin_q1 * sin_q5
         q6 = DEGREE * (axis_a6 - k.offset_a6)
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q234 * sin_q6
-        r12_at_q6 = r12_at_q234 * cos_q6 - r11_at_q5 * sin_q6
+        r11_at_q6 = r11_at_q5 * cos_q6 + r13_at_q234 * sin_q6
+        r13_at_q6 = r13_at_q234 * cos_q6 - r11_at_q5 * sin_q6
         r21_at_q5 = r21_at_q234 * cos_q5 - cos_q1 * sin_q5
-        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q234 * sin_q6
-        r22_at_q6 = r22_at_q234 * cos_q6 - r21_at_q5 * sin_q6
+        r21_at_q6 = r21_at_q5 * cos_q6 + r23_at_q234 * sin_q6
+        r23_at_q6 = r23_at_q234 * cos_q6 - r21_at_q5 * sin_q6
         r31_at_q5 = cos_q5 * sin_q234
         r31_at_q6 = cos_q234 * sin_q6 + r31_at_q5 * cos_q6
-        r32_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
-        wrist_y = y - d6_times_r22_at_q5
+        r33_at_q6 = cos_q234 * cos_q6 - r31_at_q5 * sin_q6
+        wrist_x = d6_times_r12_at_q5 + x  # wrist centre: the last joints do not move this point
+        wrist_y = d6_times_r22_at_q5 + y
         branch_shoulder = -k.one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         return (
             (x, y, z),
-            ((r11_at_q6, r12_at_q6, r12_at_q5), (r21_at_q6, r22_at_q6, r22_at_q5), (r31_at_q6, r32_at_q6, r32_at_q5)),
+            (
+                (r11_at_q6, r13_at_q6, -r12_at_q5),
+                (r21_at_q6, r23_at_q6, -r22_at_q5),
+                (r31_at_q6, r33_at_q6, -r32_at_q5),
+            ),
             (branch_shoulder, sin_q3, sin_q5),
         ), status
 
@@ -129,618 +617,64 @@ class ArrayPrograms(Programs):
         ahead_squared_q1 = (distance_q1 - k.d4) * (k.d4 + distance_q1)
         distance_q1_squared = distance_q1 * distance_q1
         # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_before_q1_for_q3 = -root(ahead_squared_q1) * sigma_shoulder
+        ahead_q1 = -root(ahead_squared_q1) * sigma_shoulder
 
-        def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
+        def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(reference_a1)
-            sin_q1_before_q1_for_q3 = sin(reference_a1)
-            return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
+            cos_q1 = cos(reference_a1)
+            sin_q1 = sin(reference_a1)
+            return (cos_q1, sin_q1)
 
-        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - k.d4 * wrist_y) / distance_q1_squared
-        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + k.d4 * wrist_x) / distance_q1_squared
+        cos_q1 = (ahead_q1 * wrist_x - k.d4 * wrist_y) / distance_q1_squared
+        sin_q1 = (ahead_q1 * wrist_y + k.d4 * wrist_x) / distance_q1_squared
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
-        cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
-            distance_q1 > k.machine_scale_times_free_angle,
-            (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
-            elsewhere_cos_q1_before_q1_for_q3,
-            (ref_a1,),
+        cos_q1, sin_q1 = elsewhere(
+            distance_q1 > k.machine_scale_times_free_angle, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,)
         )
-        wrist_z = z - k.d6 * r33
-        wrist_y_from_q1_fixed = wrist_z - k.d1
-
-        def elsewhere_ahead_q1(
-            ahead_q1_before_q1_for_q3: Real,
-            cos_q1_before_q1_for_q3: Real,
-            distance_q1: Real,
-            r11: Real,
-            r12: Real,
-            r13: Real,
-            r21: Real,
-            r22: Real,
-            r23: Real,
-            r31: Real,
-            r32: Real,
-            r33: Real,
-            ref_a6: Real,
-            sigma_wrist: Whole,
-            sin_q1_before_q1_for_q3: Real,
-            wrist_x: Real,
-            wrist_y: Real,
-            wrist_y_from_q1_fixed: Real,
-            wrist_z: Real,
-        ) -> Reals:
-            reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
-            cos_of_reference_a6 = cos(reference_a6)
-            sin_of_reference_a6 = sin(reference_a6)
-            r21_from_q1_before_q1_for_q3 = r21 * cos_q1_before_q1_for_q3 - r11 * sin_q1_before_q1_for_q3
-            r22_from_q1_before_q1_for_q3 = r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3
-            radius_q6_before_q1_for_q3 = sqrt(
-                r21_from_q1_before_q1_for_q3 * r21_from_q1_before_q1_for_q3
-                + r22_from_q1_before_q1_for_q3 * r22_from_q1_before_q1_for_q3
-            )
-            q6_radius_of_q5_before_q1_for_q3 = sigma_wrist * radius_q6_before_q1_for_q3
-            cos_q5_before_q1_for_q3 = r13 * sin_q1_before_q1_for_q3 - r23 * cos_q1_before_q1_for_q3
-            r21_from_q1_rate_q1_for_q3 = -r11 * cos_q1_before_q1_for_q3 - r21 * sin_q1_before_q1_for_q3
-            r22_from_q1_rate_q1_for_q3 = -r12 * cos_q1_before_q1_for_q3 - r22 * sin_q1_before_q1_for_q3
-            along_q6_rate_q1_for_q3 = -sigma_wrist * r21_from_q1_rate_q1_for_q3
-            across_q6_rate_q1_for_q3 = sigma_wrist * r22_from_q1_rate_q1_for_q3
-
-            def elsewhere_cos_q6_before_q1_for_q3(
-                cos_of_reference_a6: Real,
-                r21_from_q1_before_q1_for_q3: Real,
-                r21_from_q1_rate_q1_for_q3: Real,
-                r22_from_q1_before_q1_for_q3: Real,
-                r22_from_q1_rate_q1_for_q3: Real,
-                radius_q6_before_q1_for_q3: Real,
-                sin_of_reference_a6: Real,
-            ) -> Reals:
-                radius_q6_rate_q1_for_q3 = select(
-                    radius_q6_before_q1_for_q3 > 0.0,
-                    (
-                        r21_from_q1_before_q1_for_q3 * r21_from_q1_rate_q1_for_q3
-                        + r22_from_q1_before_q1_for_q3 * r22_from_q1_rate_q1_for_q3
-                    )
-                    / radius_q6_before_q1_for_q3,
-                    0.0,
-                )
-                return (cos_of_reference_a6, sin_of_reference_a6, radius_q6_rate_q1_for_q3, 0.0, 0.0)
-
-            along_q6_before_q1_for_q3 = -sigma_wrist * r21_from_q1_before_q1_for_q3
-            one_by_radius_q6_before_q1_for_q3 = 1.0 / radius_q6_before_q1_for_q3
-            cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
-            across_q6_before_q1_for_q3 = sigma_wrist * r22_from_q1_before_q1_for_q3
-            sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3 * one_by_radius_q6_before_q1_for_q3
-            radius_q6_rate_q1_for_q3 = (
-                r21_from_q1_before_q1_for_q3 * r21_from_q1_rate_q1_for_q3
-                + r22_from_q1_before_q1_for_q3 * r22_from_q1_rate_q1_for_q3
-            ) / radius_q6_before_q1_for_q3
-            cos_q6_rate_q1_for_q3 = (
-                along_q6_rate_q1_for_q3 - radius_q6_rate_q1_for_q3 * cos_q6_before_q1_for_q3
-            ) * one_by_radius_q6_before_q1_for_q3
-            sin_q6_rate_q1_for_q3 = (
-                across_q6_rate_q1_for_q3 - radius_q6_rate_q1_for_q3 * sin_q6_before_q1_for_q3
-            ) * one_by_radius_q6_before_q1_for_q3
-            (
-                cos_q6_before_q1_for_q3,
-                sin_q6_before_q1_for_q3,
-                radius_q6_rate_q1_for_q3,
-                cos_q6_rate_q1_for_q3,
-                sin_q6_rate_q1_for_q3,
-            ) = elsewhere(
-                radius_q6_before_q1_for_q3 > 1e-11,
-                (
-                    cos_q6_before_q1_for_q3,
-                    sin_q6_before_q1_for_q3,
-                    radius_q6_rate_q1_for_q3,
-                    cos_q6_rate_q1_for_q3,
-                    sin_q6_rate_q1_for_q3,
-                ),
-                elsewhere_cos_q6_before_q1_for_q3,
-                (
-                    cos_of_reference_a6,
-                    r21_from_q1_before_q1_for_q3,
-                    r21_from_q1_rate_q1_for_q3,
-                    r22_from_q1_before_q1_for_q3,
-                    r22_from_q1_rate_q1_for_q3,
-                    radius_q6_before_q1_for_q3,
-                    sin_of_reference_a6,
-                ),
-            )
-            r21_from_q1_before_q6_before_q1_for_q3 = r31 * cos_q6_before_q1_for_q3 - r32 * sin_q6_before_q1_for_q3
-            r21_from_q1_before_q56_before_q1_for_q3 = (
-                r21_from_q1_before_q6_before_q1_for_q3 * cos_q5_before_q1_for_q3
-                - q6_radius_of_q5_before_q1_for_q3 * r33
-            )
-            wrist_x_from_q1_before_q1_for_q3 = (
-                ahead_q1_before_q1_for_q3 - k.d5 * r21_from_q1_before_q56_before_q1_for_q3
-            )
-            r22_from_q1_before_q6_before_q1_for_q3 = r32 * cos_q6_before_q1_for_q3 + r31 * sin_q6_before_q1_for_q3
-            wrist_y_from_q1_before_q1_for_q3 = wrist_y_from_q1_fixed + k.d5 * r22_from_q1_before_q6_before_q1_for_q3
-            # q3 has solutions where this is within its bound
-            value_q1_for_q3 = (
-                wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
-                + wrist_y_from_q1_before_q1_for_q3 * wrist_y_from_q1_before_q1_for_q3
-                - k.a2_squared_plus_a3_squared
-            )
-
-            def elsewhere_ahead_q1(
-                across_q6_rate_q1_for_q3: Real,
-                ahead_q1_before_q1_for_q3: Real,
-                along_q6_rate_q1_for_q3: Real,
-                cos_q1_before_q1_for_q3: Real,
-                cos_q5_before_q1_for_q3: Real,
-                cos_q6_before_q1_for_q3: Real,
-                cos_q6_rate_q1_for_q3: Real,
-                distance_q1: Real,
-                r11: Real,
-                r12: Real,
-                r13: Real,
-                r21: Real,
-                r21_from_q1_before_q6_before_q1_for_q3: Real,
-                r22: Real,
-                r23: Real,
-                r31: Real,
-                r32: Real,
-                r33: Real,
-                radius_q6_before_q1_for_q3: Real,
-                radius_q6_rate_q1_for_q3: Real,
-                sigma_wrist: Whole,
-                sin_q1_before_q1_for_q3: Real,
-                sin_q6_before_q1_for_q3: Real,
-                sin_q6_rate_q1_for_q3: Real,
-                value_q1_for_q3: Real,
-                wrist_x: Real,
-                wrist_x_from_q1_before_q1_for_q3: Real,
-                wrist_y: Real,
-                wrist_y_from_q1_before_q1_for_q3: Real,
-                wrist_z: Real,
-            ) -> Reals:
-                r23_from_q1_rate_q1_for_q3 = -r13 * cos_q1_before_q1_for_q3 - r23 * sin_q1_before_q1_for_q3
-                q6_radius_of_q5_rate_q1_for_q3 = sigma_wrist * radius_q6_rate_q1_for_q3
-                r21_from_q1_before_q6_rate_q1_for_q3 = r31 * cos_q6_rate_q1_for_q3 - r32 * sin_q6_rate_q1_for_q3
-                r21_from_q1_before_q56_rate_q1_for_q3 = (
-                    r21_from_q1_before_q6_rate_q1_for_q3 * cos_q5_before_q1_for_q3
-                    - q6_radius_of_q5_rate_q1_for_q3 * r33
-                    - r21_from_q1_before_q6_before_q1_for_q3 * r23_from_q1_rate_q1_for_q3
-                )
-                wrist_x_from_q1_rate_q1_for_q3 = -k.d4 - k.d5 * r21_from_q1_before_q56_rate_q1_for_q3
-                r22_from_q1_before_q6_rate_q1_for_q3 = r32 * cos_q6_rate_q1_for_q3 + r31 * sin_q6_rate_q1_for_q3
-                wrist_y_from_q1_rate_q1_for_q3 = k.d5 * r22_from_q1_before_q6_rate_q1_for_q3
-                # its derivative by q1
-                rate_q1_for_q3 = 2.0 * (
-                    wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_rate_q1_for_q3
-                    + wrist_y_from_q1_before_q1_for_q3 * wrist_y_from_q1_rate_q1_for_q3
-                )
-                excess_q1_for_q3 = select(
-                    value_q1_for_q3 > 0.0, value_q1_for_q3 - k.size_q1_for_q3, k.size_q1_for_q3 + value_q1_for_q3
-                )
-                # turn of q1 to first order
-                turn_q1_for_q3 = select(
-                    absolute(rate_q1_for_q3) > k.size_q1_for_q3_times_rounding, -excess_q1_for_q3 / rate_q1_for_q3, 1.0
-                )
-                turn_q1_for_q3_squared = turn_q1_for_q3 * turn_q1_for_q3
-                sum_in_across_q6_q1_for_q3 = k.d1_times_d5_times_2 - k.twice_d5 * wrist_z
-                product_in_across_q6_q1_for_q3 = ahead_q1_before_q1_for_q3 * k.twice_d5 * cos_q5_before_q1_for_q3
-                along_q6_q1_for_q3 = -product_in_across_q6_q1_for_q3 * r31 - r32 * sum_in_across_q6_q1_for_q3
-                across_q6_q1_for_q3 = product_in_across_q6_q1_for_q3 * r32 - r31 * sum_in_across_q6_q1_for_q3
-                swing_q6_q1_for_q3 = sqrt(
-                    across_q6_q1_for_q3 * across_q6_q1_for_q3 + along_q6_q1_for_q3 * along_q6_q1_for_q3
-                )
-                # whether the first order is not enough: then q6 is chosen first
-                follows_q1_for_q3 = (turn_q1_for_q3_squared > 1e-12) | (
-                    (
-                        across_q6_rate_q1_for_q3 * across_q6_rate_q1_for_q3
-                        + along_q6_rate_q1_for_q3 * along_q6_rate_q1_for_q3
-                    )
-                    * swing_q6_q1_for_q3
-                    * turn_q1_for_q3_squared
-                    > k.product_in_follows_q1_for_q3 * radius_q6_before_q1_for_q3 * radius_q6_before_q1_for_q3
-                )
-
-                def elsewhere_best_cost_q1_for_q3(
-                    ahead_q1_before_q1_for_q3: Real,
-                    cos_q1_before_q1_for_q3: Real,
-                    sin_q1_before_q1_for_q3: Real,
-                    turn_q1_for_q3: Real,
-                    turn_q1_for_q3_squared: Real,
-                    wrist_x: Real,
-                    wrist_y: Real,
-                ) -> Reals:
-                    turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3_squared)
-                    one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
-                    best_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                        cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
-                    )
-                    best_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                        sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
-                    )
-                    best_cost_q1_for_q3 = absolute(k.d4 + best_cos_q1_for_q3 * wrist_y - best_sin_q1_for_q3 * wrist_x)
-                    best_ahead_q1_for_q3 = (
-                        ahead_q1_before_q1_for_q3 - k.d4 * turn_q1_for_q3
-                    ) * one_by_turned_length_q1_for_q3
-                    return (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
-
-                level_q6_q1_for_q3 = (
-                    value_q1_for_q3
-                    - across_q6_q1_for_q3 * sin_q6_before_q1_for_q3
-                    - along_q6_q1_for_q3 * cos_q6_before_q1_for_q3
-                )
-                quotient_in_highest_q6_q1_for_q3 = (
-                    k.product_in_highest_q6_q1_for_q3 - level_q6_q1_for_q3
-                ) / swing_q6_q1_for_q3
-                highest_q6_q1_for_q3 = select(
-                    quotient_in_highest_q6_q1_for_q3 > 1.0,
-                    1.0,
-                    select(quotient_in_highest_q6_q1_for_q3 < -1.0, -1.0, quotient_in_highest_q6_q1_for_q3),
-                )
-                quotient_in_lowest_q6_q1_for_q3 = (
-                    level_q6_q1_for_q3 + k.product_in_highest_q6_q1_for_q3
-                ) / swing_q6_q1_for_q3
-                lowest_q6_q1_for_q3 = select(
-                    -quotient_in_lowest_q6_q1_for_q3 > 1.0,
-                    1.0,
-                    select(-quotient_in_lowest_q6_q1_for_q3 < -1.0, -1.0, -quotient_in_lowest_q6_q1_for_q3),
-                )
-                holds = swing_q6_q1_for_q3 > k.product_in_divisor_q6_q1_for_q3
-                # feasible arc: cosines of its ends
-                highest_q6_q1_for_q3 = select(holds, highest_q6_q1_for_q3, 1.0)
-                lowest_q6_q1_for_q3 = select(holds, lowest_q6_q1_for_q3, -1.0)
-                near_q6_q1_for_q3 = atan2(
-                    root((1.0 - highest_q6_q1_for_q3) * (1.0 + highest_q6_q1_for_q3)), highest_q6_q1_for_q3
-                )
-                far_q6_q1_for_q3 = atan2(
-                    root((1.0 - lowest_q6_q1_for_q3) * (1.0 + lowest_q6_q1_for_q3)), lowest_q6_q1_for_q3
-                )
-                centre_q6_q1_for_q3 = atan2(across_q6_q1_for_q3, along_q6_q1_for_q3)
-                angle_q6_q1_for_q3 = atan2(sin_q6_before_q1_for_q3, cos_q6_before_q1_for_q3)
-                side_q6_q1_for_q3 = select(
-                    along_q6_q1_for_q3 * sin_q6_before_q1_for_q3 - across_q6_q1_for_q3 * cos_q6_before_q1_for_q3 >= 0.0,
-                    1.0,
-                    -1.0,
-                )
-                moved_q6_q1_for_q3 = nearest_on_arc(
-                    angle_q6_q1_for_q3,
-                    centre_q6_q1_for_q3 + 0.5 * (far_q6_q1_for_q3 + near_q6_q1_for_q3) * side_q6_q1_for_q3,
-                    0.5 * (far_q6_q1_for_q3 - near_q6_q1_for_q3),
-                )
-                near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3)
-                near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3)
-                near_q_q1_for_q3 = sigma_wrist * (near_cos_q6_q1_for_q3 * r12 + near_sin_q6_q1_for_q3 * r11)
-                near_p_q1_for_q3 = (-near_cos_q6_q1_for_q3 * r22 - near_sin_q6_q1_for_q3 * r21) * sigma_wrist
-                near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3 * near_p_q1_for_q3 + near_q_q1_for_q3 * near_q_q1_for_q3)
-                near_along_q1_for_q3 = (
-                    sigma_wrist * (near_cos_q6_q1_for_q3 * r21 - near_sin_q6_q1_for_q3 * r22) * near_q_q1_for_q3
-                    - (near_sin_q6_q1_for_q3 * r12 - near_cos_q6_q1_for_q3 * r11) * sigma_wrist * near_p_q1_for_q3
-                )
-                # positive where the vector points along the later angle
-                near_towards_q1_for_q3 = select(
-                    absolute(near_along_q1_for_q3) <= 5e-12 * near_radius_q1_for_q3,
-                    near_p_q1_for_q3 * sin_q1_before_q1_for_q3 - near_q_q1_for_q3 * cos_q1_before_q1_for_q3,
-                    near_along_q1_for_q3,
-                )
-                near_side_q1_for_q3 = select(near_towards_q1_for_q3 < 0.0, -1.0, 1.0)
-                quotient_in_near_cos_q1_for_q3 = near_side_q1_for_q3 / near_radius_q1_for_q3
-                near_cos_q1_for_q3 = -near_q_q1_for_q3 * quotient_in_near_cos_q1_for_q3
-                near_sin_q1_for_q3 = near_p_q1_for_q3 * quotient_in_near_cos_q1_for_q3
-                holds = near_radius_q1_for_q3 > 1e-12
-                # the earlier angle follows
-                # it stays where it has no effect
-                near_cos_q1_for_q3 = select(holds, near_cos_q1_for_q3, cos_q1_before_q1_for_q3)
-                near_sin_q1_for_q3 = select(holds, near_sin_q1_for_q3, sin_q1_before_q1_for_q3)
-                near_cost_q1_for_q3 = absolute(k.d4 + near_cos_q1_for_q3 * wrist_y - near_sin_q1_for_q3 * wrist_x)
-                mirrored_q6_q1_for_q3 = 2.0 * centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # mirror image on the other arc
-                mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
-                mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
-                mirrored_q_q1_for_q3 = sigma_wrist * (mirrored_cos_q6_q1_for_q3 * r12 + mirrored_sin_q6_q1_for_q3 * r11)
-                mirrored_p_q1_for_q3 = (
-                    -mirrored_cos_q6_q1_for_q3 * r22 - mirrored_sin_q6_q1_for_q3 * r21
-                ) * sigma_wrist
-                mirrored_radius_q1_for_q3 = sqrt(
-                    mirrored_p_q1_for_q3 * mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3 * mirrored_q_q1_for_q3
-                )
-                mirrored_along_q1_for_q3 = (
-                    sigma_wrist
-                    * (mirrored_cos_q6_q1_for_q3 * r21 - mirrored_sin_q6_q1_for_q3 * r22)
-                    * mirrored_q_q1_for_q3
-                    - (mirrored_sin_q6_q1_for_q3 * r12 - mirrored_cos_q6_q1_for_q3 * r11)
-                    * sigma_wrist
-                    * mirrored_p_q1_for_q3
-                )
-                # positive where the vector points along the later angle
-                mirrored_towards_q1_for_q3 = select(
-                    absolute(mirrored_along_q1_for_q3) <= 5e-12 * mirrored_radius_q1_for_q3,
-                    mirrored_p_q1_for_q3 * sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3 * cos_q1_before_q1_for_q3,
-                    mirrored_along_q1_for_q3,
-                )
-                mirrored_side_q1_for_q3 = select(mirrored_towards_q1_for_q3 < 0.0, -1.0, 1.0)
-                quotient_in_mirrored_cos_q1_for_q3 = mirrored_side_q1_for_q3 / mirrored_radius_q1_for_q3
-                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3 * quotient_in_mirrored_cos_q1_for_q3
-                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3 * quotient_in_mirrored_cos_q1_for_q3
-                holds = mirrored_radius_q1_for_q3 > 1e-12
-                # the earlier angle follows
-                # it stays where it has no effect
-                mirrored_cos_q1_for_q3 = select(holds, mirrored_cos_q1_for_q3, cos_q1_before_q1_for_q3)
-                mirrored_sin_q1_for_q3 = select(holds, mirrored_sin_q1_for_q3, sin_q1_before_q1_for_q3)
-                mirrored_cost_q1_for_q3 = absolute(
-                    k.d4 + mirrored_cos_q1_for_q3 * wrist_y - mirrored_sin_q1_for_q3 * wrist_x
-                )
-                holds = near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3
-                best_cost_q1_for_q3 = select(holds, near_cost_q1_for_q3, mirrored_cost_q1_for_q3)
-                best_cos_q1_for_q3 = select(holds, near_cos_q1_for_q3, mirrored_cos_q1_for_q3)
-                best_sin_q1_for_q3 = select(holds, near_sin_q1_for_q3, mirrored_sin_q1_for_q3)
-                holds = distance_q1 > k.machine_scale_times_free_angle
-                best_cost_q1_for_q3 = select(holds, best_cost_q1_for_q3, 0.0)
-                best_cos_q1_for_q3 = select(holds, best_cos_q1_for_q3, near_cos_q1_for_q3)
-                best_sin_q1_for_q3 = select(holds, best_sin_q1_for_q3, near_sin_q1_for_q3)
-                best_ahead_q1_for_q3 = best_cos_q1_for_q3 * wrist_x + best_sin_q1_for_q3 * wrist_y
-                best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3 = elsewhere(
-                    follows_q1_for_q3,
-                    (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
-                    elsewhere_best_cost_q1_for_q3,
-                    (
-                        ahead_q1_before_q1_for_q3,
-                        cos_q1_before_q1_for_q3,
-                        sin_q1_before_q1_for_q3,
-                        turn_q1_for_q3,
-                        turn_q1_for_q3_squared,
-                        wrist_x,
-                        wrist_y,
-                    ),
-                )
-                holds = best_cost_q1_for_q3 > k.machine_scale_times_rounding
-                # turned so that q3 has a solution
-                ahead_q1 = select(holds, ahead_q1_before_q1_for_q3, best_ahead_q1_for_q3)
-                cos_q1 = select(holds, cos_q1_before_q1_for_q3, best_cos_q1_for_q3)
-                sin_q1 = select(holds, sin_q1_before_q1_for_q3, best_sin_q1_for_q3)
-                return (ahead_q1, cos_q1, sin_q1)
-
-            # turned so that q3 has a solution
-            ahead_q1, cos_q1, sin_q1 = elsewhere(
-                absolute(value_q1_for_q3) <= k.size_q1_for_q3,
-                (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
-                elsewhere_ahead_q1,
-                (
-                    across_q6_rate_q1_for_q3,
-                    ahead_q1_before_q1_for_q3,
-                    along_q6_rate_q1_for_q3,
-                    cos_q1_before_q1_for_q3,
-                    cos_q5_before_q1_for_q3,
-                    cos_q6_before_q1_for_q3,
-                    cos_q6_rate_q1_for_q3,
-                    distance_q1,
-                    r11,
-                    r12,
-                    r13,
-                    r21,
-                    r21_from_q1_before_q6_before_q1_for_q3,
-                    r22,
-                    r23,
-                    r31,
-                    r32,
-                    r33,
-                    radius_q6_before_q1_for_q3,
-                    radius_q6_rate_q1_for_q3,
-                    sigma_wrist,
-                    sin_q1_before_q1_for_q3,
-                    sin_q6_before_q1_for_q3,
-                    sin_q6_rate_q1_for_q3,
-                    value_q1_for_q3,
-                    wrist_x,
-                    wrist_x_from_q1_before_q1_for_q3,
-                    wrist_y,
-                    wrist_y_from_q1_before_q1_for_q3,
-                    wrist_z,
-                ),
-            )
-            return (ahead_q1, cos_q1, sin_q1)
-
-        # turned so that q3 has a solution
-        ahead_q1, cos_q1, sin_q1 = elsewhere(
-            ahead_squared_q1 > k.machine_scale_squared_times_plane,
-            (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
-            elsewhere_ahead_q1,
-            (
-                ahead_q1_before_q1_for_q3,
-                cos_q1_before_q1_for_q3,
-                distance_q1,
-                r11,
-                r12,
-                r13,
-                r21,
-                r22,
-                r23,
-                r31,
-                r32,
-                r33,
-                ref_a6,
-                sigma_wrist,
-                sin_q1_before_q1_for_q3,
-                wrist_x,
-                wrist_y,
-                wrist_y_from_q1_fixed,
-                wrist_z,
-            ),
-        )
-        cos_q5 = r13 * sin_q1 - r23 * cos_q1  # cosine and sine of q5 from the q6 radius and r32 equations
         r21_from_q1 = r21 * cos_q1 - r11 * sin_q1
         r22_from_q1 = r22 * cos_q1 - r12 * sin_q1
         # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
         q6_radius_of_q5 = sigma_wrist * radius_q6
-        q6_radius_of_q5_times_r33 = q6_radius_of_q5 * r33
+        cos_q5 = r13 * sin_q1 - r23 * cos_q1  # cosine and sine of q5 from the q6 radius and r22 equations
 
-        def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
+        def elsewhere_cos_q6(ref_a6: Real) -> Reals:
             reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
-            cos_of_reference_a6 = cos(reference_a6)
-            sin_of_reference_a6 = sin(reference_a6)
-            return (cos_of_reference_a6, sin_of_reference_a6)
-
-        along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
-        cos_q6_before_q6_of_q3 = along_q6 / radius_q6
-        across_q6 = sigma_wrist * r22_from_q1
-        sin_q6_before_q6_of_q3 = across_q6 / radius_q6
-        # at a singularity: the angle of the reference
-        cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3 = elsewhere(
-            radius_q6 > 1e-11,
-            (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
-            elsewhere_cos_q6_before_q6_of_q3,
-            (ref_a6,),
-        )
-        r21_from_q1_before_q6_before_q6_of_q3 = r31 * cos_q6_before_q6_of_q3 - r32 * sin_q6_before_q6_of_q3
-        r21_from_q1_before_q56_before_q6_of_q3 = (
-            r21_from_q1_before_q6_before_q6_of_q3 * cos_q5 - q6_radius_of_q5_times_r33
-        )
-        wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - k.d5 * r21_from_q1_before_q56_before_q6_of_q3
-        r22_from_q1_before_q6_before_q6_of_q3 = r32 * cos_q6_before_q6_of_q3 + r31 * sin_q6_before_q6_of_q3
-        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + k.d5 * r22_from_q1_before_q6_before_q6_of_q3
-        # q3 has solutions where this is within its bound
-        value_q6_of_q3 = (
-            wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
-            - k.a2_squared_plus_a3_squared
-        )
-
-        def elsewhere_cos_q6(
-            ahead_q1: Real,
-            cos_q5: Real,
-            cos_q6_before_q6_of_q3: Real,
-            q6_radius_of_q5_times_r33: Real,
-            r31: Real,
-            r32: Real,
-            radius_q6: Real,
-            sin_q6_before_q6_of_q3: Real,
-            value_q6_of_q3: Real,
-            wrist_y_from_q1_fixed: Real,
-        ) -> Reals:
-
-            def elsewhere_cos_q6(
-                ahead_q1: Real,
-                cos_q5: Real,
-                cos_q6_before_q6_of_q3: Real,
-                q6_radius_of_q5_times_r33: Real,
-                r31: Real,
-                r32: Real,
-                radius_q6: Real,
-                sin_q6_before_q6_of_q3: Real,
-                value_q6_of_q3: Real,
-                wrist_y_from_q1_fixed: Real,
-            ) -> Reals:
-                wrist_x_from_q1_fixed = ahead_q1 + k.d5 * q6_radius_of_q5_times_r33
-                wrist_y_from_q1_across = k.d5 * r31
-                wrist_x_from_q1_along = -wrist_y_from_q1_across * cos_q5
-                wrist_y_from_q1_along = k.d5 * r32
-                along_q6_of_q3 = 2.0 * (
-                    wrist_x_from_q1_along * wrist_x_from_q1_fixed + wrist_y_from_q1_along * wrist_y_from_q1_fixed
-                )
-                wrist_x_from_q1_across = wrist_y_from_q1_along * cos_q5
-                across_q6_of_q3 = 2.0 * (
-                    wrist_x_from_q1_across * wrist_x_from_q1_fixed + wrist_y_from_q1_across * wrist_y_from_q1_fixed
-                )
-                swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
-                level_q6_of_q3 = (
-                    value_q6_of_q3 - across_q6_of_q3 * sin_q6_before_q6_of_q3 - along_q6_of_q3 * cos_q6_before_q6_of_q3
-                )
-                quotient_in_highest_q6_of_q3 = (k.size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
-                highest_q6_of_q3 = select(
-                    quotient_in_highest_q6_of_q3 > 1.0,
-                    1.0,
-                    select(quotient_in_highest_q6_of_q3 < -1.0, -1.0, quotient_in_highest_q6_of_q3),
-                )
-                quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + k.size_q1_for_q3) / swing_q6_of_q3
-                lowest_q6_of_q3 = select(
-                    -quotient_in_lowest_q6_of_q3 > 1.0,
-                    1.0,
-                    select(-quotient_in_lowest_q6_of_q3 < -1.0, -1.0, -quotient_in_lowest_q6_of_q3),
-                )
-                holds = swing_q6_of_q3 > k.size_q1_for_q3_times_rounding
-                # feasible arc: cosines of its ends
-                highest_q6_of_q3 = select(holds, highest_q6_of_q3, 1.0)
-                lowest_q6_of_q3 = select(holds, lowest_q6_of_q3, -1.0)
-                near_q6_of_q3 = atan2(root((1.0 - highest_q6_of_q3) * (1.0 + highest_q6_of_q3)), highest_q6_of_q3)
-                far_q6_of_q3 = atan2(root((1.0 - lowest_q6_of_q3) * (1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-                centre_q6_of_q3 = atan2(across_q6_of_q3, along_q6_of_q3)
-                angle_q6_of_q3 = atan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)
-                side_q6_of_q3 = select(
-                    along_q6_of_q3 * sin_q6_before_q6_of_q3 - across_q6_of_q3 * cos_q6_before_q6_of_q3 >= 0.0, 1.0, -1.0
-                )
-                moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3,
-                    centre_q6_of_q3 + 0.5 * (far_q6_of_q3 + near_q6_of_q3) * side_q6_of_q3,
-                    0.5 * (far_q6_of_q3 - near_q6_of_q3),
-                )
-                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
-                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
-                sum_in_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
-                # change of the pose by this motion
-                cost_q6_of_q3 = (
-                    sqrt(sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3 + sum_in_cost_q6_of_q3_2 * sum_in_cost_q6_of_q3_2)
-                    * radius_q6
-                )
-                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11)
-                holds = stays_q6_of_q3
-                # moved so that q3 has a solution
-                cos_q6 = select(holds, cos_q6_before_q6_of_q3, cos_q6_after_q6_of_q3)
-                sin_q6 = select(holds, sin_q6_before_q6_of_q3, sin_q6_after_q6_of_q3)
-                return (cos_q6, sin_q6)
-
-            # moved so that q3 has a solution
-            cos_q6, sin_q6 = elsewhere(
-                (radius_q6 > 0.1) & (absolute(value_q6_of_q3) > k.product_in_cos_q6),
-                (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
-                elsewhere_cos_q6,
-                (
-                    ahead_q1,
-                    cos_q5,
-                    cos_q6_before_q6_of_q3,
-                    q6_radius_of_q5_times_r33,
-                    r31,
-                    r32,
-                    radius_q6,
-                    sin_q6_before_q6_of_q3,
-                    value_q6_of_q3,
-                    wrist_y_from_q1_fixed,
-                ),
-            )
+            cos_q6 = cos(reference_a6)
+            sin_q6 = sin(reference_a6)
             return (cos_q6, sin_q6)
 
-        # moved so that q3 has a solution
-        cos_q6, sin_q6 = elsewhere(
-            absolute(value_q6_of_q3) <= k.size_q1_for_q3,
-            (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
-            elsewhere_cos_q6,
-            (
-                ahead_q1,
-                cos_q5,
-                cos_q6_before_q6_of_q3,
-                q6_radius_of_q5_times_r33,
-                r31,
-                r32,
-                radius_q6,
-                sin_q6_before_q6_of_q3,
-                value_q6_of_q3,
-                wrist_y_from_q1_fixed,
-            ),
-        )
-        r21_from_q1_before_q6 = r31 * cos_q6 - r32 * sin_q6
-        r21_from_q1_before_q56 = r21_from_q1_before_q6 * cos_q5 - q6_radius_of_q5_times_r33
+        along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r21 and r23 equations
+        cos_q6 = along_q6 / radius_q6
+        across_q6 = sigma_wrist * r22_from_q1
+        sin_q6 = across_q6 / radius_q6
+        # at a singularity: the angle of the reference
+        cos_q6, sin_q6 = elsewhere(radius_q6 > 1e-11, (cos_q6, sin_q6), elsewhere_cos_q6, (ref_a6,))
+        r31_from_q1_before_q6 = r31 * cos_q6 - r32 * sin_q6
+        r31_from_q1_before_q56 = r31_from_q1_before_q6 * cos_q5 - q6_radius_of_q5 * r33
         # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1 = ahead_q1 - k.d5 * r21_from_q1_before_q56
-        r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
+        wrist_x_from_q1 = ahead_q1 - k.d5 * r31_from_q1_before_q56
+        r33_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
+        wrist_z = z - k.d6 * r33
         # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1 = wrist_y_from_q1_fixed + k.d5 * r22_from_q1_before_q6
+        wrist_z_from_q1 = wrist_z + k.d5 * r33_from_q1_before_q6 - k.d1
         # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
+        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (k.a2_plus_a3 + reach) * (k.a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - k.a2_minus_a3) * (k.a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * k.quotient_in_cos_q3
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * k.quotient_in_closed_cos_q3
+        within_37 = absolute(cos_q3) <= 1.0
+        lost_digits_37 = (opposite(within_37)) & (
+            (absolute(q6_radius_of_q5) <= 0.01)
+            | (absolute(radius_q6) <= 0.01)
+            | (absolute(ahead_q1) <= k.product_in_lost_digits_37)
+        )
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = root(sine_square_q3) * sigma_elbow * k.quotient_in_sin_q3
+        sin_q3 = root(sine_square_q3) * sigma_elbow * k.quotient_in_closed_sin_q3
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
@@ -750,8 +684,8 @@ class ArrayPrograms(Programs):
 
         arm_along_q2 = k.a2 + k.a3 * cos_q3
         arm_across_q2 = k.a3 * sin_q3
-        direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
-        direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
+        direction_x_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+        direction_y_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
         # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         direction_x_q2, direction_y_q2 = elsewhere(
@@ -768,7 +702,7 @@ class ArrayPrograms(Programs):
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(k.offset_a3 + angle_q3 / DEGREE, near_a3)  # A3: whole turns added
-        angle_with_q4 = atan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
+        angle_with_q4 = atan2(r31_from_q1_before_q56, r33_from_q1_before_q6)
         open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # q4 from the sum q234 of angles about parallel axes; A4: whole turns added
@@ -782,8 +716,60 @@ class ArrayPrograms(Programs):
         # q1: out of reach
         require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
-        require(status, absolute(cos_q3) <= 1.0000000000005, Status.UNREACHABLE)
-        return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
+        require(status, lost_digits_37 | (absolute(cos_q3) <= 1.0000000000005), Status.UNREACHABLE)
+        # digits were lost: the pose is met by steps on the closure
+        found = run_where(
+            lost_digits_37,
+            self.meet_pose,
+            (
+                ref_a1,
+                ref_a2,
+                ref_a3,
+                ref_a4,
+                ref_a5,
+                ref_a6,
+                sigma_elbow,
+                sigma_shoulder,
+                sigma_wrist,
+                turn_a1,
+                turn_a2,
+                turn_a3,
+                turn_a4,
+                turn_a5,
+                turn_a6,
+                r11,
+                r12,
+                r13,
+                r21,
+                r22,
+                r23,
+                r31,
+                r32,
+                r33,
+                x,
+                y,
+                z,
+                axis_a1,
+                axis_a2,
+                axis_a3,
+                axis_a4,
+                axis_a5,
+                axis_a6,
+            ),
+            status,
+            (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        )
+        met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = found
+        # q3: out of reach
+        require(status, met | (absolute(cos_q3) <= 1.0000000000005), Status.UNREACHABLE)
+        return (
+            select(met, found_a1, axis_a1),
+            select(met, found_a2, axis_a2),
+            select(met, found_a3, axis_a3),
+            select(met, found_a4, axis_a4),
+            select(met, found_a5, axis_a5),
+            select(met, found_a6, axis_a6),
+        ), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
@@ -824,10 +810,10 @@ class ArrayPrograms(Programs):
         cos_q234 = cos(q2_plus_q3_plus_q4)
         r11_at_q234 = cos_q1 * cos_q234
         cos_q5 = cos(q5)
-        r12_at_q5 = cos_q5 * sin_q1 - r11_at_q234 * sin_q5
+        r12_at_q5 = r11_at_q234 * sin_q5 - cos_q5 * sin_q1
         d6_times_r12_at_q5 = k.d6 * r12_at_q5
         sin_q234 = sin(q2_plus_q3_plus_q4)
-        r12_at_q234 = -cos_q1 * sin_q234
+        r13_at_q234 = -cos_q1 * sin_q234
         cos_q2 = cos(q2)
         r11_at_q2 = cos_q1 * cos_q2
         x_at_q3 = k.a2 * r11_at_q2
@@ -835,21 +821,21 @@ class ArrayPrograms(Programs):
         r11_at_q23 = cos_q1 * cos_q23
         x_at_q4 = x_at_q3 + k.a3 * r11_at_q23
         x_at_q5 = x_at_q4 + k.d4 * sin_q1
-        x_at_q6 = x_at_q5 - k.d5 * r12_at_q234
-        x = d6_times_r12_at_q5 + x_at_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
+        x_at_q6 = x_at_q5 - k.d5 * r13_at_q234
+        x = x_at_q6 - d6_times_r12_at_q5
+        wrist_x = d6_times_r12_at_q5 + x  # wrist centre: the last joints do not move this point
         r21_at_q234 = cos_q234 * sin_q1
-        r22_at_q5 = -cos_q1 * cos_q5 - r21_at_q234 * sin_q5
+        r22_at_q5 = cos_q1 * cos_q5 + r21_at_q234 * sin_q5
         d6_times_r22_at_q5 = k.d6 * r22_at_q5
-        r22_at_q234 = -sin_q1 * sin_q234
+        r23_at_q234 = -sin_q1 * sin_q234
         r21_at_q2 = cos_q2 * sin_q1
         y_at_q3 = k.a2 * r21_at_q2
         r21_at_q23 = cos_q23 * sin_q1
         y_at_q4 = y_at_q3 + k.a3 * r21_at_q23
         y_at_q5 = y_at_q4 - k.d4 * cos_q1
-        y_at_q6 = y_at_q5 - k.d5 * r22_at_q234
-        y = d6_times_r22_at_q5 + y_at_q6
-        wrist_y = y - d6_times_r22_at_q5
+        y_at_q6 = y_at_q5 - k.d5 * r23_at_q234
+        y = y_at_q6 - d6_times_r22_at_q5
+        wrist_y = d6_times_r22_at_q5 + y
         margin_wrist_on_axis_1 = -k.one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         return (margin_wrist_on_axis_1, sin_q3, sin_q5), status
@@ -874,9 +860,9 @@ class ArrayPrograms(Programs):
         q5 = DEGREE * (axis_a5 - k.offset_a5)
         sin_q5 = sin(q5)
         cos_q5 = cos(q5)
-        r22_at_q5 = -cos_q1 * cos_q5 - r21_at_q234 * sin_q5
+        r22_at_q5 = cos_q1 * cos_q5 + r21_at_q234 * sin_q5
         sin_q234 = sin(q2_plus_q3_plus_q4)
-        r22_at_q234 = -sin_q1 * sin_q234
+        r23_at_q234 = -sin_q1 * sin_q234
         cos_q2 = cos(q2)
         r21_at_q2 = cos_q2 * sin_q1
         y_at_q3 = k.a2 * r21_at_q2
@@ -884,31 +870,31 @@ class ArrayPrograms(Programs):
         r21_at_q23 = cos_q23 * sin_q1
         y_at_q4 = y_at_q3 + k.a3 * r21_at_q23
         y_at_q5 = y_at_q4 - k.d4 * cos_q1
-        y_at_q6 = y_at_q5 - k.d5 * r22_at_q234
-        y = y_at_q6 + k.d6 * r22_at_q5
-        r32_at_q5 = -sin_q234 * sin_q5
+        y_at_q6 = y_at_q5 - k.d5 * r23_at_q234
+        y = y_at_q6 - k.d6 * r22_at_q5
+        r32_at_q5 = sin_q234 * sin_q5
         r11_at_q234 = cos_q1 * cos_q234
-        r12_at_q5 = cos_q5 * sin_q1 - r11_at_q234 * sin_q5
-        r12_at_q234 = -cos_q1 * sin_q234
+        r12_at_q5 = r11_at_q234 * sin_q5 - cos_q5 * sin_q1
+        r13_at_q234 = -cos_q1 * sin_q234
         r11_at_q2 = cos_q1 * cos_q2
         x_at_q3 = k.a2 * r11_at_q2
         r11_at_q23 = cos_q1 * cos_q23
         x_at_q4 = x_at_q3 + k.a3 * r11_at_q23
         x_at_q5 = x_at_q4 + k.d4 * sin_q1
-        x_at_q6 = x_at_q5 - k.d5 * r12_at_q234
-        x = x_at_q6 + k.d6 * r12_at_q5
+        x_at_q6 = x_at_q5 - k.d5 * r13_at_q234
+        x = x_at_q6 - k.d6 * r12_at_q5
         sin_q2 = sin(q2)
         z_at_q3 = k.d1 + k.a2 * sin_q2
         sin_q23 = sin(q2_plus_q3)
         z_at_q4 = z_at_q3 + k.a3 * sin_q23
         z_at_q6 = z_at_q4 - k.d5 * cos_q234
-        z = z_at_q6 + k.d6 * r32_at_q5
+        z = z_at_q6 - k.d6 * r32_at_q5
         z_minus_d1 = z - k.d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
         y_minus_y_at_q5 = y - y_at_q5
-        y_minus_y_at_q6 = y - y_at_q6
         z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
         x_minus_x_at_q5 = x - x_at_q5
         x_minus_x_at_q6 = x - x_at_q6
         return (
@@ -917,26 +903,26 @@ class ArrayPrograms(Programs):
                 -z_minus_d1 * cos_q1,
                 -z_minus_z_at_q3 * cos_q1,
                 -z_minus_z_at_q4 * cos_q1,
-                y_minus_y_at_q5 * cos_q234 - r22_at_q234 * z_minus_z_at_q4,
-                r22_at_q5 * z_minus_z_at_q6 - r32_at_q5 * y_minus_y_at_q6,
+                y_minus_y_at_q5 * cos_q234 - r23_at_q234 * z_minus_z_at_q4,
+                r32_at_q5 * y_minus_y_at_q6 - r22_at_q5 * z_minus_z_at_q6,
             ),
             (
                 x,
                 -z_minus_d1 * sin_q1,
                 -z_minus_z_at_q3 * sin_q1,
                 -z_minus_z_at_q4 * sin_q1,
-                r12_at_q234 * z_minus_z_at_q4 - x_minus_x_at_q5 * cos_q234,
-                r32_at_q5 * x_minus_x_at_q6 - r12_at_q5 * z_minus_z_at_q6,
+                r13_at_q234 * z_minus_z_at_q4 - x_minus_x_at_q5 * cos_q234,
+                r12_at_q5 * z_minus_z_at_q6 - r32_at_q5 * x_minus_x_at_q6,
             ),
             (
                 0.0,
                 x * cos_q1 + y * sin_q1,
                 (x - x_at_q3) * cos_q1 + (y - y_at_q3) * sin_q1,
                 (x - x_at_q4) * cos_q1 + (y - y_at_q4) * sin_q1,
-                r22_at_q234 * x_minus_x_at_q5 - r12_at_q234 * y_minus_y_at_q5,
-                r12_at_q5 * y_minus_y_at_q6 - r22_at_q5 * x_minus_x_at_q6,
+                r23_at_q234 * x_minus_x_at_q5 - r13_at_q234 * y_minus_y_at_q5,
+                r22_at_q5 * x_minus_x_at_q6 - r12_at_q5 * y_minus_y_at_q6,
             ),
-            (0.0, sin_q1, sin_q1, sin_q1, -r12_at_q234, r12_at_q5),
-            (0.0, -cos_q1, -cos_q1, -cos_q1, -r22_at_q234, r22_at_q5),
-            (1.0, 0.0, 0.0, 0.0, -cos_q234, r32_at_q5),
+            (0.0, sin_q1, sin_q1, sin_q1, -r13_at_q234, -r12_at_q5),
+            (0.0, -cos_q1, -cos_q1, -cos_q1, -r23_at_q234, -r22_at_q5),
+            (1.0, 0.0, 0.0, 0.0, -cos_q234, -r32_at_q5),
         ), status

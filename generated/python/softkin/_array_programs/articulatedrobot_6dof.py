@@ -9,22 +9,29 @@ from softkin._array import (
     DEGREE,
     Programs,
     absolute,
+    advanced,
+    atan2,
     cos,
     degrees,
     elsewhere,
+    initial,
     nearest_period,
+    opposite,
     passed,
     reasonable,
     require,
     root,
+    run_where,
     select,
+    settled,
     sin,
+    solve,
     sqrt,
 )
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Values, Vector
     from softkin.articulatedrobot_6dof import Constants
 
 
@@ -32,7 +39,545 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 151
+    VALUES = 453
+
+    def meet_pose(self, given: Values, status: Codes) -> Values:
+        """The axes that meet a pose, found by steps on the closure, and whether they do."""
+        (
+            given_ref_a1,
+            given_ref_a2,
+            given_ref_a3,
+            given_ref_a4,
+            given_ref_a5,
+            given_ref_a6,
+            given_sigma_arm,
+            given_sigma_elbow,
+            given_sigma_hand,
+            given_turn_a1,
+            given_turn_a2,
+            given_turn_a3,
+            given_turn_a4,
+            given_turn_a5,
+            given_turn_a6,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            start_a1,
+            start_a2,
+            start_a3,
+            start_a4,
+            start_a5,
+            start_a6,
+        ) = given
+        k = self.constants
+        closed_wrist_x = goal_x - k.d6 * goal_r13  # wrist centre: the last joints do not move this point
+        closed_wrist_y = goal_y - k.d6 * goal_r23
+        # distance of the point from the axis of q1
+        closed_distance_q1 = sqrt(closed_wrist_x * closed_wrist_x + closed_wrist_y * closed_wrist_y)
+        # Pythagoras: square of the distance ahead of the axis
+        closed_ahead_squared_q1 = (closed_distance_q1 + k.d3) * (closed_distance_q1 - k.d3)
+        # how far ahead of the axis the point is; negative: behind it
+        closed_ahead_q1 = root(closed_ahead_squared_q1) * given_sigma_arm
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
+        closed_near_a1 = select(
+            given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
+        )
+        # coordinate of the point that the remaining links must reach
+        closed_wrist_x_from_q1 = closed_ahead_q1 - k.a1
+        closed_wrist_z = goal_z - k.d6 * goal_r33
+        # coordinate of the point that the remaining links must reach
+        closed_wrist_z_from_q1 = closed_wrist_z - k.d1
+        # distance that the remaining links must span
+        closed_reach = sqrt(
+            closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+        )
+        # A2: without a commanded turn, the value nearest to this
+        closed_open_a2 = select(k.single_a2, k.mid_a2, given_ref_a2)
+        closed_near_a2 = select(
+            given_turn_a2 != 0, 360.0 * select(given_turn_a2 > 0, given_turn_a2 - 1, given_turn_a2), closed_open_a2
+        )
+        # A3: without a commanded turn, the value nearest to this
+        closed_open_a3 = select(k.single_a3, k.mid_a3, given_ref_a3)
+        closed_near_a3 = select(
+            given_turn_a3 != 0, 360.0 * select(given_turn_a3 > 0, given_turn_a3 - 1, given_turn_a3), closed_open_a3
+        )
+        # A4: without a commanded turn, the value nearest to this
+        closed_open_a4 = select(k.single_a4, k.mid_a4, given_ref_a4)
+        closed_near_a4 = select(
+            given_turn_a4 != 0, 360.0 * select(given_turn_a4 > 0, given_turn_a4 - 1, given_turn_a4), closed_open_a4
+        )
+        # A5: without a commanded turn, the value nearest to this
+        closed_open_a5 = select(k.single_a5, k.mid_a5, given_ref_a5)
+        closed_near_a5 = select(
+            given_turn_a5 != 0, 360.0 * select(given_turn_a5 > 0, given_turn_a5 - 1, given_turn_a5), closed_open_a5
+        )
+        # A6: without a commanded turn, the value nearest to this
+        closed_open_a6 = select(k.single_a6, k.mid_a6, given_ref_a6)
+        closed_near_a6 = select(
+            given_turn_a6 != 0, 360.0 * select(given_turn_a6 > 0, given_turn_a6 - 1, given_turn_a6), closed_open_a6
+        )
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        closed_one_less_cos_q3 = (k.a2_plus_effective_q3_2 + closed_reach) * (k.a2_plus_effective_q3_2 - closed_reach)
+        # 1 + cosine, times the scale
+        closed_one_plus_cos_q3 = (closed_reach - k.a2_minus_effective_q3_2_2) * (
+            k.a2_minus_effective_q3_2_2 + closed_reach
+        )
+        # sum of both, twice the scale: cosine² + sine² is then 1
+        closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
+        closed_divisor_of_cos_q3 = select(closed_sum_q3 > 0.0, closed_sum_q3, 1.0)
+        # sine squared, times the squared scale
+        closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
+        closed_sin_swing_q3 = -2.0 * root(closed_sine_square_q3) * given_sigma_elbow / closed_divisor_of_cos_q3
+        closed_arm_along_q2 = -closed_sin_swing_q3 * k.effective_q3_2
+        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
+        closed_arm_across_q2 = k.a2 + closed_cos_swing_q3 * k.effective_q3_2
+        # rotation by q2 that takes the arm to its target point
+        closed_along_q2 = closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
+        closed_across_q2 = closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
+        sum_in_closed_length_q2 = closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        closed_cos_q3 = k.a3_by_effective_q3_2 * closed_cos_swing_q3 - closed_sin_swing_q3 * k.d4_by_effective_q3_2
+        closed_sin_q3 = k.a3_by_effective_q3_2 * closed_sin_swing_q3 + closed_cos_swing_q3 * k.d4_by_effective_q3_2
+        closed_axis_a3 = nearest_period(k.offset_a3 + degrees(closed_sin_q3, closed_cos_q3), closed_near_a3)
+        # steps of damped least squares on the closure, from one start after the other
+        tried_a1, tried_a2, tried_a3, tried_a4, tried_a5, tried_a6, passes_left, attempt, error_before = initial(
+            start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 40, 0, 9.0
+        )
+        for _ in range(164):
+            q1 = (tried_a1 - k.offset_a1) * DEGREE
+            sin_q1 = sin(q1)
+            cos_q1 = cos(q1)
+            q2 = (tried_a2 - k.offset_a2) * DEGREE
+            q3 = (tried_a3 - k.offset_a3) * DEGREE
+            q2_plus_q3 = q2 + q3
+            cos_q23 = cos(q2_plus_q3)
+            r11_at_q23 = cos_q1 * cos_q23
+            sin_q23 = sin(q2_plus_q3)
+            r13_at_q23 = -cos_q1 * sin_q23
+            q4 = (tried_a4 - k.offset_a4) * DEGREE
+            sin_q4 = sin(q4)
+            cos_q4 = cos(q4)
+            r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+            q5 = (tried_a5 - k.offset_a5) * DEGREE
+            sin_q5 = sin(q5)
+            cos_q5 = cos(q5)
+            r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+            x_at_q2 = k.a1 * cos_q1
+            sin_q2 = sin(q2)
+            r13_at_q2 = -cos_q1 * sin_q2
+            x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+            x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d3 * sin_q1
+            x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
+            d6_times_r11_at_q5 = k.d6 * r11_at_q5
+            x = d6_times_r11_at_q5 + x_at_q5
+            wrist_x = x - d6_times_r11_at_q5  # wrist centre: the last joints do not move this point
+            r21_at_q23 = cos_q23 * sin_q1
+            r23_at_q23 = -sin_q1 * sin_q23
+            r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+            r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+            y_at_q2 = k.a1 * sin_q1
+            r23_at_q2 = -sin_q1 * sin_q2
+            y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+            y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 - k.d3 * cos_q1
+            y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
+            d6_times_r21_at_q5 = k.d6 * r21_at_q5
+            y = d6_times_r21_at_q5 + y_at_q5
+            wrist_y = y - d6_times_r21_at_q5
+            branch_arm = k.one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
+            beside_arm = given_sigma_arm * branch_arm < -1e-6
+            sin_q3 = sin(q3)
+            cos_q3 = cos(q3)
+            branch_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2
+            beside_elbow = given_sigma_elbow * branch_elbow < -1e-6
+            beside_hand = given_sigma_hand * sin_q5 < -1e-6
+            r33_at_q4 = cos_q23 * cos_q4
+            r31_at_q5 = cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+            r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+            r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+            q6 = (tried_a6 - k.offset_a6) * DEGREE
+            sin_q6 = sin(q6)
+            cos_q6 = cos(q6)
+            r13_at_q6 = r13_at_q5 * cos_q6 - r12_at_q4 * sin_q6
+            r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+            r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+            r23_at_q6 = r23_at_q5 * cos_q6 - r22_at_q4 * sin_q6
+            r32_at_q4 = cos_q23 * sin_q4
+            r33_at_q5 = r33_at_q4 * cos_q5 + sin_q23 * sin_q5
+            r33_at_q6 = r33_at_q5 * cos_q6 - r32_at_q4 * sin_q6
+            r12_at_q6 = r12_at_q4 * cos_q6 + r13_at_q5 * sin_q6
+            r22_at_q6 = r22_at_q4 * cos_q6 + r23_at_q5 * sin_q6
+            r32_at_q6 = r32_at_q4 * cos_q6 + r33_at_q5 * sin_q6
+            error_1 = (goal_x - x) * k.one_by_machine_scale
+            error_2 = (goal_y - y) * k.one_by_machine_scale
+            cos_q2 = cos(q2)
+            z_at_q3 = k.d1 + k.a2 * cos_q2
+            z_at_q4 = z_at_q3 + k.a3 * cos_q23
+            z_at_q5 = z_at_q4 + k.d4 * sin_q23
+            z = z_at_q5 + k.d6 * r31_at_q5
+            error_3 = (goal_z - z) * k.one_by_machine_scale
+            error_4 = 0.5 * (
+                goal_r22 * r32_at_q6
+                + goal_r31 * r23_at_q6
+                + goal_r33 * r21_at_q5
+                - goal_r21 * r33_at_q6
+                - goal_r23 * r31_at_q5
+                - goal_r32 * r22_at_q6
+            )
+            error_5 = 0.5 * (
+                goal_r11 * r33_at_q6
+                + goal_r13 * r31_at_q5
+                + goal_r32 * r12_at_q6
+                - goal_r12 * r32_at_q6
+                - goal_r31 * r13_at_q6
+                - goal_r33 * r11_at_q5
+            )
+            error_6 = 0.5 * (
+                goal_r12 * r22_at_q6
+                + goal_r21 * r13_at_q6
+                + goal_r23 * r11_at_q5
+                - goal_r11 * r23_at_q6
+                - goal_r13 * r21_at_q5
+                - goal_r22 * r12_at_q6
+            )
+            value_in_error = select(
+                goal_r11 * r13_at_q6
+                + goal_r13 * r11_at_q5
+                + goal_r21 * r23_at_q6
+                + goal_r23 * r21_at_q5
+                + goal_r31 * r33_at_q6
+                + goal_r33 * r31_at_q5
+                - 1.0
+                - goal_r12 * r12_at_q6
+                - goal_r22 * r22_at_q6
+                - goal_r32 * r32_at_q6
+                > 0.0,
+                0.0,
+                1.0,
+            )
+            # error of the pose, in characteristic lengths and radians
+            error = value_in_error + sqrt(
+                error_1 * error_1
+                + error_2 * error_2
+                + error_3 * error_3
+                + error_4 * error_4
+                + error_5 * error_5
+                + error_6 * error_6
+            )
+            another = passes_left <= 0
+            # the error is rounding, and steps make it no smaller
+            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
+            pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow)) & (opposite(beside_hand))
+            next_attempt = attempt + select(another, 1, 0)
+            mirrors = pose_is_close & (beside_arm | beside_elbow | beside_hand)
+            free_angle = select(next_attempt > 0, 1e-6, 1e-11)
+            free_turn = -137.5 * select(next_attempt > 1, 1 - next_attempt, 0)
+            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            closed_divisor_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * closed_wrist_x - closed_wrist_y * k.d3) / closed_divisor_q1,
+                cos(closed_reference_a1),
+            )
+            closed_sin_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * closed_wrist_y + closed_wrist_x * k.d3) / closed_divisor_q1,
+                sin(closed_reference_a1),
+            )
+            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
+            rate_1_1 = -k.one_by_machine_scale * y
+            rate_2_1 = k.one_by_machine_scale * x
+            z_minus_d1 = z - k.d1
+            cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
+            rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q3 = z - z_at_q3
+            rate_1_3 = -z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q4 = z - z_at_q4
+            y_minus_y_at_q4 = y - y_at_q4
+            rate_1_4 = k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 - y_minus_y_at_q4 * sin_q23)
+            z_minus_z_at_q5 = z - z_at_q5
+            y_minus_y_at_q5 = y - y_at_q5
+            rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
+            rate_1_6 = k.one_by_machine_scale * (r21_at_q5 * z_minus_z_at_q5 - r31_at_q5 * y_minus_y_at_q5)
+            product_in_damping = 0.001 * error
+            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
+            product_1_1 = (
+                damping
+                + rate_1_1 * rate_1_1
+                + rate_1_2 * rate_1_2
+                + rate_1_3 * rate_1_3
+                + rate_1_4 * rate_1_4
+                + rate_1_5 * rate_1_5
+                + rate_1_6 * rate_1_6
+            )
+            sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
+            rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
+            rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+            x_minus_x_at_q4 = x - x_at_q4
+            rate_2_4 = (x_minus_x_at_q4 * sin_q23 - r11_at_q23 * z_minus_z_at_q4) * k.one_by_machine_scale
+            x_minus_x_at_q5 = x - x_at_q5
+            rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
+            rate_2_6 = (r31_at_q5 * x_minus_x_at_q5 - r11_at_q5 * z_minus_z_at_q5) * k.one_by_machine_scale
+            product_1_2 = (
+                rate_1_1 * rate_2_1
+                + rate_1_2 * rate_2_2
+                + rate_1_3 * rate_2_3
+                + rate_1_4 * rate_2_4
+                + rate_1_5 * rate_2_5
+                + rate_1_6 * rate_2_6
+            )
+            rate_3_2 = -k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+            rate_3_3 = -k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+            rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+            rate_3_6 = k.one_by_machine_scale * (r11_at_q5 * y_minus_y_at_q5 - r21_at_q5 * x_minus_x_at_q5)
+            product_1_3 = (
+                rate_1_2 * rate_3_2
+                + rate_1_3 * rate_3_3
+                + rate_1_4 * rate_3_4
+                + rate_1_5 * rate_3_5
+                + rate_1_6 * rate_3_6
+            )
+            rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
+            product_1_4 = (
+                r11_at_q23 * rate_1_4 + r11_at_q5 * rate_1_6 + r12_at_q4 * rate_1_5 + rate_1_2_plus_rate_1_3 * sin_q1
+            )
+            product_1_5 = (
+                r21_at_q23 * rate_1_4 + r21_at_q5 * rate_1_6 + r22_at_q4 * rate_1_5 - rate_1_2_plus_rate_1_3 * cos_q1
+            )
+            product_1_6 = rate_1_1 + r31_at_q5 * rate_1_6 + r32_at_q4 * rate_1_5 + rate_1_4 * sin_q23
+            product_2_2 = (
+                damping
+                + rate_2_1 * rate_2_1
+                + rate_2_2 * rate_2_2
+                + rate_2_3 * rate_2_3
+                + rate_2_4 * rate_2_4
+                + rate_2_5 * rate_2_5
+                + rate_2_6 * rate_2_6
+            )
+            product_2_3 = (
+                rate_2_2 * rate_3_2
+                + rate_2_3 * rate_3_3
+                + rate_2_4 * rate_3_4
+                + rate_2_5 * rate_3_5
+                + rate_2_6 * rate_3_6
+            )
+            rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
+            product_2_4 = (
+                r11_at_q23 * rate_2_4 + r11_at_q5 * rate_2_6 + r12_at_q4 * rate_2_5 + rate_2_2_plus_rate_2_3 * sin_q1
+            )
+            product_2_5 = (
+                r21_at_q23 * rate_2_4 + r21_at_q5 * rate_2_6 + r22_at_q4 * rate_2_5 - rate_2_2_plus_rate_2_3 * cos_q1
+            )
+            product_2_6 = rate_2_1 + r31_at_q5 * rate_2_6 + r32_at_q4 * rate_2_5 + rate_2_4 * sin_q23
+            product_3_3 = (
+                damping
+                + rate_3_2 * rate_3_2
+                + rate_3_3 * rate_3_3
+                + rate_3_4 * rate_3_4
+                + rate_3_5 * rate_3_5
+                + rate_3_6 * rate_3_6
+            )
+            rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
+            product_3_4 = (
+                r11_at_q23 * rate_3_4 + r11_at_q5 * rate_3_6 + r12_at_q4 * rate_3_5 + rate_3_2_plus_rate_3_3 * sin_q1
+            )
+            product_3_5 = (
+                r21_at_q23 * rate_3_4 + r21_at_q5 * rate_3_6 + r22_at_q4 * rate_3_5 - rate_3_2_plus_rate_3_3 * cos_q1
+            )
+            product_3_6 = r31_at_q5 * rate_3_6 + r32_at_q4 * rate_3_5 + rate_3_4 * sin_q23
+            product_4_4 = (
+                damping
+                + r11_at_q23 * r11_at_q23
+                + r11_at_q5 * r11_at_q5
+                + r12_at_q4 * r12_at_q4
+                + 2.0 * sin_q1 * sin_q1
+            )
+            product_4_5 = (
+                r11_at_q23 * r21_at_q23 + r11_at_q5 * r21_at_q5 + r12_at_q4 * r22_at_q4 - 2.0 * cos_q1 * sin_q1
+            )
+            product_4_6 = r11_at_q23 * sin_q23 + r11_at_q5 * r31_at_q5 + r12_at_q4 * r32_at_q4
+            product_5_5 = (
+                damping
+                + 2.0 * cos_q1 * cos_q1
+                + r21_at_q23 * r21_at_q23
+                + r21_at_q5 * r21_at_q5
+                + r22_at_q4 * r22_at_q4
+            )
+            product_5_6 = r21_at_q23 * sin_q23 + r21_at_q5 * r31_at_q5 + r22_at_q4 * r32_at_q4
+            product_6_6 = 1.0 + damping + r31_at_q5 * r31_at_q5 + r32_at_q4 * r32_at_q4 + sin_q23 * sin_q23
+            _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
+                (
+                    (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
+                    (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
+                    (product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6),
+                    (product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6),
+                    (product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6),
+                    (product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6),
+                ),
+                ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
+            )
+            step_a1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            sum_in_step_a2 = multiplier_4 * sin_q1 - multiplier_5 * cos_q1
+            step_a2 = sum_in_step_a2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_a3 = sum_in_step_a2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_a4 = (
+                multiplier_1 * rate_1_4
+                + multiplier_2 * rate_2_4
+                + multiplier_3 * rate_3_4
+                + multiplier_4 * r11_at_q23
+                + multiplier_5 * r21_at_q23
+                + multiplier_6 * sin_q23
+            )
+            step_a5 = (
+                multiplier_1 * rate_1_5
+                + multiplier_2 * rate_2_5
+                + multiplier_3 * rate_3_5
+                + multiplier_4 * r12_at_q4
+                + multiplier_5 * r22_at_q4
+                + multiplier_6 * r32_at_q4
+            )
+            step_a6 = (
+                multiplier_1 * rate_1_6
+                + multiplier_2 * rate_2_6
+                + multiplier_3 * rate_3_6
+                + multiplier_4 * r11_at_q5
+                + multiplier_5 * r21_at_q5
+                + multiplier_6 * r31_at_q5
+            )
+            step_length = sqrt(
+                step_a1 * step_a1
+                + step_a2 * step_a2
+                + step_a3 * step_a3
+                + step_a4 * step_a4
+                + step_a5 * step_a5
+                + step_a6 * step_a6
+            )
+            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
+            closed_length_q2 = select(
+                (closed_reach > free_angle_times_machine_scale) & (sum_in_closed_length_q2 > 0.0),
+                root(sum_in_closed_length_q2),
+                1.0,
+            )
+            # at a singularity: the angle of the reference
+            closed_cos_q2 = select(
+                closed_reach > free_angle_times_machine_scale,
+                closed_along_q2 / closed_length_q2,
+                cos(closed_reference_a2),
+            )
+            closed_sin_q2 = select(
+                closed_reach > free_angle_times_machine_scale,
+                closed_across_q2 / closed_length_q2,
+                sin(closed_reference_a2),
+            )
+            closed_axis_a2 = nearest_period(k.offset_a2 + atan2(closed_sin_q2, closed_cos_q2) / DEGREE, closed_near_a2)
+            closed_reference_a4 = DEGREE * (free_turn + given_ref_a4 - k.offset_a4)
+            closed_r13_from_q1 = closed_cos_q1 * goal_r13 + closed_sin_q1 * goal_r23
+            closed_sin_q23 = closed_cos_q2 * closed_sin_q3 + closed_cos_q3 * closed_sin_q2
+            closed_cos_q23 = closed_cos_q2 * closed_cos_q3 - closed_sin_q2 * closed_sin_q3
+            closed_r33_from_q123 = closed_cos_q23 * goal_r33 - closed_r13_from_q1 * closed_sin_q23
+            closed_r23_from_q1 = closed_cos_q1 * goal_r23 - closed_sin_q1 * goal_r13
+            # polar coordinates: the radius at angle q4
+            closed_radius_q4 = sqrt(
+                closed_r23_from_q1 * closed_r23_from_q1 + closed_r33_from_q123 * closed_r33_from_q123
+            )
+            # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
+            # reference
+            closed_direction_x_q4 = select(
+                closed_radius_q4 > free_angle, -given_sigma_hand * closed_r33_from_q123, cos(closed_reference_a4)
+            )
+            closed_direction_y_q4 = select(
+                closed_radius_q4 > free_angle, given_sigma_hand * closed_r23_from_q1, sin(closed_reference_a4)
+            )
+            closed_axis_a4 = nearest_period(
+                k.offset_a4 + atan2(closed_direction_y_q4, closed_direction_x_q4) / DEGREE, closed_near_a4
+            )
+            closed_r13_from_q123 = closed_cos_q23 * closed_r13_from_q1 + closed_sin_q23 * goal_r33
+            closed_q4_radius_of_q5 = given_sigma_hand * closed_radius_q4
+            closed_axis_a5 = nearest_period(
+                k.offset_a5 + atan2(closed_q4_radius_of_q5, closed_r13_from_q123) / DEGREE, closed_near_a5
+            )
+            closed_r22_from_q1 = closed_cos_q1 * goal_r22 - closed_sin_q1 * goal_r12
+            closed_r12_from_q1 = closed_cos_q1 * goal_r12 + closed_sin_q1 * goal_r22
+            closed_r32_from_q123 = closed_cos_q23 * goal_r32 - closed_r12_from_q1 * closed_sin_q23
+            # cosine and sine of q6 from the r22 and r23 equations
+            closed_direction_x_q6 = (
+                -closed_direction_x_q4 * closed_r22_from_q1 - closed_direction_y_q4 * closed_r32_from_q123
+            )
+            closed_r21_from_q1 = closed_cos_q1 * goal_r21 - closed_sin_q1 * goal_r11
+            closed_r11_from_q1 = closed_cos_q1 * goal_r11 + closed_sin_q1 * goal_r21
+            closed_r31_from_q123 = closed_cos_q23 * goal_r31 - closed_r11_from_q1 * closed_sin_q23
+            closed_direction_y_q6 = (
+                -closed_direction_x_q4 * closed_r21_from_q1 - closed_direction_y_q4 * closed_r31_from_q123
+            )
+            closed_axis_a6 = nearest_period(
+                k.offset_a6 + atan2(closed_direction_y_q6, closed_direction_x_q6) / DEGREE, closed_near_a6
+            )
+            shared_quotient = shrinking / DEGREE
+            done = pose_is_met | (another & (next_attempt >= 4))
+            if settled(done, status):
+                break
+            tried_a1, tried_a2, tried_a3, tried_a4, tried_a5, tried_a6, passes_left, attempt, error_before = advanced(
+                done,
+                (tried_a1, tried_a2, tried_a3, tried_a4, tried_a5, tried_a6, passes_left, attempt, error_before),
+                (
+                    select(
+                        another,
+                        closed_axis_a1,
+                        select(
+                            mirrors,
+                            select(beside_arm, 2.0 * closed_axis_a1 - tried_a1, tried_a1),
+                            tried_a1 + shared_quotient * step_a1,
+                        ),
+                    ),
+                    select(another, closed_axis_a2, select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2)),
+                    select(
+                        another,
+                        closed_axis_a3,
+                        select(
+                            mirrors,
+                            select(beside_elbow, 2.0 * closed_axis_a3 - tried_a3, tried_a3),
+                            tried_a3 + shared_quotient * step_a3,
+                        ),
+                    ),
+                    select(
+                        another,
+                        closed_axis_a4,
+                        select(
+                            mirrors,
+                            select(beside_hand, 2.0 * closed_axis_a4 - tried_a4, tried_a4),
+                            tried_a4 + shared_quotient * step_a4,
+                        ),
+                    ),
+                    select(another, closed_axis_a5, select(mirrors, tried_a5, tried_a5 + shared_quotient * step_a5)),
+                    select(another, closed_axis_a6, select(mirrors, tried_a6, tried_a6 + shared_quotient * step_a6)),
+                    select(another, 40, passes_left - 1),
+                    next_attempt,
+                    select(another | mirrors, 9.0, error),
+                ),
+            )
+        require(status, done, Status.UNREACHABLE)
+        chosen_a1 = nearest_period(tried_a1, closed_near_a1)
+        chosen_a2 = nearest_period(tried_a2, closed_near_a2)
+        chosen_a3 = nearest_period(tried_a3, closed_near_a3)
+        chosen_a4 = nearest_period(tried_a4, closed_near_a4)
+        chosen_a5 = nearest_period(tried_a5, closed_near_a5)
+        chosen_a6 = nearest_period(tried_a6, closed_near_a6)
+        return (pose_is_met, chosen_a1, chosen_a2, chosen_a3, chosen_a4, chosen_a5, chosen_a6)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -49,66 +594,70 @@ class ArrayPrograms(Programs):
         q3 = DEGREE * (axis_a3 - k.offset_a3)
         q2_plus_q3 = q2 + q3
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1 * cos_q23
+        r11_at_q23 = cos_q1 * cos_q23
         sin_q1 = sin(q1)
         sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1 * sin_q23
+        r13_at_q23 = -cos_q1 * sin_q23
         q4 = DEGREE * (axis_a4 - k.offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r11_at_q4 = r11_at_q23 * cos_q4 + sin_q1 * sin_q4
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
         cos_q5 = cos(q5)
-        r12_at_q5 = -r12_at_q23 * cos_q5 - r11_at_q4 * sin_q5
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
         x_at_q2 = k.a1 * cos_q1
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + k.a2 * r11_at_q2
-        x_at_q4 = x_at_q3 + k.a3 * r11_at_q23 + k.d3 * sin_q1
-        x_at_q5 = x_at_q4 - k.d4 * r12_at_q23
-        d6_times_r12_at_q5 = k.d6 * r12_at_q5
-        x = d6_times_r12_at_q5 + x_at_q5
-        r22_at_q23 = -cos_q23 * sin_q1
-        r21_at_q23 = -sin_q1 * sin_q23
-        r21_at_q4 = r21_at_q23 * cos_q4 - cos_q1 * sin_q4
-        r22_at_q5 = -r22_at_q23 * cos_q5 - r21_at_q4 * sin_q5
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d3 * sin_q1
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
+        d6_times_r11_at_q5 = k.d6 * r11_at_q5
+        x = d6_times_r11_at_q5 + x_at_q5
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = -sin_q1 * sin_q23
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
         y_at_q2 = k.a1 * sin_q1
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + k.a2 * r21_at_q2
-        y_at_q4 = y_at_q3 + k.a3 * r21_at_q23 - k.d3 * cos_q1
-        y_at_q5 = y_at_q4 - k.d4 * r22_at_q23
-        d6_times_r22_at_q5 = k.d6 * r22_at_q5
-        y = d6_times_r22_at_q5 + y_at_q5
-        r31_at_q4 = cos_q23 * cos_q4
-        r32_at_q5 = cos_q5 * sin_q23 - r31_at_q4 * sin_q5
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 - k.d3 * cos_q1
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
+        d6_times_r21_at_q5 = k.d6 * r21_at_q5
+        y = d6_times_r21_at_q5 + y_at_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        r31_at_q5 = cos_q5 * sin_q23 - r33_at_q4 * sin_q5
         cos_q2 = cos(q2)
         z_at_q3 = k.d1 + k.a2 * cos_q2
         z_at_q4 = z_at_q3 + k.a3 * cos_q23
         z_at_q5 = z_at_q4 + k.d4 * sin_q23
-        z = z_at_q5 + k.d6 * r32_at_q5
-        r12_at_q4 = cos_q4 * sin_q1 - r11_at_q23 * sin_q4
-        r11_at_q5 = r11_at_q4 * cos_q5 - r12_at_q23 * sin_q5
+        z = z_at_q5 + k.d6 * r31_at_q5
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
         q6 = DEGREE * (axis_a6 - k.offset_a6)
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
-        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
-        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
-        r22_at_q4 = -cos_q1 * cos_q4 - r21_at_q23 * sin_q4
-        r21_at_q5 = r21_at_q4 * cos_q5 - r22_at_q23 * sin_q5
-        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
-        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
-        r32_at_q4 = -cos_q23 * sin_q4
-        r31_at_q5 = r31_at_q4 * cos_q5 + sin_q23 * sin_q5
-        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
-        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
-        wrist_y = y - d6_times_r22_at_q5
+        r13_at_q6 = r13_at_q5 * cos_q6 - r12_at_q4 * sin_q6
+        r12_at_q6 = r12_at_q4 * cos_q6 + r13_at_q5 * sin_q6
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        r23_at_q6 = r23_at_q5 * cos_q6 - r22_at_q4 * sin_q6
+        r22_at_q6 = r22_at_q4 * cos_q6 + r23_at_q5 * sin_q6
+        r32_at_q4 = cos_q23 * sin_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 + sin_q23 * sin_q5
+        r33_at_q6 = r33_at_q5 * cos_q6 - r32_at_q4 * sin_q6
+        r32_at_q6 = r32_at_q4 * cos_q6 + r33_at_q5 * sin_q6
+        wrist_x = x - d6_times_r11_at_q5  # wrist centre: the last joints do not move this point
+        wrist_y = y - d6_times_r21_at_q5
         branch_arm = k.one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = k.d4_by_effective_q3 * cos_q3 - k.a3_by_effective_q3 * sin_q3
+        branch_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2_2
         return (
             (x, y, z),
-            ((r11_at_q6, r12_at_q6, r12_at_q5), (r21_at_q6, r22_at_q6, r22_at_q5), (r31_at_q6, r32_at_q6, r32_at_q5)),
+            (
+                (r13_at_q6, -r12_at_q6, r11_at_q5),
+                (r23_at_q6, -r22_at_q6, r21_at_q5),
+                (r33_at_q6, -r32_at_q6, r31_at_q5),
+            ),
             (branch_arm, branch_elbow, sin_q5),
         ), status
 
@@ -131,138 +680,34 @@ class ArrayPrograms(Programs):
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - k.d3) * (k.d3 + distance_q1)
         distance_q1_squared = distance_q1 * distance_q1
-        wrist_z = z - k.d6 * r33
-        wrist_y_from_q1 = wrist_z - k.d1  # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
-        # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_before_q1_for_q3 = root(ahead_squared_q1) * sigma_arm
-
-        def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
-            reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(reference_a1)
-            sin_q1_before_q1_for_q3 = sin(reference_a1)
-            return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
-
-        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - k.d3 * wrist_y) / distance_q1_squared
-        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + k.d3 * wrist_x) / distance_q1_squared
-        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
-        cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
-            distance_q1 > k.machine_scale_times_free_angle,
-            (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
-            elsewhere_cos_q1_before_q1_for_q3,
-            (ref_a1,),
-        )
-
-        def elsewhere_ahead_q1(
-            ahead_q1_before_q1_for_q3: Real,
-            cos_q1_before_q1_for_q3: Real,
-            sin_q1_before_q1_for_q3: Real,
-            wrist_x: Real,
-            wrist_y: Real,
-            wrist_y_from_q1_squared: Real,
-        ) -> Reals:
-            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - k.a1
-            # q3 has solutions where this is within its bound
-            value_q1_for_q3 = (
-                wrist_y_from_q1_squared
-                + wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
-                - k.a2_squared_plus_effective_q3_squared
-            )
-
-            def elsewhere_ahead_q1(
-                ahead_q1_before_q1_for_q3: Real,
-                cos_q1_before_q1_for_q3: Real,
-                sin_q1_before_q1_for_q3: Real,
-                value_q1_for_q3: Real,
-                wrist_x: Real,
-                wrist_x_from_q1_before_q1_for_q3: Real,
-                wrist_y: Real,
-            ) -> Reals:
-                rate_q1_for_q3 = -k.twice_d3 * wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
-                excess_q1_for_q3 = select(
-                    value_q1_for_q3 > 0.0, value_q1_for_q3 - k.size_q1_for_q3, k.size_q1_for_q3 + value_q1_for_q3
-                )
-                # turn of q1 to first order
-                turn_q1_for_q3 = select(
-                    absolute(rate_q1_for_q3) > k.size_q1_for_q3_times_rounding, -excess_q1_for_q3 / rate_q1_for_q3, 0.0
-                )
-                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3 * turn_q1_for_q3)
-                one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
-                turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                    cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
-                )
-                turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                    sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
-                )
-                # residual of the equation of q1
-                turned_cost_q1_for_q3 = absolute(k.d3 + turned_cos_q1_for_q3 * wrist_y - turned_sin_q1_for_q3 * wrist_x)
-
-                def elsewhere_ahead_q1(
-                    ahead_q1_before_q1_for_q3: Real,
-                    one_by_turned_length_q1_for_q3: Real,
-                    turn_q1_for_q3: Real,
-                    turned_cos_q1_for_q3: Real,
-                    turned_sin_q1_for_q3: Real,
-                ) -> Reals:
-                    ahead_q1 = (ahead_q1_before_q1_for_q3 - k.d3 * turn_q1_for_q3) * one_by_turned_length_q1_for_q3
-                    return (ahead_q1, turned_cos_q1_for_q3, turned_sin_q1_for_q3)
-
-                # turned so that q3 has a solution
-                ahead_q1, cos_q1, sin_q1 = elsewhere(
-                    turned_cost_q1_for_q3 > k.machine_scale_times_rounding,
-                    (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
-                    elsewhere_ahead_q1,
-                    (
-                        ahead_q1_before_q1_for_q3,
-                        one_by_turned_length_q1_for_q3,
-                        turn_q1_for_q3,
-                        turned_cos_q1_for_q3,
-                        turned_sin_q1_for_q3,
-                    ),
-                )
-                return (ahead_q1, cos_q1, sin_q1)
-
-            # turned so that q3 has a solution
-            ahead_q1, cos_q1, sin_q1 = elsewhere(
-                absolute(value_q1_for_q3) <= k.size_q1_for_q3,
-                (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
-                elsewhere_ahead_q1,
-                (
-                    ahead_q1_before_q1_for_q3,
-                    cos_q1_before_q1_for_q3,
-                    sin_q1_before_q1_for_q3,
-                    value_q1_for_q3,
-                    wrist_x,
-                    wrist_x_from_q1_before_q1_for_q3,
-                    wrist_y,
-                ),
-            )
-            return (ahead_q1, cos_q1, sin_q1)
-
-        # turned so that q3 has a solution
-        ahead_q1, cos_q1, sin_q1 = elsewhere(
-            ahead_squared_q1 > k.machine_scale_squared_times_plane,
-            (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
-            elsewhere_ahead_q1,
-            (
-                ahead_q1_before_q1_for_q3,
-                cos_q1_before_q1_for_q3,
-                sin_q1_before_q1_for_q3,
-                wrist_x,
-                wrist_y,
-                wrist_y_from_q1_squared,
-            ),
-        )
+        ahead_q1 = root(ahead_squared_q1) * sigma_arm  # how far ahead of the axis the point is; negative: behind it
         wrist_x_from_q1 = ahead_q1 - k.a1  # coordinate of the point that the remaining links must reach
+        wrist_z = z - k.d6 * r33
+        wrist_z_from_q1 = wrist_z - k.d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (k.a2_plus_effective_q3 + reach) * (k.a2_plus_effective_q3 - reach)
+        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3 = (k.a2_plus_effective_q3_2_2 + reach) * (k.a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - k.a2_minus_effective_q3) * (k.a2_minus_effective_q3 + reach)
+        one_plus_cos_q3 = (reach - k.a2_minus_effective_q3_2) * (k.a2_minus_effective_q3_2 + reach)
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = select(sum_q3 > 0.0, sum_q3, 1.0)
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        within_23 = absolute(cos_swing_q3) <= 1.0
+        lost_digits_23 = (opposite(within_23)) & (absolute(ahead_q1) <= k.product_in_lost_digits_23)
+
+        def elsewhere_cos_q1(ref_a1: Real) -> Reals:
+            reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
+            cos_q1 = cos(reference_a1)
+            sin_q1 = sin(reference_a1)
+            return (cos_q1, sin_q1)
+
+        cos_q1 = (ahead_q1 * wrist_x - k.d3 * wrist_y) / distance_q1_squared
+        sin_q1 = (ahead_q1 * wrist_y + k.d3 * wrist_x) / distance_q1_squared
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+        cos_q1, sin_q1 = elsewhere(
+            distance_q1 > k.machine_scale_times_free_angle, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,)
+        )
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
@@ -275,11 +720,11 @@ class ArrayPrograms(Programs):
             sin_q2 = sin(reference_a2)
             return (cos_q2, sin_q2)
 
-        arm_along_q2 = -k.effective_q3 * sin_swing_q3
-        arm_across_q2 = k.a2 + k.effective_q3 * cos_swing_q3
+        arm_along_q2 = -k.effective_q3_2 * sin_swing_q3
+        arm_across_q2 = k.a2 + k.effective_q3_2 * cos_swing_q3
         # rotation by q2 that takes the arm to its target point
-        along_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
-        across_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
+        along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+        across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
         across_q2_squared_plus_along_q2_squared = across_q2 * across_q2 + along_q2 * along_q2
         length_q2 = select(
             across_q2_squared_plus_along_q2_squared > 0.0, root(across_q2_squared_plus_along_q2_squared), 1.0
@@ -294,18 +739,18 @@ class ArrayPrograms(Programs):
         near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(k.offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: whole turns added
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = k.a3_by_effective_q3 * cos_swing_q3 - k.d4_by_effective_q3 * sin_swing_q3
-        sin_q3 = k.a3_by_effective_q3 * sin_swing_q3 + k.d4_by_effective_q3 * cos_swing_q3
+        cos_q3 = k.a3_by_effective_q3_2_2 * cos_swing_q3 - k.d4_by_effective_q3_2_2 * sin_swing_q3
+        sin_q3 = k.a3_by_effective_q3_2_2 * sin_swing_q3 + k.d4_by_effective_q3_2_2 * cos_swing_q3
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(k.offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: whole turns added
         r13_from_q1 = r13 * cos_q1 + r23 * sin_q1
         sin_q23 = cos_q2 * sin_q3 + cos_q3 * sin_q2
         cos_q23 = cos_q2 * cos_q3 - sin_q2 * sin_q3
-        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
+        r33_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         r23_from_q1 = r23 * cos_q1 - r13 * sin_q1
         # polar coordinates: the radius at angle q4
-        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
+        radius_q4 = sqrt(r23_from_q1 * r23_from_q1 + r33_from_q123 * r33_from_q123)
 
         def elsewhere_direction_x_q4(ref_a4: Real) -> Reals:
             reference_a4 = (ref_a4 - k.offset_a4) * DEGREE
@@ -313,9 +758,9 @@ class ArrayPrograms(Programs):
             direction_y_q4 = sin(reference_a4)
             return (direction_x_q4, direction_y_q4)
 
-        direction_x_q4 = -sigma_hand * r13_from_q123
+        direction_x_q4 = -sigma_hand * r33_from_q123
         direction_y_q4 = sigma_hand * r23_from_q1
-        # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+        # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
         # reference
         direction_x_q4, direction_y_q4 = elsewhere(
             radius_q4 > 1e-11, (direction_x_q4, direction_y_q4), elsewhere_direction_x_q4, (ref_a4,)
@@ -324,28 +769,82 @@ class ArrayPrograms(Programs):
         near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
         # A4: whole turns added
         axis_a4 = nearest_period(k.offset_a4 + degrees(direction_y_q4, direction_x_q4), near_a4)
+        r13_from_q123 = r13_from_q1 * cos_q23 + r33 * sin_q23
         q4_radius_of_q5 = sigma_hand * radius_q4
-        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
         open_a5 = select(k.single_a5, k.mid_a5, ref_a5)  # A5: without a commanded turn, the value nearest to this
         near_a5 = select(turn_a5 != 0, 360.0 * select(turn_a5 > 0, turn_a5 - 1, turn_a5), open_a5)
-        axis_a5 = nearest_period(k.offset_a5 + degrees(q4_radius_of_q5, cos_q5), near_a5)  # A5: whole turns added
-        r21_from_q1 = r21 * cos_q1 - r11 * sin_q1
-        r11_from_q1 = r11 * cos_q1 + r21 * sin_q1
-        r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
-        scaled_r21_from_q1234 = -direction_x_q4 * r21_from_q1 - direction_y_q4 * r11_from_q123
+        # A5: whole turns added
+        axis_a5 = nearest_period(k.offset_a5 + degrees(q4_radius_of_q5, r13_from_q123), near_a5)
         r22_from_q1 = r22 * cos_q1 - r12 * sin_q1
         r12_from_q1 = r12 * cos_q1 + r22 * sin_q1
-        r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
-        scaled_r22_from_q1234 = -direction_x_q4 * r22_from_q1 - direction_y_q4 * r12_from_q123
+        r32_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
+        # cosine and sine of q6 from the r22 and r23 equations
+        direction_x_q6 = -direction_x_q4 * r22_from_q1 - direction_y_q4 * r32_from_q123
+        r21_from_q1 = r21 * cos_q1 - r11 * sin_q1
+        r11_from_q1 = r11 * cos_q1 + r21 * sin_q1
+        r31_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
+        direction_y_q6 = -direction_x_q4 * r21_from_q1 - direction_y_q4 * r31_from_q123
         open_a6 = select(k.single_a6, k.mid_a6, ref_a6)  # A6: without a commanded turn, the value nearest to this
         near_a6 = select(turn_a6 != 0, 360.0 * select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         # A6: whole turns added
-        axis_a6 = nearest_period(k.offset_a6 + degrees(scaled_r21_from_q1234, scaled_r22_from_q1234), near_a6)
+        axis_a6 = nearest_period(k.offset_a6 + degrees(direction_y_q6, direction_x_q6), near_a6)
         # q1: out of reach
         require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
-        require(status, absolute(cos_swing_q3) <= 1.0000000000005, Status.UNREACHABLE)
-        return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
+        require(status, lost_digits_23 | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
+        # digits were lost: the pose is met by steps on the closure
+        found = run_where(
+            lost_digits_23,
+            self.meet_pose,
+            (
+                ref_a1,
+                ref_a2,
+                ref_a3,
+                ref_a4,
+                ref_a5,
+                ref_a6,
+                sigma_arm,
+                sigma_elbow,
+                sigma_hand,
+                turn_a1,
+                turn_a2,
+                turn_a3,
+                turn_a4,
+                turn_a5,
+                turn_a6,
+                r11,
+                r12,
+                r13,
+                r21,
+                r22,
+                r23,
+                r31,
+                r32,
+                r33,
+                x,
+                y,
+                z,
+                axis_a1,
+                axis_a2,
+                axis_a3,
+                axis_a4,
+                axis_a5,
+                axis_a6,
+            ),
+            status,
+            (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        )
+        met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = found
+        # q3: out of reach
+        require(status, met | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
+        return (
+            select(met, found_a1, axis_a1),
+            select(met, found_a2, axis_a2),
+            select(met, found_a3, axis_a3),
+            select(met, found_a4, axis_a4),
+            select(met, found_a5, axis_a5),
+            select(met, found_a6, axis_a6),
+        ), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
@@ -382,40 +881,40 @@ class ArrayPrograms(Programs):
         q3 = DEGREE * (axis_a3 - k.offset_a3)
         q2_plus_q3 = q2 + q3
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1 * cos_q23
+        r11_at_q23 = cos_q1 * cos_q23
         sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1 * sin_q23
+        r13_at_q23 = -cos_q1 * sin_q23
         q4 = DEGREE * (axis_a4 - k.offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r11_at_q4 = r11_at_q23 * cos_q4 + sin_q1 * sin_q4
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
         cos_q5 = cos(q5)
-        r12_at_q5 = -r12_at_q23 * cos_q5 - r11_at_q4 * sin_q5
-        d6_times_r12_at_q5 = k.d6 * r12_at_q5
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        d6_times_r11_at_q5 = k.d6 * r11_at_q5
         x_at_q2 = k.a1 * cos_q1
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + k.a2 * r11_at_q2
-        x_at_q4 = x_at_q3 + k.a3 * r11_at_q23 + k.d3 * sin_q1
-        x_at_q5 = x_at_q4 - k.d4 * r12_at_q23
-        x = d6_times_r12_at_q5 + x_at_q5
-        wrist_x = x - d6_times_r12_at_q5  # wrist centre: the last joints do not move this point
-        r22_at_q23 = -cos_q23 * sin_q1
-        r21_at_q23 = -sin_q1 * sin_q23
-        r21_at_q4 = r21_at_q23 * cos_q4 - cos_q1 * sin_q4
-        r22_at_q5 = -r22_at_q23 * cos_q5 - r21_at_q4 * sin_q5
-        d6_times_r22_at_q5 = k.d6 * r22_at_q5
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d3 * sin_q1
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
+        x = d6_times_r11_at_q5 + x_at_q5
+        wrist_x = x - d6_times_r11_at_q5  # wrist centre: the last joints do not move this point
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = -sin_q1 * sin_q23
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        d6_times_r21_at_q5 = k.d6 * r21_at_q5
         y_at_q2 = k.a1 * sin_q1
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + k.a2 * r21_at_q2
-        y_at_q4 = y_at_q3 + k.a3 * r21_at_q23 - k.d3 * cos_q1
-        y_at_q5 = y_at_q4 - k.d4 * r22_at_q23
-        y = d6_times_r22_at_q5 + y_at_q5
-        wrist_y = y - d6_times_r22_at_q5
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 - k.d3 * cos_q1
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
+        y = d6_times_r21_at_q5 + y_at_q5
+        wrist_y = y - d6_times_r21_at_q5
         margin_wrist_on_axis_1 = k.one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        margin_elbow = k.d4_by_effective_q3 * cos_q3 - k.a3_by_effective_q3 * sin_q3
+        margin_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2_2
         return (margin_wrist_on_axis_1, margin_elbow, sin_q5), status
 
     def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
@@ -431,51 +930,51 @@ class ArrayPrograms(Programs):
         q3 = DEGREE * (axis_a3 - k.offset_a3)
         q2_plus_q3 = q2 + q3
         cos_q23 = cos(q2_plus_q3)
-        r22_at_q23 = -cos_q23 * sin_q1
+        r21_at_q23 = cos_q23 * sin_q1
         cos_q1 = cos(q1)
         y_at_q2 = k.a1 * sin_q1
         sin_q2 = sin(q2)
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + k.a2 * r21_at_q2
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
         sin_q23 = sin(q2_plus_q3)
-        r21_at_q23 = -sin_q1 * sin_q23
+        r23_at_q23 = -sin_q1 * sin_q23
         q4 = DEGREE * (axis_a4 - k.offset_a4)
         sin_q4 = sin(q4)
         cos_q4 = cos(q4)
-        r21_at_q4 = r21_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
         q5 = DEGREE * (axis_a5 - k.offset_a5)
         sin_q5 = sin(q5)
         cos_q5 = cos(q5)
-        r22_at_q5 = -r22_at_q23 * cos_q5 - r21_at_q4 * sin_q5
-        y_at_q4 = y_at_q3 + k.a3 * r21_at_q23 - k.d3 * cos_q1
-        y_at_q5 = y_at_q4 - k.d4 * r22_at_q23
-        y = y_at_q5 + k.d6 * r22_at_q5
-        r31_at_q4 = cos_q23 * cos_q4
-        r32_at_q5 = cos_q5 * sin_q23 - r31_at_q4 * sin_q5
-        r22_at_q4 = -cos_q1 * cos_q4 - r21_at_q23 * sin_q4
-        r32_at_q4 = -cos_q23 * sin_q4
-        r12_at_q23 = -cos_q1 * cos_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 - k.d3 * cos_q1
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
+        y = y_at_q5 + k.d6 * r21_at_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        r31_at_q5 = cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
+        r11_at_q23 = cos_q1 * cos_q23
         x_at_q2 = k.a1 * cos_q1
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + k.a2 * r11_at_q2
-        r11_at_q23 = -cos_q1 * sin_q23
-        r11_at_q4 = r11_at_q23 * cos_q4 + sin_q1 * sin_q4
-        r12_at_q5 = -r12_at_q23 * cos_q5 - r11_at_q4 * sin_q5
-        x_at_q4 = x_at_q3 + k.a3 * r11_at_q23 + k.d3 * sin_q1
-        x_at_q5 = x_at_q4 - k.d4 * r12_at_q23
-        x = x_at_q5 + k.d6 * r12_at_q5
-        r12_at_q4 = cos_q4 * sin_q1 - r11_at_q23 * sin_q4
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        r13_at_q23 = -cos_q1 * sin_q23
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d3 * sin_q1
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
+        x = x_at_q5 + k.d6 * r11_at_q5
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
         cos_q2 = cos(q2)
         z_at_q3 = k.d1 + k.a2 * cos_q2
         z_at_q4 = z_at_q3 + k.a3 * cos_q23
         z_at_q5 = z_at_q4 + k.d4 * sin_q23
-        z = z_at_q5 + k.d6 * r32_at_q5
+        z = z_at_q5 + k.d6 * r31_at_q5
         z_minus_d1 = z - k.d1
         z_minus_z_at_q3 = z - z_at_q3
         z_minus_z_at_q4 = z - z_at_q4
         y_minus_y_at_q4 = y - y_at_q4
-        y_minus_y_at_q5 = y - y_at_q5
         z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
         x_minus_x_at_q4 = x - x_at_q4
         x_minus_x_at_q5 = x - x_at_q5
         return (
@@ -483,27 +982,27 @@ class ArrayPrograms(Programs):
                 -y,
                 -z_minus_d1 * cos_q1,
                 -z_minus_z_at_q3 * cos_q1,
-                -r22_at_q23 * z_minus_z_at_q4 - y_minus_y_at_q4 * sin_q23,
-                r32_at_q4 * y_minus_y_at_q5 - r22_at_q4 * z_minus_z_at_q5,
-                r22_at_q5 * z_minus_z_at_q5 - r32_at_q5 * y_minus_y_at_q5,
+                r21_at_q23 * z_minus_z_at_q4 - y_minus_y_at_q4 * sin_q23,
+                r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5,
+                r21_at_q5 * z_minus_z_at_q5 - r31_at_q5 * y_minus_y_at_q5,
             ),
             (
                 x,
                 -z_minus_d1 * sin_q1,
                 -z_minus_z_at_q3 * sin_q1,
-                r12_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23,
-                r12_at_q4 * z_minus_z_at_q5 - r32_at_q4 * x_minus_x_at_q5,
-                r32_at_q5 * x_minus_x_at_q5 - r12_at_q5 * z_minus_z_at_q5,
+                x_minus_x_at_q4 * sin_q23 - r11_at_q23 * z_minus_z_at_q4,
+                r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5,
+                r31_at_q5 * x_minus_x_at_q5 - r11_at_q5 * z_minus_z_at_q5,
             ),
             (
                 0.0,
                 (x - x_at_q2) * cos_q1 + (y - y_at_q2) * sin_q1,
                 (x - x_at_q3) * cos_q1 + (y - y_at_q3) * sin_q1,
-                r22_at_q23 * x_minus_x_at_q4 - r12_at_q23 * y_minus_y_at_q4,
-                r22_at_q4 * x_minus_x_at_q5 - r12_at_q4 * y_minus_y_at_q5,
-                r12_at_q5 * y_minus_y_at_q5 - r22_at_q5 * x_minus_x_at_q5,
+                r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4,
+                r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5,
+                r11_at_q5 * y_minus_y_at_q5 - r21_at_q5 * x_minus_x_at_q5,
             ),
-            (0.0, sin_q1, sin_q1, -r12_at_q23, -r12_at_q4, r12_at_q5),
-            (0.0, -cos_q1, -cos_q1, -r22_at_q23, -r22_at_q4, r22_at_q5),
-            (1.0, 0.0, 0.0, sin_q23, -r32_at_q4, r32_at_q5),
+            (0.0, sin_q1, sin_q1, r11_at_q23, r12_at_q4, r11_at_q5),
+            (0.0, -cos_q1, -cos_q1, r21_at_q23, r22_at_q4, r21_at_q5),
+            (1.0, 0.0, 0.0, sin_q23, r32_at_q4, r31_at_q5),
         ), status

@@ -11,10 +11,12 @@ from softkin._array import (
     advanced,
     cos,
     initial,
+    opposite,
     passed,
     reasonable,
     require,
     root,
+    run_where,
     select,
     settled,
     sin,
@@ -32,7 +34,7 @@ class ArrayPrograms(StartedPrograms):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 485
+    VALUES = 515
 
     def find_platform(self, given: Values, status: Codes) -> Values:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""
@@ -43,41 +45,41 @@ class ArrayPrograms(StartedPrograms):
             axis_a4,
             axis_a5,
             axis_a6,
-            start_r11,
-            start_r12,
-            start_r13,
-            start_r21,
-            start_r22,
-            start_r23,
-            start_r31,
-            start_r32,
-            start_r33,
-            start_x,
-            start_y,
-            start_z,
+            begin_r11,
+            begin_r12,
+            begin_r13,
+            begin_r21,
+            begin_r22,
+            begin_r23,
+            begin_r31,
+            begin_r32,
+            begin_r33,
+            begin_x,
+            begin_y,
+            begin_z,
         ) = given
         k = self.constants
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), Status.BAD_INPUT)
         # joints of the platform, seen from its origin, in the orientation of the start
-        start_arm_1_x = k.platform_1_x * start_r11 + k.platform_1_y * start_r12 + k.platform_1_z * start_r13
-        start_arm_1_y = k.platform_1_x * start_r21 + k.platform_1_y * start_r22 + k.platform_1_z * start_r23
-        start_arm_1_z = k.platform_1_x * start_r31 + k.platform_1_y * start_r32 + k.platform_1_z * start_r33
-        start_arm_2_x = k.platform_2_x * start_r11 + k.platform_2_y * start_r12 + k.platform_2_z * start_r13
-        start_arm_2_y = k.platform_2_x * start_r21 + k.platform_2_y * start_r22 + k.platform_2_z * start_r23
-        start_arm_2_z = k.platform_2_x * start_r31 + k.platform_2_y * start_r32 + k.platform_2_z * start_r33
-        start_arm_3_x = k.platform_3_x * start_r11 + k.platform_3_y * start_r12 + k.platform_3_z * start_r13
-        start_arm_3_y = k.platform_3_x * start_r21 + k.platform_3_y * start_r22 + k.platform_3_z * start_r23
-        start_arm_3_z = k.platform_3_x * start_r31 + k.platform_3_y * start_r32 + k.platform_3_z * start_r33
-        start_arm_4_x = k.platform_4_x * start_r11 + k.platform_4_y * start_r12 + k.platform_4_z * start_r13
-        start_arm_4_y = k.platform_4_x * start_r21 + k.platform_4_y * start_r22 + k.platform_4_z * start_r23
-        start_arm_4_z = k.platform_4_x * start_r31 + k.platform_4_y * start_r32 + k.platform_4_z * start_r33
-        start_arm_5_x = k.platform_5_x * start_r11 + k.platform_5_y * start_r12 + k.platform_5_z * start_r13
-        start_arm_5_y = k.platform_5_x * start_r21 + k.platform_5_y * start_r22 + k.platform_5_z * start_r23
-        start_arm_5_z = k.platform_5_x * start_r31 + k.platform_5_y * start_r32 + k.platform_5_z * start_r33
-        start_arm_6_x = k.platform_6_x * start_r11 + k.platform_6_y * start_r12 + k.platform_6_z * start_r13
-        start_arm_6_y = k.platform_6_x * start_r21 + k.platform_6_y * start_r22 + k.platform_6_z * start_r23
-        start_arm_6_z = k.platform_6_x * start_r31 + k.platform_6_y * start_r32 + k.platform_6_z * start_r33
+        start_arm_1_x = begin_r11 * k.platform_1_x + begin_r12 * k.platform_1_y + begin_r13 * k.platform_1_z
+        start_arm_1_y = begin_r21 * k.platform_1_x + begin_r22 * k.platform_1_y + begin_r23 * k.platform_1_z
+        start_arm_1_z = begin_r31 * k.platform_1_x + begin_r32 * k.platform_1_y + begin_r33 * k.platform_1_z
+        start_arm_2_x = begin_r11 * k.platform_2_x + begin_r12 * k.platform_2_y + begin_r13 * k.platform_2_z
+        start_arm_2_y = begin_r21 * k.platform_2_x + begin_r22 * k.platform_2_y + begin_r23 * k.platform_2_z
+        start_arm_2_z = begin_r31 * k.platform_2_x + begin_r32 * k.platform_2_y + begin_r33 * k.platform_2_z
+        start_arm_3_x = begin_r11 * k.platform_3_x + begin_r12 * k.platform_3_y + begin_r13 * k.platform_3_z
+        start_arm_3_y = begin_r21 * k.platform_3_x + begin_r22 * k.platform_3_y + begin_r23 * k.platform_3_z
+        start_arm_3_z = begin_r31 * k.platform_3_x + begin_r32 * k.platform_3_y + begin_r33 * k.platform_3_z
+        start_arm_4_x = begin_r11 * k.platform_4_x + begin_r12 * k.platform_4_y + begin_r13 * k.platform_4_z
+        start_arm_4_y = begin_r21 * k.platform_4_x + begin_r22 * k.platform_4_y + begin_r23 * k.platform_4_z
+        start_arm_4_z = begin_r31 * k.platform_4_x + begin_r32 * k.platform_4_y + begin_r33 * k.platform_4_z
+        start_arm_5_x = begin_r11 * k.platform_5_x + begin_r12 * k.platform_5_y + begin_r13 * k.platform_5_z
+        start_arm_5_y = begin_r21 * k.platform_5_x + begin_r22 * k.platform_5_y + begin_r23 * k.platform_5_z
+        start_arm_5_z = begin_r31 * k.platform_5_x + begin_r32 * k.platform_5_y + begin_r33 * k.platform_5_z
+        start_arm_6_x = begin_r11 * k.platform_6_x + begin_r12 * k.platform_6_y + begin_r13 * k.platform_6_z
+        start_arm_6_y = begin_r21 * k.platform_6_x + begin_r22 * k.platform_6_y + begin_r23 * k.platform_6_z
+        start_arm_6_z = begin_r31 * k.platform_6_x + begin_r32 * k.platform_6_y + begin_r33 * k.platform_6_z
         a1 = axis_a1 - k.offset_a1
         a2 = axis_a2 - k.offset_a2
         a3 = axis_a3 - k.offset_a3
@@ -85,7 +87,7 @@ class ArrayPrograms(StartedPrograms):
         a5 = axis_a5 - k.offset_a5
         a6 = axis_a6 - k.offset_a6
         # Newton's method: every pass improves the pose until all legs fit
-        x, y, z, roll, pitch, yaw, fitted = initial(start_x, start_y, start_z, 0.0, 0.0, 0.0, False)
+        x, y, z, roll, pitch, yaw, fitted = initial(begin_x, begin_y, begin_z, 0.0, 0.0, 0.0, False)
         for _ in range(20):
             cos_pitch = cos(pitch)
             cos_yaw = cos(yaw)
@@ -267,43 +269,50 @@ class ArrayPrograms(StartedPrograms):
                 ),
             )
         require(status, done, Status.IMPOSSIBLE)
-        r11 = start_r11 * turned_11 + start_r21 * turned_12 + start_r31 * turned_13  # orientation of the platform
-        r12 = start_r12 * turned_11 + start_r22 * turned_12 + start_r32 * turned_13
-        r13 = start_r13 * turned_11 + start_r23 * turned_12 + start_r33 * turned_13
-        r21 = start_r11 * turned_21 + start_r21 * turned_22 + start_r31 * turned_23
-        r22 = start_r12 * turned_21 + start_r22 * turned_22 + start_r32 * turned_23
-        r23 = start_r13 * turned_21 + start_r23 * turned_22 + start_r33 * turned_23
-        r31 = start_r21 * turned_32 + start_r31 * turned_33 - start_r11 * sin_pitch
-        r32 = start_r22 * turned_32 + start_r32 * turned_33 - start_r12 * sin_pitch
-        r33 = start_r23 * turned_32 + start_r33 * turned_33 - start_r13 * sin_pitch
+        # orientation of the platform
+        found_r11 = begin_r11 * turned_11 + begin_r21 * turned_12 + begin_r31 * turned_13
+        found_r12 = begin_r12 * turned_11 + begin_r22 * turned_12 + begin_r32 * turned_13
+        found_r13 = begin_r13 * turned_11 + begin_r23 * turned_12 + begin_r33 * turned_13
+        found_r21 = begin_r11 * turned_21 + begin_r21 * turned_22 + begin_r31 * turned_23
+        found_r22 = begin_r12 * turned_21 + begin_r22 * turned_22 + begin_r32 * turned_23
+        found_r23 = begin_r13 * turned_21 + begin_r23 * turned_22 + begin_r33 * turned_23
+        found_r31 = begin_r21 * turned_32 + begin_r31 * turned_33 - begin_r11 * sin_pitch
+        found_r32 = begin_r22 * turned_32 + begin_r32 * turned_33 - begin_r12 * sin_pitch
+        found_r33 = begin_r23 * turned_32 + begin_r33 * turned_33 - begin_r13 * sin_pitch
         # the other assembly mode
         # the mirror that the machine does not have
         require(
             status,
             (k.assembly_sign * determinant > 0.0)
             & (
-                -(k.platform_1_x * r11 + k.platform_1_y * r12 + k.platform_1_z * r13 - a1_minus_x) * k.carriage_side_1
-                >= 0.0
+                -(found_r11 * k.platform_1_x + found_r12 * k.platform_1_y + found_r13 * k.platform_1_z - a1_minus_x)
+                * k.carriage_side_1
+                >= -k.machine_scale_times_plane
             )
             & (
-                -(k.platform_2_x * r11 + k.platform_2_y * r12 + k.platform_2_z * r13 - a2_minus_x) * k.carriage_side_2
-                >= 0.0
+                -(found_r11 * k.platform_2_x + found_r12 * k.platform_2_y + found_r13 * k.platform_2_z - a2_minus_x)
+                * k.carriage_side_2
+                >= -k.machine_scale_times_plane
             )
             & (
-                -(k.platform_3_x * r11 + k.platform_3_y * r12 + k.platform_3_z * r13 - a3_minus_x) * k.carriage_side_3
-                >= 0.0
+                -(found_r11 * k.platform_3_x + found_r12 * k.platform_3_y + found_r13 * k.platform_3_z - a3_minus_x)
+                * k.carriage_side_3
+                >= -k.machine_scale_times_plane
             )
             & (
-                -(k.platform_4_x * r11 + k.platform_4_y * r12 + k.platform_4_z * r13 - a4_minus_x) * k.carriage_side_4
-                >= 0.0
+                -(found_r11 * k.platform_4_x + found_r12 * k.platform_4_y + found_r13 * k.platform_4_z - a4_minus_x)
+                * k.carriage_side_4
+                >= -k.machine_scale_times_plane
             )
             & (
-                -(k.platform_5_x * r11 + k.platform_5_y * r12 + k.platform_5_z * r13 - a5_minus_x) * k.carriage_side_5
-                >= 0.0
+                -(found_r11 * k.platform_5_x + found_r12 * k.platform_5_y + found_r13 * k.platform_5_z - a5_minus_x)
+                * k.carriage_side_5
+                >= -k.machine_scale_times_plane
             )
             & (
-                -(k.platform_6_x * r11 + k.platform_6_y * r12 + k.platform_6_z * r13 - a6_minus_x) * k.carriage_side_6
-                >= 0.0
+                -(found_r11 * k.platform_6_x + found_r12 * k.platform_6_y + found_r13 * k.platform_6_z - a6_minus_x)
+                * k.carriage_side_6
+                >= -k.machine_scale_times_plane
             ),
             Status.IMPOSSIBLE,
         )
@@ -311,15 +320,15 @@ class ArrayPrograms(StartedPrograms):
             x,
             y,
             z,
-            r11,
-            r12,
-            r13,
-            r21,
-            r22,
-            r23,
-            r31,
-            r32,
-            r33,
+            found_r11,
+            found_r12,
+            found_r13,
+            found_r21,
+            found_r22,
+            found_r23,
+            found_r31,
+            found_r32,
+            found_r33,
             determinant,
             along_1_x,
             along_1_y,
@@ -364,46 +373,9 @@ class ArrayPrograms(StartedPrograms):
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
         status = passed(axes)
-        # pose of the platform, by Newton's method from the home pose
-        found = self.find_platform(
-            (
-                axis_a1,
-                axis_a2,
-                axis_a3,
-                axis_a4,
-                axis_a5,
-                axis_a6,
-                k.home_r11,
-                k.home_r12,
-                k.home_r13,
-                k.home_r21,
-                k.home_r22,
-                k.home_r23,
-                k.home_r31,
-                k.home_r32,
-                k.home_r33,
-                k.home_x,
-                k.home_y,
-                k.home_z,
-            ),
-            status,
-        )
-        x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, *_ = found
-        return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ()), status
-
-    def forward_from(
-        self, axes: Reals, start_position: Vector, start_rotation: Rotation
-    ) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
-        """Position, rotation and the signed margin of every branch, found from a given start."""
-        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
-        start_x, start_y, start_z = start_position
-        (start_r11, start_r12, start_r13), (start_r21, start_r22, start_r23), (start_r31, start_r32, start_r33) = (
-            start_rotation
-        )
-        status = passed(axes, start_position, start_rotation)
         # inputs must be numbers, and of reasonable size
-        require(status, reasonable(start_x, start_y, start_z), Status.BAD_INPUT)
-        # pose of the platform, by Newton's method from the given start
+        require(status, reasonable(k.start_x, k.start_y, k.start_z), Status.BAD_INPUT)
+        # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (
                 axis_a1,
@@ -412,23 +384,41 @@ class ArrayPrograms(StartedPrograms):
                 axis_a4,
                 axis_a5,
                 axis_a6,
-                start_r11,
-                start_r12,
-                start_r13,
-                start_r21,
-                start_r22,
-                start_r23,
-                start_r31,
-                start_r32,
-                start_r33,
-                start_x,
-                start_y,
-                start_z,
+                k.start_r11,
+                k.start_r12,
+                k.start_r13,
+                k.start_r21,
+                k.start_r22,
+                k.start_r23,
+                k.start_r31,
+                k.start_r32,
+                k.start_r33,
+                k.start_x,
+                k.start_y,
+                k.start_z,
             ),
             status,
         )
-        x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, *_ = found
-        return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ()), status
+        (
+            found_x,
+            found_y,
+            found_z,
+            found_r11,
+            found_r12,
+            found_r13,
+            found_r21,
+            found_r22,
+            found_r23,
+            found_r31,
+            found_r32,
+            found_r33,
+            *_,
+        ) = found
+        return (
+            (found_x, found_y, found_z),
+            ((found_r11, found_r12, found_r13), (found_r21, found_r22, found_r23), (found_r31, found_r32, found_r33)),
+            (),
+        ), status
 
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
@@ -624,6 +614,120 @@ class ArrayPrograms(StartedPrograms):
         require(status, along_plate_cone_6 >= k.least_cos_plate_times_rod_length_6, Status.UNREACHABLE)
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         require(status, k.assembly_sign * determinant >= k.min_type2_margin, Status.UNREACHABLE)
+        # pose of the platform, by Newton's method from the home pose
+        refused = status.copy()
+        found = run_where(
+            k.check_forward,
+            self.find_platform,
+            (
+                axis_a1,
+                axis_a2,
+                axis_a3,
+                axis_a4,
+                axis_a5,
+                axis_a6,
+                k.home_r11,
+                k.home_r12,
+                k.home_r13,
+                k.home_r21,
+                k.home_r22,
+                k.home_r23,
+                k.home_r31,
+                k.home_r32,
+                k.home_r33,
+                k.home_x,
+                k.home_y,
+                k.home_z,
+            ),
+            refused,
+            (
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+            ),
+        )
+        (
+            found_x,
+            found_y,
+            found_z,
+            found_r11,
+            found_r12,
+            found_r13,
+            found_r21,
+            found_r22,
+            found_r23,
+            found_r31,
+            found_r32,
+            found_r33,
+            *_,
+        ) = found
+        require(status, refused == status, Status.UNREACHABLE)
+        # forward kinematics from the home pose does not find this pose again
+        require(
+            status,
+            (opposite(k.check_forward))
+            | (
+                (absolute(found_r11 - r11) <= 1e-6)
+                & (absolute(found_r12 - r12) <= 1e-6)
+                & (absolute(found_r13 - r13) <= 1e-6)
+                & (absolute(found_r21 - r21) <= 1e-6)
+                & (absolute(found_r22 - r22) <= 1e-6)
+                & (absolute(found_r23 - r23) <= 1e-6)
+                & (absolute(found_r31 - r31) <= 1e-6)
+                & (absolute(found_r32 - r32) <= 1e-6)
+                & (absolute(found_r33 - r33) <= 1e-6)
+                & (absolute(found_x - x) <= k.machine_scale_times_plane)
+                & (absolute(found_y - y) <= k.machine_scale_times_plane)
+                & (absolute(found_z - z) <= k.machine_scale_times_plane)
+            ),
+            Status.UNREACHABLE,
+        )
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -650,7 +754,9 @@ class ArrayPrograms(StartedPrograms):
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
         status = passed(axes)
-        # pose of the platform, by Newton's method from the home pose
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(k.start_x, k.start_y, k.start_z), Status.BAD_INPUT)
+        # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (
                 axis_a1,
@@ -659,45 +765,45 @@ class ArrayPrograms(StartedPrograms):
                 axis_a4,
                 axis_a5,
                 axis_a6,
-                k.home_r11,
-                k.home_r12,
-                k.home_r13,
-                k.home_r21,
-                k.home_r22,
-                k.home_r23,
-                k.home_r31,
-                k.home_r32,
-                k.home_r33,
-                k.home_x,
-                k.home_y,
-                k.home_z,
+                k.start_r11,
+                k.start_r12,
+                k.start_r13,
+                k.start_r21,
+                k.start_r22,
+                k.start_r23,
+                k.start_r31,
+                k.start_r32,
+                k.start_r33,
+                k.start_x,
+                k.start_y,
+                k.start_z,
             ),
             status,
         )
-        x, _, _, r11, r12, r13, _, _, _, _, _, _, determinant, *_ = found
+        found_x, _, _, found_r11, found_r12, found_r13, _, _, _, _, _, _, determinant, *_ = found
         a1 = axis_a1 - k.offset_a1
         # rod 1: known part of its vector
-        span_1_x = x + k.platform_1_x * r11 + k.platform_1_y * r12 + k.platform_1_z * r13
+        span_1_x = found_x + found_r11 * k.platform_1_x + found_r12 * k.platform_1_y + found_r13 * k.platform_1_z
         margin_meet_a1 = 2.0 * (a1 - span_1_x) * k.half_by_rod_length_1
         a2 = axis_a2 - k.offset_a2
         # rod 2: known part of its vector
-        span_2_x = x + k.platform_2_x * r11 + k.platform_2_y * r12 + k.platform_2_z * r13
+        span_2_x = found_x + found_r11 * k.platform_2_x + found_r12 * k.platform_2_y + found_r13 * k.platform_2_z
         margin_meet_a2 = 2.0 * (a2 - span_2_x) * k.half_by_rod_length_2
         a3 = axis_a3 - k.offset_a3
         # rod 3: known part of its vector
-        span_3_x = x + k.platform_3_x * r11 + k.platform_3_y * r12 + k.platform_3_z * r13
+        span_3_x = found_x + found_r11 * k.platform_3_x + found_r12 * k.platform_3_y + found_r13 * k.platform_3_z
         margin_meet_a3 = 2.0 * (a3 - span_3_x) * k.half_by_rod_length_3
         a4 = axis_a4 - k.offset_a4
         # rod 4: known part of its vector
-        span_4_x = x + k.platform_4_x * r11 + k.platform_4_y * r12 + k.platform_4_z * r13
+        span_4_x = found_x + found_r11 * k.platform_4_x + found_r12 * k.platform_4_y + found_r13 * k.platform_4_z
         margin_meet_a4 = 2.0 * (a4 - span_4_x) * k.half_by_rod_length_4
         a5 = axis_a5 - k.offset_a5
         # rod 5: known part of its vector
-        span_5_x = x + k.platform_5_x * r11 + k.platform_5_y * r12 + k.platform_5_z * r13
+        span_5_x = found_x + found_r11 * k.platform_5_x + found_r12 * k.platform_5_y + found_r13 * k.platform_5_z
         margin_meet_a5 = 2.0 * (a5 - span_5_x) * k.half_by_rod_length_5
         a6 = axis_a6 - k.offset_a6
         # rod 6: known part of its vector
-        span_6_x = x + k.platform_6_x * r11 + k.platform_6_y * r12 + k.platform_6_z * r13
+        span_6_x = found_x + found_r11 * k.platform_6_x + found_r12 * k.platform_6_y + found_r13 * k.platform_6_z
         margin_meet_a6 = 2.0 * (a6 - span_6_x) * k.half_by_rod_length_6
         return (
             margin_meet_a1,
@@ -714,7 +820,9 @@ class ArrayPrograms(StartedPrograms):
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
         k = self.constants
         status = passed(axes)
-        # pose of the platform, by Newton's method from the home pose
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(k.start_x, k.start_y, k.start_z), Status.BAD_INPUT)
+        # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (
                 axis_a1,
@@ -723,18 +831,18 @@ class ArrayPrograms(StartedPrograms):
                 axis_a4,
                 axis_a5,
                 axis_a6,
-                k.home_r11,
-                k.home_r12,
-                k.home_r13,
-                k.home_r21,
-                k.home_r22,
-                k.home_r23,
-                k.home_r31,
-                k.home_r32,
-                k.home_r33,
-                k.home_x,
-                k.home_y,
-                k.home_z,
+                k.start_r11,
+                k.start_r12,
+                k.start_r13,
+                k.start_r21,
+                k.start_r22,
+                k.start_r23,
+                k.start_r31,
+                k.start_r32,
+                k.start_r33,
+                k.start_x,
+                k.start_y,
+                k.start_z,
             ),
             status,
         )

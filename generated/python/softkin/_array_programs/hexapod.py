@@ -11,10 +11,12 @@ from softkin._array import (
     advanced,
     cos,
     initial,
+    opposite,
     passed,
     reasonable,
     require,
     root,
+    run_where,
     select,
     settled,
     sin,
@@ -32,7 +34,7 @@ class ArrayPrograms(StartedPrograms):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 443
+    VALUES = 471
 
     def find_platform(self, given: Values, status: Codes) -> Values:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""
@@ -43,18 +45,18 @@ class ArrayPrograms(StartedPrograms):
             axis_l4,
             axis_l5,
             axis_l6,
-            start_r11,
-            start_r12,
-            start_r13,
-            start_r21,
-            start_r22,
-            start_r23,
-            start_r31,
-            start_r32,
-            start_r33,
-            start_x,
-            start_y,
-            start_z,
+            begin_r11,
+            begin_r12,
+            begin_r13,
+            begin_r21,
+            begin_r22,
+            begin_r23,
+            begin_r31,
+            begin_r32,
+            begin_r33,
+            begin_x,
+            begin_y,
+            begin_z,
         ) = given
         k = self.constants
         # inputs must be numbers, and of reasonable size
@@ -66,28 +68,28 @@ class ArrayPrograms(StartedPrograms):
         l5 = axis_l5 - k.offset_l5
         l6 = axis_l6 - k.offset_l6
         # joints of the platform, seen from its origin, in the orientation of the start
-        start_arm_1_x = k.platform_1_x * start_r11 + k.platform_1_y * start_r12 + k.platform_1_z * start_r13
-        start_arm_1_y = k.platform_1_x * start_r21 + k.platform_1_y * start_r22 + k.platform_1_z * start_r23
-        start_arm_1_z = k.platform_1_x * start_r31 + k.platform_1_y * start_r32 + k.platform_1_z * start_r33
-        start_arm_2_x = k.platform_2_x * start_r11 + k.platform_2_y * start_r12 + k.platform_2_z * start_r13
-        start_arm_2_y = k.platform_2_x * start_r21 + k.platform_2_y * start_r22 + k.platform_2_z * start_r23
-        start_arm_2_z = k.platform_2_x * start_r31 + k.platform_2_y * start_r32 + k.platform_2_z * start_r33
-        start_arm_3_x = k.platform_3_x * start_r11 + k.platform_3_y * start_r12 + k.platform_3_z * start_r13
-        start_arm_3_y = k.platform_3_x * start_r21 + k.platform_3_y * start_r22 + k.platform_3_z * start_r23
-        start_arm_3_z = k.platform_3_x * start_r31 + k.platform_3_y * start_r32 + k.platform_3_z * start_r33
-        start_arm_4_x = k.platform_4_x * start_r11 + k.platform_4_y * start_r12 + k.platform_4_z * start_r13
-        start_arm_4_y = k.platform_4_x * start_r21 + k.platform_4_y * start_r22 + k.platform_4_z * start_r23
-        start_arm_4_z = k.platform_4_x * start_r31 + k.platform_4_y * start_r32 + k.platform_4_z * start_r33
-        start_arm_5_x = k.platform_5_x * start_r11 + k.platform_5_y * start_r12 + k.platform_5_z * start_r13
-        start_arm_5_y = k.platform_5_x * start_r21 + k.platform_5_y * start_r22 + k.platform_5_z * start_r23
-        start_arm_5_z = k.platform_5_x * start_r31 + k.platform_5_y * start_r32 + k.platform_5_z * start_r33
-        start_arm_6_x = k.platform_6_x * start_r11 + k.platform_6_y * start_r12 + k.platform_6_z * start_r13
-        start_arm_6_y = k.platform_6_x * start_r21 + k.platform_6_y * start_r22 + k.platform_6_z * start_r23
-        start_arm_6_z = k.platform_6_x * start_r31 + k.platform_6_y * start_r32 + k.platform_6_z * start_r33
+        start_arm_1_x = begin_r11 * k.platform_1_x + begin_r12 * k.platform_1_y + begin_r13 * k.platform_1_z
+        start_arm_1_y = begin_r21 * k.platform_1_x + begin_r22 * k.platform_1_y + begin_r23 * k.platform_1_z
+        start_arm_1_z = begin_r31 * k.platform_1_x + begin_r32 * k.platform_1_y + begin_r33 * k.platform_1_z
+        start_arm_2_x = begin_r11 * k.platform_2_x + begin_r12 * k.platform_2_y + begin_r13 * k.platform_2_z
+        start_arm_2_y = begin_r21 * k.platform_2_x + begin_r22 * k.platform_2_y + begin_r23 * k.platform_2_z
+        start_arm_2_z = begin_r31 * k.platform_2_x + begin_r32 * k.platform_2_y + begin_r33 * k.platform_2_z
+        start_arm_3_x = begin_r11 * k.platform_3_x + begin_r12 * k.platform_3_y + begin_r13 * k.platform_3_z
+        start_arm_3_y = begin_r21 * k.platform_3_x + begin_r22 * k.platform_3_y + begin_r23 * k.platform_3_z
+        start_arm_3_z = begin_r31 * k.platform_3_x + begin_r32 * k.platform_3_y + begin_r33 * k.platform_3_z
+        start_arm_4_x = begin_r11 * k.platform_4_x + begin_r12 * k.platform_4_y + begin_r13 * k.platform_4_z
+        start_arm_4_y = begin_r21 * k.platform_4_x + begin_r22 * k.platform_4_y + begin_r23 * k.platform_4_z
+        start_arm_4_z = begin_r31 * k.platform_4_x + begin_r32 * k.platform_4_y + begin_r33 * k.platform_4_z
+        start_arm_5_x = begin_r11 * k.platform_5_x + begin_r12 * k.platform_5_y + begin_r13 * k.platform_5_z
+        start_arm_5_y = begin_r21 * k.platform_5_x + begin_r22 * k.platform_5_y + begin_r23 * k.platform_5_z
+        start_arm_5_z = begin_r31 * k.platform_5_x + begin_r32 * k.platform_5_y + begin_r33 * k.platform_5_z
+        start_arm_6_x = begin_r11 * k.platform_6_x + begin_r12 * k.platform_6_y + begin_r13 * k.platform_6_z
+        start_arm_6_y = begin_r21 * k.platform_6_x + begin_r22 * k.platform_6_y + begin_r23 * k.platform_6_z
+        start_arm_6_z = begin_r31 * k.platform_6_x + begin_r32 * k.platform_6_y + begin_r33 * k.platform_6_z
         # the mirror that the machine does not have
         require(status, (l1 > 0.0) & (l2 > 0.0) & (l3 > 0.0) & (l4 > 0.0) & (l5 > 0.0) & (l6 > 0.0), Status.IMPOSSIBLE)
         # Newton's method: every pass improves the pose until all legs fit
-        x, y, z, roll, pitch, yaw, fitted = initial(start_x, start_y, start_z, 0.0, 0.0, 0.0, False)
+        x, y, z, roll, pitch, yaw, fitted = initial(begin_x, begin_y, begin_z, 0.0, 0.0, 0.0, False)
         for _ in range(20):
             cos_pitch = cos(pitch)
             cos_yaw = cos(yaw)
@@ -263,30 +265,31 @@ class ArrayPrograms(StartedPrograms):
                 ),
             )
         require(status, done, Status.IMPOSSIBLE)
-        r11 = start_r11 * turned_11 + start_r21 * turned_12 + start_r31 * turned_13  # orientation of the platform
-        r12 = start_r12 * turned_11 + start_r22 * turned_12 + start_r32 * turned_13
-        r13 = start_r13 * turned_11 + start_r23 * turned_12 + start_r33 * turned_13
-        r21 = start_r11 * turned_21 + start_r21 * turned_22 + start_r31 * turned_23
-        r22 = start_r12 * turned_21 + start_r22 * turned_22 + start_r32 * turned_23
-        r23 = start_r13 * turned_21 + start_r23 * turned_22 + start_r33 * turned_23
-        r31 = start_r21 * turned_32 + start_r31 * turned_33 - start_r11 * sin_pitch
-        r32 = start_r22 * turned_32 + start_r32 * turned_33 - start_r12 * sin_pitch
-        r33 = start_r23 * turned_32 + start_r33 * turned_33 - start_r13 * sin_pitch
+        # orientation of the platform
+        found_r11 = begin_r11 * turned_11 + begin_r21 * turned_12 + begin_r31 * turned_13
+        found_r12 = begin_r12 * turned_11 + begin_r22 * turned_12 + begin_r32 * turned_13
+        found_r13 = begin_r13 * turned_11 + begin_r23 * turned_12 + begin_r33 * turned_13
+        found_r21 = begin_r11 * turned_21 + begin_r21 * turned_22 + begin_r31 * turned_23
+        found_r22 = begin_r12 * turned_21 + begin_r22 * turned_22 + begin_r32 * turned_23
+        found_r23 = begin_r13 * turned_21 + begin_r23 * turned_22 + begin_r33 * turned_23
+        found_r31 = begin_r21 * turned_32 + begin_r31 * turned_33 - begin_r11 * sin_pitch
+        found_r32 = begin_r22 * turned_32 + begin_r32 * turned_33 - begin_r12 * sin_pitch
+        found_r33 = begin_r23 * turned_32 + begin_r33 * turned_33 - begin_r13 * sin_pitch
         # the other assembly mode
         require(status, k.assembly_sign * determinant > 0.0, Status.IMPOSSIBLE)
         return (
             x,
             y,
             z,
-            r11,
-            r12,
-            r13,
-            r21,
-            r22,
-            r23,
-            r31,
-            r32,
-            r33,
+            found_r11,
+            found_r12,
+            found_r13,
+            found_r21,
+            found_r22,
+            found_r23,
+            found_r31,
+            found_r32,
+            found_r33,
             determinant,
             along_1_x,
             along_1_y,
@@ -331,46 +334,9 @@ class ArrayPrograms(StartedPrograms):
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self.constants
         status = passed(axes)
-        # pose of the platform, by Newton's method from the home pose
-        found = self.find_platform(
-            (
-                axis_l1,
-                axis_l2,
-                axis_l3,
-                axis_l4,
-                axis_l5,
-                axis_l6,
-                k.home_r11,
-                k.home_r12,
-                k.home_r13,
-                k.home_r21,
-                k.home_r22,
-                k.home_r23,
-                k.home_r31,
-                k.home_r32,
-                k.home_r33,
-                k.home_x,
-                k.home_y,
-                k.home_z,
-            ),
-            status,
-        )
-        x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, *_ = found
-        return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ()), status
-
-    def forward_from(
-        self, axes: Reals, start_position: Vector, start_rotation: Rotation
-    ) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
-        """Position, rotation and the signed margin of every branch, found from a given start."""
-        axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
-        start_x, start_y, start_z = start_position
-        (start_r11, start_r12, start_r13), (start_r21, start_r22, start_r23), (start_r31, start_r32, start_r33) = (
-            start_rotation
-        )
-        status = passed(axes, start_position, start_rotation)
         # inputs must be numbers, and of reasonable size
-        require(status, reasonable(start_x, start_y, start_z), Status.BAD_INPUT)
-        # pose of the platform, by Newton's method from the given start
+        require(status, reasonable(k.start_x, k.start_y, k.start_z), Status.BAD_INPUT)
+        # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (
                 axis_l1,
@@ -379,23 +345,41 @@ class ArrayPrograms(StartedPrograms):
                 axis_l4,
                 axis_l5,
                 axis_l6,
-                start_r11,
-                start_r12,
-                start_r13,
-                start_r21,
-                start_r22,
-                start_r23,
-                start_r31,
-                start_r32,
-                start_r33,
-                start_x,
-                start_y,
-                start_z,
+                k.start_r11,
+                k.start_r12,
+                k.start_r13,
+                k.start_r21,
+                k.start_r22,
+                k.start_r23,
+                k.start_r31,
+                k.start_r32,
+                k.start_r33,
+                k.start_x,
+                k.start_y,
+                k.start_z,
             ),
             status,
         )
-        x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, *_ = found
-        return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ()), status
+        (
+            found_x,
+            found_y,
+            found_z,
+            found_r11,
+            found_r12,
+            found_r13,
+            found_r21,
+            found_r22,
+            found_r23,
+            found_r31,
+            found_r32,
+            found_r33,
+            *_,
+        ) = found
+        return (
+            (found_x, found_y, found_z),
+            ((found_r11, found_r12, found_r13), (found_r21, found_r22, found_r23), (found_r31, found_r32, found_r33)),
+            (),
+        ), status
 
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
@@ -591,6 +575,120 @@ class ArrayPrograms(StartedPrograms):
         require(status, along_plate_cone_6 >= l6 * k.least_cos_plate, Status.UNREACHABLE)
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         require(status, k.assembly_sign * determinant >= k.min_type2_margin, Status.UNREACHABLE)
+        # pose of the platform, by Newton's method from the home pose
+        refused = status.copy()
+        found = run_where(
+            k.check_forward,
+            self.find_platform,
+            (
+                axis_l1,
+                axis_l2,
+                axis_l3,
+                axis_l4,
+                axis_l5,
+                axis_l6,
+                k.home_r11,
+                k.home_r12,
+                k.home_r13,
+                k.home_r21,
+                k.home_r22,
+                k.home_r23,
+                k.home_r31,
+                k.home_r32,
+                k.home_r33,
+                k.home_x,
+                k.home_y,
+                k.home_z,
+            ),
+            refused,
+            (
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+            ),
+        )
+        (
+            found_x,
+            found_y,
+            found_z,
+            found_r11,
+            found_r12,
+            found_r13,
+            found_r21,
+            found_r22,
+            found_r23,
+            found_r31,
+            found_r32,
+            found_r33,
+            *_,
+        ) = found
+        require(status, refused == status, Status.UNREACHABLE)
+        # forward kinematics from the home pose does not find this pose again
+        require(
+            status,
+            (opposite(k.check_forward))
+            | (
+                (absolute(found_r11 - r11) <= 1e-6)
+                & (absolute(found_r12 - r12) <= 1e-6)
+                & (absolute(found_r13 - r13) <= 1e-6)
+                & (absolute(found_r21 - r21) <= 1e-6)
+                & (absolute(found_r22 - r22) <= 1e-6)
+                & (absolute(found_r23 - r23) <= 1e-6)
+                & (absolute(found_r31 - r31) <= 1e-6)
+                & (absolute(found_r32 - r32) <= 1e-6)
+                & (absolute(found_r33 - r33) <= 1e-6)
+                & (absolute(found_x - x) <= k.machine_scale_times_plane)
+                & (absolute(found_y - y) <= k.machine_scale_times_plane)
+                & (absolute(found_z - z) <= k.machine_scale_times_plane)
+            ),
+            Status.UNREACHABLE,
+        )
         return (axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -617,7 +715,9 @@ class ArrayPrograms(StartedPrograms):
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self.constants
         status = passed(axes)
-        # pose of the platform, by Newton's method from the home pose
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(k.start_x, k.start_y, k.start_z), Status.BAD_INPUT)
+        # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (
                 axis_l1,
@@ -626,18 +726,18 @@ class ArrayPrograms(StartedPrograms):
                 axis_l4,
                 axis_l5,
                 axis_l6,
-                k.home_r11,
-                k.home_r12,
-                k.home_r13,
-                k.home_r21,
-                k.home_r22,
-                k.home_r23,
-                k.home_r31,
-                k.home_r32,
-                k.home_r33,
-                k.home_x,
-                k.home_y,
-                k.home_z,
+                k.start_r11,
+                k.start_r12,
+                k.start_r13,
+                k.start_r21,
+                k.start_r22,
+                k.start_r23,
+                k.start_r31,
+                k.start_r32,
+                k.start_r33,
+                k.start_x,
+                k.start_y,
+                k.start_z,
             ),
             status,
         )
@@ -649,7 +749,9 @@ class ArrayPrograms(StartedPrograms):
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self.constants
         status = passed(axes)
-        # pose of the platform, by Newton's method from the home pose
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(k.start_x, k.start_y, k.start_z), Status.BAD_INPUT)
+        # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (
                 axis_l1,
@@ -658,18 +760,18 @@ class ArrayPrograms(StartedPrograms):
                 axis_l4,
                 axis_l5,
                 axis_l6,
-                k.home_r11,
-                k.home_r12,
-                k.home_r13,
-                k.home_r21,
-                k.home_r22,
-                k.home_r23,
-                k.home_r31,
-                k.home_r32,
-                k.home_r33,
-                k.home_x,
-                k.home_y,
-                k.home_z,
+                k.start_r11,
+                k.start_r12,
+                k.start_r13,
+                k.start_r21,
+                k.start_r22,
+                k.start_r23,
+                k.start_r31,
+                k.start_r32,
+                k.start_r33,
+                k.start_x,
+                k.start_y,
+                k.start_z,
             ),
             status,
         )

@@ -31,7 +31,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 79
+    VALUES = 82
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -45,27 +45,23 @@ class ArrayPrograms(Programs):
         pivot_upper_x = -k.link_length_1 * sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
         pivot_upper_y = -k.link_length_1 * cos_a1
+        centre_1_x: Real
+        centre_1_y: Real
+        if k.swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = k.quotient_in_scaled_pivot_rear_y * sin_a1 - k.quotient_in_scaled_pivot_rear_y_2 * cos_a2
+        pivot_rear_x = k.sum_in_pivot_rear_x * sin_a1 - k.link_length_5 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y * cos_a1 + k.quotient_in_scaled_pivot_rear_y_2 * sin_a2
-        centre_1_x: Real
-        centre_2_x: Real
-        centre_1_y: Real
-        centre_2_y: Real
-        if k.swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_2_x = -scaled_pivot_rear_y
-            centre_1_y = pivot_upper_x
-            centre_2_y = -scaled_pivot_rear_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_2_x = -scaled_pivot_rear_x
-            centre_1_y = pivot_upper_y
-            centre_2_y = -scaled_pivot_rear_y
+        pivot_rear_y = k.sum_in_pivot_rear_x * cos_a1 + k.link_length_5 * sin_a2
+        centre_2_x = -select(k.swap_xy, pivot_rear_y, pivot_rear_x) * k.link_length_2_by_link_length_3
         centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
+        centre_2_y = -select(k.swap_xy, pivot_rear_x, pivot_rear_y) * k.link_length_2_by_link_length_3
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
@@ -153,11 +149,11 @@ class ArrayPrograms(Programs):
         sin_swing_a1 = -2.0 * root(sine_square_a1) * sigma_t / divisor_of_cos_a1
         sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - k.quotient_in_along_a2 * sin_a1
+        along_a2 = (k.link_length_2 * span_rear_x - k.product_in_branch_w * sin_a1) * k.one_by_link_length_2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
         span_rear_y = -k.link_length_3_by_link_length_2 * span_upper_y
-        across_a2 = k.quotient_in_along_a2 * cos_a1 - span_rear_y
+        across_a2 = k.one_by_link_length_2 * (k.product_in_branch_w * cos_a1 - k.link_length_2 * span_rear_y)
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = select(effective_a2 > k.link_length_5_times_shortest_link, effective_a2, 1.0)
@@ -174,31 +170,27 @@ class ArrayPrograms(Programs):
         cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2) / divisor_of_cos_a2
         pivot_upper_x = -k.link_length_1 * sin_a1  # rod upper: centre about which it swings
         pivot_upper_y = -k.link_length_1 * cos_a1
+        centre_1_x: Real
+        centre_1_y: Real
+        if k.swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
+        rod_1_x = x - centre_1_x
+        rod_1_y = y - centre_1_y
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_w / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = k.quotient_in_scaled_pivot_rear_y * sin_a1 - k.quotient_in_scaled_pivot_rear_y_2 * cos_a2
+        pivot_rear_x = k.sum_in_pivot_rear_x * sin_a1 - k.link_length_5 * cos_a2
         sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
-        scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y * cos_a1 + k.quotient_in_scaled_pivot_rear_y_2 * sin_a2
-        centre_1_x: Real
-        centre_1_y: Real
-        centre_2_x: Real
-        centre_2_y: Real
-        if k.swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_1_y = pivot_upper_x
-            centre_2_x = -scaled_pivot_rear_y
-            centre_2_y = -scaled_pivot_rear_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_1_y = pivot_upper_y
-            centre_2_x = -scaled_pivot_rear_x
-            centre_2_y = -scaled_pivot_rear_y
-        rod_1_x = x - centre_1_x
-        rod_1_y = y - centre_1_y
+        pivot_rear_y = k.sum_in_pivot_rear_x * cos_a1 + k.link_length_5 * sin_a2
+        centre_2_x = select(k.swap_xy, -pivot_rear_y, -pivot_rear_x) * k.link_length_2_by_link_length_3
         rod_2_x = x - centre_2_x
+        centre_2_y = select(k.swap_xy, -pivot_rear_x, -pivot_rear_y) * k.link_length_2_by_link_length_3
         rod_2_y = y - centre_2_y
         type2_arms_aligned = k.quotient_in_type2_arms_aligned * (rod_1_x * rod_2_y - rod_1_y * rod_2_x)
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
@@ -248,27 +240,23 @@ class ArrayPrograms(Programs):
         pivot_upper_x = -k.link_length_1 * sin_a1  # rod upper: centre about which it swings
         cos_a1 = cos(a1)
         pivot_upper_y = -k.link_length_1 * cos_a1
+        centre_1_x: Real
+        centre_1_y: Real
+        if k.swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = k.quotient_in_scaled_pivot_rear_y * sin_a1 - k.quotient_in_scaled_pivot_rear_y_2 * cos_a2
+        pivot_rear_x = k.sum_in_pivot_rear_x * sin_a1 - k.link_length_5 * cos_a2
         sin_a2 = sin(a2)
-        scaled_pivot_rear_y = k.quotient_in_scaled_pivot_rear_y * cos_a1 + k.quotient_in_scaled_pivot_rear_y_2 * sin_a2
-        centre_1_x: Real
-        centre_2_x: Real
-        centre_1_y: Real
-        centre_2_y: Real
-        if k.swap_xy:
-            centre_1_x = pivot_upper_y
-            centre_2_x = -scaled_pivot_rear_y
-            centre_1_y = pivot_upper_x
-            centre_2_y = -scaled_pivot_rear_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_2_x = -scaled_pivot_rear_x
-            centre_1_y = pivot_upper_y
-            centre_2_y = -scaled_pivot_rear_y
+        pivot_rear_y = k.sum_in_pivot_rear_x * cos_a1 + k.link_length_5 * sin_a2
+        centre_2_x = -select(k.swap_xy, pivot_rear_y, pivot_rear_x) * k.link_length_2_by_link_length_3
         centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
+        centre_2_y = -select(k.swap_xy, pivot_rear_x, pivot_rear_y) * k.link_length_2_by_link_length_3
         centre_1_to_2_y = centre_2_y - centre_1_y
         # squared length of the normal
         normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y

@@ -9,22 +9,27 @@ from softkin._array import (
     DEGREE,
     Programs,
     absolute,
+    advanced,
     atan2,
     cos,
     elsewhere,
+    initial,
     nearest_period,
+    opposite,
     passed,
     reasonable,
     require,
     root,
     select,
+    settled,
     sin,
+    solve,
     sqrt,
 )
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Values, Vector
     from softkin.palletizer import Constants
 
 
@@ -32,8 +37,247 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 75
+    VALUES = 243
     JACOBIAN_ROWS = (0, 1, 2, 5)
+
+    def meet_point(self, given: Values, status: Codes) -> Values:
+        """The axes that meet a point, found by steps on the closure, and whether they do."""
+        (
+            given_point_x,
+            given_point_y,
+            given_point_z,
+            given_ref_a1,
+            given_ref_a2,
+            given_ref_a3,
+            given_ref_a4,
+            given_sigma_elbow,
+            given_sigma_shoulder,
+            given_turn_a1,
+            given_turn_a2,
+            given_turn_a3,
+            goal_x,
+            goal_y,
+            goal_z,
+            start_a1,
+            start_a2,
+            start_a3,
+            start_a4,
+        ) = given
+        k = self.constants
+        closed_distance_a1 = sqrt(goal_x * goal_x + goal_y * goal_y)  # distance of the point from the axis of a1
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
+        closed_near_a1 = select(
+            given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
+        )
+        closed_tool_z = given_point_z + k.wrist_offset_z  # commanded point, in the frame of the last moving joint
+        # coordinate of the point that the remaining links must reach
+        closed_wrist_z_from_a1 = goal_z - k.base_height - closed_tool_z
+        # A2: without a commanded turn, the value nearest to this
+        closed_open_a2 = select(k.single_a2, k.mid_a2, given_ref_a2)
+        closed_near_a2 = select(
+            given_turn_a2 != 0, 360.0 * select(given_turn_a2 > 0, given_turn_a2 - 1, given_turn_a2), closed_open_a2
+        )
+        # A3: without a commanded turn, the value nearest to this
+        closed_open_a3 = select(k.single_a3, k.mid_a3, given_ref_a3)
+        closed_near_a3 = select(
+            given_turn_a3 != 0, 360.0 * select(given_turn_a3 > 0, given_turn_a3 - 1, given_turn_a3), closed_open_a3
+        )
+        # steps of damped least squares on the closure, from one start after the other
+        tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before = initial(
+            start_a1, start_a2, start_a3, start_a4, 40, 0, 9.0
+        )
+        for _ in range(164):
+            a1 = (tried_a1 - k.offset_a1) * DEGREE
+            sin_a1 = sin(a1)
+            cos_a1 = cos(a1)
+            x_at_a2 = k.shoulder_offset * cos_a1
+            a2 = (tried_a2 - k.offset_a2) * DEGREE
+            sin_a2 = sin(a2)
+            r13_at_a2 = cos_a1 * sin_a2
+            x_at_a2_a3 = x_at_a2 + k.link_length_1 * r13_at_a2
+            a3 = (tried_a3 - k.offset_a3) * DEGREE
+            cos_a3 = cos(a3)
+            r11_at_a3 = cos_a1 * cos_a3
+            x_at_a3 = x_at_a2_a3 + k.link_length_2 * r11_at_a3
+            x_at_a4 = x_at_a3 + k.wrist_offset_x * cos_a1
+            a4 = (tried_a4 - k.offset_a4) * DEGREE
+            sin_a4 = sin(a4)
+            cos_a4 = cos(a4)
+            r11_at_a4 = cos_a1 * cos_a4 - sin_a1 * sin_a4
+            r12_at_a4 = -cos_a1 * sin_a4 - cos_a4 * sin_a1
+            x = x_at_a4 + given_point_x * r11_at_a4 + given_point_y * r12_at_a4
+            y_at_a2 = k.shoulder_offset * sin_a1
+            r23_at_a2 = sin_a1 * sin_a2
+            y_at_a2_a3 = y_at_a2 + k.link_length_1 * r23_at_a2
+            r21_at_a3 = cos_a3 * sin_a1
+            y_at_a3 = y_at_a2_a3 + k.link_length_2 * r21_at_a3
+            y_at_a4 = y_at_a3 + k.wrist_offset_x * sin_a1
+            y = y_at_a4 + given_point_y * r11_at_a4 - given_point_x * r12_at_a4
+            branch_shoulder = k.one_by_machine_scale * (x * cos_a1 + y * sin_a1)
+            beside_shoulder = given_sigma_shoulder * branch_shoulder < -1e-6
+            cos_a3_from_a2 = cos(a2 - a3)
+            beside_elbow = given_sigma_elbow * cos_a3_from_a2 < -1e-6
+            error_1 = (goal_x - x) * k.one_by_machine_scale
+            error_2 = (goal_y - y) * k.one_by_machine_scale
+            cos_a2 = cos(a2)
+            z_at_a2_a3 = k.base_height + k.link_length_1 * cos_a2
+            sin_a3 = sin(a3)
+            z_at_a3 = z_at_a2_a3 - k.link_length_2 * sin_a3
+            flange_z = k.wrist_offset_z + z_at_a3
+            z = flange_z + given_point_z
+            error_3 = (goal_z - z) * k.one_by_machine_scale
+            # error of the pose, in characteristic lengths and radians
+            error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
+            another = passes_left <= 0
+            # the error is rounding, and steps make it no smaller
+            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
+            pose_is_met = pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder))
+            next_attempt = attempt + select(another, 1, 0)
+            mirrors = pose_is_close & (beside_elbow | beside_shoulder)
+            free_angle = select(next_attempt > 0, 1e-6, 1e-11)
+            free_turn = -137.5 * select(next_attempt > 1, 1 - next_attempt, 0)
+            closed_reference_a4 = DEGREE * (free_turn + given_ref_a4 - k.offset_a4)
+            closed_cos_a4 = cos(closed_reference_a4)
+            closed_sin_a4 = sin(closed_reference_a4)
+            # commanded point, in the frame of the last moving joint
+            closed_tool_y = closed_cos_a4 * given_point_y + closed_sin_a4 * given_point_x
+            # Pythagoras: square of the distance ahead of the axis
+            closed_ahead_squared_a1 = (closed_distance_a1 + closed_tool_y) * (closed_distance_a1 - closed_tool_y)
+            # how far ahead of the axis the point is; negative: behind it
+            closed_ahead_a1 = root(closed_ahead_squared_a1) * given_sigma_shoulder
+            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            closed_divisor_a1 = select(
+                closed_distance_a1 > free_angle_times_machine_scale, closed_distance_a1 * closed_distance_a1, 1.0
+            )
+            # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_a1 = select(
+                closed_distance_a1 > free_angle_times_machine_scale,
+                (closed_ahead_a1 * goal_x + closed_tool_y * goal_y) / closed_divisor_a1,
+                cos(closed_reference_a1),
+            )
+            closed_sin_a1 = select(
+                closed_distance_a1 > free_angle_times_machine_scale,
+                (closed_ahead_a1 * goal_y - closed_tool_y * goal_x) / closed_divisor_a1,
+                sin(closed_reference_a1),
+            )
+            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_a1, closed_cos_a1) / DEGREE, closed_near_a1)
+            rate_1_1 = -k.one_by_machine_scale * y
+            rate_2_1 = k.one_by_machine_scale * x
+            z_minus_z_at_a2_a3 = z - z_at_a2_a3
+            sum_in_rate_1_2 = k.base_height + z_minus_z_at_a2_a3 - z
+            rate_1_2 = -k.one_by_machine_scale * sum_in_rate_1_2 * cos_a1
+            sum_in_rate_1_3 = z_at_a3 + z_minus_z_at_a2_a3 - z
+            rate_1_3 = k.one_by_machine_scale * sum_in_rate_1_3 * cos_a1
+            product_in_damping = 0.001 * error
+            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
+            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            rate_2_2 = -k.one_by_machine_scale * sum_in_rate_1_2 * sin_a1
+            rate_2_3 = k.one_by_machine_scale * sum_in_rate_1_3 * sin_a1
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            x_minus_x_at_a2_a3 = x - x_at_a2_a3
+            y_minus_y_at_a2_a3 = y - y_at_a2_a3
+            rate_3_2 = k.one_by_machine_scale * (
+                (x_at_a2 + x_minus_x_at_a2_a3 - x) * cos_a1 + (y_at_a2 + y_minus_y_at_a2_a3 - y) * sin_a1
+            )
+            rate_3_3 = -k.one_by_machine_scale * (
+                (x_at_a3 + x_minus_x_at_a2_a3 - x) * cos_a1 + (y_at_a3 + y_minus_y_at_a2_a3 - y) * sin_a1
+            )
+            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
+            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
+            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            _, multiplier_1, multiplier_2, multiplier_3 = solve(
+                (
+                    (product_1_1, product_1_2, product_1_3),
+                    (product_1_2, product_2_2, product_2_3),
+                    (product_1_3, product_2_3, product_3_3),
+                ),
+                ((error_1,), (error_2,), (error_3,)),
+            )
+            step_a1 = multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
+            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+            # commanded point, in the frame of the last moving joint
+            closed_tool_x = k.wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_x_from_a1 = closed_ahead_a1 - closed_tool_x - k.shoulder_offset
+            # distance that the remaining links must span
+            closed_reach = sqrt(
+                closed_wrist_x_from_a1 * closed_wrist_x_from_a1 + closed_wrist_z_from_a1 * closed_wrist_z_from_a1
+            )
+            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
+            # law of cosines for a3_from_a2 (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
+            closed_one_less_cos_a3_from_a2 = (closed_reach + k.link_length_1_minus_link_length_2) * (
+                closed_reach - k.link_length_1_minus_link_length_2
+            )
+            # 1 + cosine, times the scale
+            closed_one_plus_cos_a3_from_a2 = (k.link_length_1_plus_link_length_2 - closed_reach) * (
+                closed_reach + k.link_length_1_plus_link_length_2
+            )
+            # sine squared, times the squared scale
+            closed_sine_square_a3_from_a2 = closed_one_less_cos_a3_from_a2 * closed_one_plus_cos_a3_from_a2
+            # addition theorem: plus the angle of the direction from which the cosine is measured
+            closed_cos_a3_from_a2 = (
+                root(closed_sine_square_a3_from_a2) * given_sigma_elbow * k.half_by_link_length_1_by_link_length_2
+            )
+            closed_arm_along_a2 = closed_cos_a3_from_a2 * k.link_length_2
+            closed_cos_swing_a3_from_a2 = (
+                closed_one_plus_cos_a3_from_a2 - closed_one_less_cos_a3_from_a2
+            ) * k.quotient_in_closed_cos_swing_a3_from_a2
+            closed_arm_across_a2 = k.link_length_1 - closed_cos_swing_a3_from_a2 * k.link_length_2
+            # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
+            # reference
+            closed_direction_x_a2 = select(
+                closed_reach > free_angle_times_machine_scale,
+                closed_arm_across_a2 * closed_wrist_z_from_a1 + closed_arm_along_a2 * closed_wrist_x_from_a1,
+                cos(closed_reference_a2),
+            )
+            closed_direction_y_a2 = select(
+                closed_reach > free_angle_times_machine_scale,
+                closed_arm_across_a2 * closed_wrist_x_from_a1 - closed_arm_along_a2 * closed_wrist_z_from_a1,
+                sin(closed_reference_a2),
+            )
+            closed_angle_a2 = atan2(closed_direction_y_a2, closed_direction_x_a2)
+            closed_axis_a2 = nearest_period(k.offset_a2 + closed_angle_a2 / DEGREE, closed_near_a2)
+            closed_angle_a3_from_a2 = atan2(closed_cos_swing_a3_from_a2, closed_cos_a3_from_a2)
+            # a3 from the sum a3_from_a2 of angles about parallel axes
+            closed_axis_a3 = nearest_period(
+                k.offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) / DEGREE, closed_near_a3
+            )
+            shared_quotient = shrinking / DEGREE
+            done = pose_is_met | (another & (next_attempt >= 4))
+            if settled(done, status):
+                break
+            tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before = advanced(
+                done,
+                (tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before),
+                (
+                    select(
+                        another,
+                        closed_axis_a1,
+                        select(
+                            mirrors,
+                            select(beside_shoulder, 2.0 * closed_axis_a1 - tried_a1, tried_a1),
+                            tried_a1 + shared_quotient * step_a1,
+                        ),
+                    ),
+                    select(another, closed_axis_a2, select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2)),
+                    select(another, closed_axis_a3, select(mirrors, tried_a3, tried_a3 + shared_quotient * step_a3)),
+                    select(another, given_ref_a4, tried_a4),
+                    select(another, 40, passes_left - 1),
+                    next_attempt,
+                    select(another | mirrors, 9.0, error),
+                ),
+            )
+        require(status, done, Status.UNREACHABLE)
+        chosen_a1 = nearest_period(tried_a1, closed_near_a1)
+        chosen_a2 = nearest_period(tried_a2, closed_near_a2)
+        chosen_a3 = nearest_period(tried_a3, closed_near_a3)
+        return (pose_is_met, chosen_a1, chosen_a2, chosen_a3, tried_a4)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -65,20 +309,18 @@ class ArrayPrograms(Programs):
         z_at_a2_a3 = k.base_height + k.link_length_1 * cos_a2
         sin_a3 = sin(a3)
         z_at_a3 = z_at_a2_a3 - k.link_length_2 * sin_a3
-        z_at_a4 = k.wrist_offset_z + z_at_a3
+        z = k.wrist_offset_z + z_at_a3
         a4 = DEGREE * (axis_a4 - k.offset_a4)
         sin_a4 = sin(a4)
         cos_a4 = cos(a4)
         r11_at_a4 = cos_a1 * cos_a4 - sin_a1 * sin_a4
         r12_at_a4 = -cos_a1 * sin_a4 - cos_a4 * sin_a1
-        branch_shoulder = (
-            k.quotient_in_branch_shoulder
-            + k.link_length_2_by_machine_scale * cos_a3
-            + k.link_length_1_by_machine_scale * sin_a2
+        branch_shoulder = k.one_by_machine_scale * (
+            k.shoulder_offset_plus_wrist_offset_x + k.link_length_2 * cos_a3 + k.link_length_1 * sin_a2
         )
         cos_a3_from_a2 = cos(a2 - a3)
         return (
-            (x_at_a4, y_at_a4, z_at_a4),
+            (x_at_a4, y_at_a4, z),
             ((r11_at_a4, r12_at_a4, 0.0), (-r12_at_a4, r11_at_a4, 0.0), (0.0, 0.0, 1.0)),
             (branch_shoulder, cos_a3_from_a2),
         ), status
@@ -115,7 +357,9 @@ class ArrayPrograms(Programs):
         one_plus_cos_a3_from_a2 = (k.link_length_1_plus_link_length_2 + reach) * (
             k.link_length_1_plus_link_length_2 - reach
         )
-        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) * k.quotient_in_cos_swing_a3_from_a2
+        cos_swing_a3_from_a2 = (
+            one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
+        ) * k.quotient_in_closed_cos_swing_a3_from_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
@@ -211,10 +455,8 @@ class ArrayPrograms(Programs):
         sin_a2 = sin(a2)
         a3 = DEGREE * (axis_a3 - k.offset_a3)
         cos_a3 = cos(a3)
-        margin_axis_a4_on_a1 = (
-            k.quotient_in_branch_shoulder
-            + k.link_length_2_by_machine_scale * cos_a3
-            + k.link_length_1_by_machine_scale * sin_a2
+        margin_axis_a4_on_a1 = k.one_by_machine_scale * (
+            k.shoulder_offset_plus_wrist_offset_x + k.link_length_2 * cos_a3 + k.link_length_1 * sin_a2
         )
         cos_a3_from_a2 = cos(a2 - a3)
         return (margin_axis_a4_on_a1, cos_a3_from_a2), status
@@ -251,10 +493,10 @@ class ArrayPrograms(Programs):
         z_at_a2_a3 = k.base_height + k.link_length_1 * cos_a2
         sin_a3 = sin(a3)
         z_at_a3 = z_at_a2_a3 - k.link_length_2 * sin_a3
-        z_at_a4 = k.wrist_offset_z + z_at_a3
-        z_at_a4_minus_z_at_a2_a3 = z_at_a4 - z_at_a2_a3
-        shared_sum = k.base_height + z_at_a4_minus_z_at_a2_a3 - z_at_a4
-        shared_sum_2 = z_at_a3 + z_at_a4_minus_z_at_a2_a3 - z_at_a4
+        z = k.wrist_offset_z + z_at_a3
+        z_minus_z_at_a2_a3 = z - z_at_a2_a3
+        shared_sum = k.base_height + z_minus_z_at_a2_a3 - z
+        shared_sum_2 = z_at_a3 + z_minus_z_at_a2_a3 - z
         return (
             (-y_at_a4, -shared_sum * cos_a1, shared_sum_2 * cos_a1, 0.0),
             (x_at_a4, -shared_sum * sin_a1, shared_sum_2 * sin_a1, 0.0),

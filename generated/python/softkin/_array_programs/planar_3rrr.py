@@ -14,10 +14,12 @@ from softkin._array import (
     degrees,
     initial,
     nearest_period,
+    opposite,
     passed,
     reasonable,
     require,
     root,
+    run_where,
     select,
     settled,
     sin,
@@ -35,33 +37,33 @@ class ArrayPrograms(StartedPrograms):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 223
+    VALUES = 238
     JACOBIAN_ROWS = (0, 1, 5)
 
     def find_platform(self, given: Values, status: Codes) -> Values:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""
-        axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, start_x, start_y = given
+        axis_a1, axis_a2, axis_a3, begin_cos_heading, begin_sin_heading, begin_x, begin_y = given
         k = self.constants
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
         # joints of the platform, seen from its origin, in the orientation of the start
-        start_arm_1_x = k.platform_1_x * start_cos_heading - k.platform_1_y * start_sin_heading
-        start_arm_1_y = k.platform_1_x * start_sin_heading + k.platform_1_y * start_cos_heading
+        start_arm_1_x = begin_cos_heading * k.platform_1_x - begin_sin_heading * k.platform_1_y
+        start_arm_1_y = begin_cos_heading * k.platform_1_y + begin_sin_heading * k.platform_1_x
         a1 = DEGREE * (axis_a1 - k.offset_a1)
         cos_a1 = cos(a1)
         sin_a1 = sin(a1)
-        start_arm_2_x = k.platform_2_x * start_cos_heading - k.platform_2_y * start_sin_heading
-        start_arm_2_y = k.platform_2_x * start_sin_heading + k.platform_2_y * start_cos_heading
+        start_arm_2_x = begin_cos_heading * k.platform_2_x - begin_sin_heading * k.platform_2_y
+        start_arm_2_y = begin_cos_heading * k.platform_2_y + begin_sin_heading * k.platform_2_x
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
         sin_a2 = sin(a2)
-        start_arm_3_x = k.platform_3_x * start_cos_heading - k.platform_3_y * start_sin_heading
-        start_arm_3_y = k.platform_3_x * start_sin_heading + k.platform_3_y * start_cos_heading
+        start_arm_3_x = begin_cos_heading * k.platform_3_x - begin_sin_heading * k.platform_3_y
+        start_arm_3_y = begin_cos_heading * k.platform_3_y + begin_sin_heading * k.platform_3_x
         a3 = DEGREE * (axis_a3 - k.offset_a3)
         cos_a3 = cos(a3)
         sin_a3 = sin(a3)
         # Newton's method: every pass improves the pose until all legs fit
-        x, y, yaw, fitted = initial(start_x, start_y, 0.0, False)
+        x, y, yaw, fitted = initial(begin_x, begin_y, 0.0, False)
         for _ in range(20):
             cos_yaw = cos(yaw)
             sin_yaw = sin(yaw)
@@ -126,15 +128,15 @@ class ArrayPrograms(StartedPrograms):
                 (x + one_by_stretch * x_rate, y + one_by_stretch * y_rate, yaw + one_by_stretch * spin_z, fit),
             )
         require(status, done, Status.IMPOSSIBLE)
-        cos_heading = start_cos_heading * cos_yaw - start_sin_heading * sin_yaw  # orientation of the platform
-        sin_heading = start_sin_heading * cos_yaw + start_cos_heading * sin_yaw
+        found_cos_heading = begin_cos_heading * cos_yaw - begin_sin_heading * sin_yaw  # orientation of the platform
+        found_sin_heading = begin_cos_heading * sin_yaw + begin_sin_heading * cos_yaw
         # the other assembly mode
         require(status, k.assembly_sign * determinant > 0.0, Status.IMPOSSIBLE)
         return (
             x,
             y,
-            cos_heading,
-            sin_heading,
+            found_cos_heading,
+            found_sin_heading,
             determinant,
             along_1_x,
             along_1_y,
@@ -152,86 +154,49 @@ class ArrayPrograms(StartedPrograms):
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
         status = passed(axes)
-        # pose of the platform, by Newton's method from the home pose
-        found = self.find_platform(
-            (axis_a1, axis_a2, axis_a3, k.cos_home_heading_2, k.sin_home_heading_2, k.home_x, k.home_y), status
-        )
-        x, y, cos_heading, sin_heading, *_ = found
-        a1 = DEGREE * (axis_a1 - k.offset_a1)
-        sin_a1 = sin(a1)
-        cos_a1 = cos(a1)
-        # rod 1: known part of its vector
-        span_1_x = x + k.platform_1_x * cos_heading - k.base_1_x - k.platform_1_y * sin_heading
-        span_1_y = y + k.platform_1_y * cos_heading + k.platform_1_x * sin_heading - k.base_1_y
-        branch_elbow_1 = k.one_by_rod_length_1 * (span_1_y * cos_a1 - span_1_x * sin_a1)
-        a2 = DEGREE * (axis_a2 - k.offset_a2)
-        sin_a2 = sin(a2)
-        cos_a2 = cos(a2)
-        # rod 2: known part of its vector
-        span_2_x = x + k.platform_2_x * cos_heading - k.base_2_x - k.platform_2_y * sin_heading
-        span_2_y = y + k.platform_2_y * cos_heading + k.platform_2_x * sin_heading - k.base_2_y
-        branch_elbow_2 = k.one_by_rod_length_2 * (span_2_y * cos_a2 - span_2_x * sin_a2)
-        a3 = DEGREE * (axis_a3 - k.offset_a3)
-        sin_a3 = sin(a3)
-        cos_a3 = cos(a3)
-        # rod 3: known part of its vector
-        span_3_x = x + k.platform_3_x * cos_heading - k.base_3_x - k.platform_3_y * sin_heading
-        span_3_y = y + k.platform_3_y * cos_heading + k.platform_3_x * sin_heading - k.base_3_y
-        branch_elbow_3 = k.one_by_rod_length_3 * (span_3_y * cos_a3 - span_3_x * sin_a3)
-        return (
-            (x, y, 0.0),
-            ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)),
-            (branch_elbow_1, branch_elbow_2, branch_elbow_3),
-        ), status
-
-    def forward_from(
-        self, axes: Reals, start_position: Vector, start_rotation: Rotation
-    ) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
-        """Position, rotation and the signed margin of every branch, found from a given start."""
-        axis_a1, axis_a2, axis_a3 = axes
-        start_x, start_y, _ = start_position
-        (start_r11, start_r12, _), (start_r21, start_r22, _), _ = start_rotation
-        k = self.constants
-        status = passed(axes, start_position, start_rotation)
         # inputs must be numbers, and of reasonable size
-        require(status, reasonable(start_x, start_y), Status.BAD_INPUT)
-        start_along = start_r11 + start_r22  # nearest rotation about Z
-        start_across = start_r21 - start_r12
+        require(status, reasonable(k.start_x, k.start_y), Status.BAD_INPUT)
+        start_along = k.start_r11 + k.start_r22  # nearest rotation about Z
+        start_across = k.start_r21 - k.start_r12
         start_length = sqrt(start_across * start_across + start_along * start_along)
         start_divisor = select(start_length > 1e-11, start_length, 1.0)
         start_cos_heading = start_along / start_divisor
         start_sin_heading = start_across / start_divisor
         # the tool points exactly the opposite way
         require(status, start_length > 1e-11, Status.BAD_INPUT)
-        # pose of the platform, by Newton's method from the given start
+        # pose of the platform, by Newton's method from the start
         found = self.find_platform(
-            (axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, start_x, start_y), status
+            (axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, k.start_x, k.start_y), status
         )
-        x, y, cos_heading, sin_heading, *_ = found
+        found_x, found_y, found_cos_heading, found_sin_heading, *_ = found
         a1 = DEGREE * (axis_a1 - k.offset_a1)
         sin_a1 = sin(a1)
         cos_a1 = cos(a1)
         # rod 1: known part of its vector
-        span_1_x = x + k.platform_1_x * cos_heading - k.base_1_x - k.platform_1_y * sin_heading
-        span_1_y = y + k.platform_1_y * cos_heading + k.platform_1_x * sin_heading - k.base_1_y
+        span_1_x = found_x + found_cos_heading * k.platform_1_x - k.base_1_x - found_sin_heading * k.platform_1_y
+        span_1_y = found_y + found_cos_heading * k.platform_1_y + found_sin_heading * k.platform_1_x - k.base_1_y
         branch_elbow_1 = k.one_by_rod_length_1 * (span_1_y * cos_a1 - span_1_x * sin_a1)
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         sin_a2 = sin(a2)
         cos_a2 = cos(a2)
         # rod 2: known part of its vector
-        span_2_x = x + k.platform_2_x * cos_heading - k.base_2_x - k.platform_2_y * sin_heading
-        span_2_y = y + k.platform_2_y * cos_heading + k.platform_2_x * sin_heading - k.base_2_y
+        span_2_x = found_x + found_cos_heading * k.platform_2_x - k.base_2_x - found_sin_heading * k.platform_2_y
+        span_2_y = found_y + found_cos_heading * k.platform_2_y + found_sin_heading * k.platform_2_x - k.base_2_y
         branch_elbow_2 = k.one_by_rod_length_2 * (span_2_y * cos_a2 - span_2_x * sin_a2)
         a3 = DEGREE * (axis_a3 - k.offset_a3)
         sin_a3 = sin(a3)
         cos_a3 = cos(a3)
         # rod 3: known part of its vector
-        span_3_x = x + k.platform_3_x * cos_heading - k.base_3_x - k.platform_3_y * sin_heading
-        span_3_y = y + k.platform_3_y * cos_heading + k.platform_3_x * sin_heading - k.base_3_y
+        span_3_x = found_x + found_cos_heading * k.platform_3_x - k.base_3_x - found_sin_heading * k.platform_3_y
+        span_3_y = found_y + found_cos_heading * k.platform_3_y + found_sin_heading * k.platform_3_x - k.base_3_y
         branch_elbow_3 = k.one_by_rod_length_3 * (span_3_y * cos_a3 - span_3_x * sin_a3)
         return (
-            (x, y, 0.0),
-            ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)),
+            (found_x, found_y, 0.0),
+            (
+                (found_cos_heading, -found_sin_heading, 0.0),
+                (found_sin_heading, found_cos_heading, 0.0),
+                (0.0, 0.0, 1.0),
+            ),
             (branch_elbow_1, branch_elbow_2, branch_elbow_3),
         ), status
 
@@ -381,6 +346,29 @@ class ArrayPrograms(StartedPrograms):
         )
         # rods_dependent: in the other assembly mode, or too close to a type 2 singularity
         require(status, k.assembly_sign * determinant >= k.min_type2_margin, Status.UNREACHABLE)
+        # pose of the platform, by Newton's method from the home pose
+        refused = status.copy()
+        found = run_where(
+            k.check_forward,
+            self.find_platform,
+            (axis_a1, axis_a2, axis_a3, k.cos_home_heading_2, k.sin_home_heading_2, k.home_x, k.home_y),
+            refused,
+            (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        )
+        found_x, found_y, found_cos_heading, found_sin_heading, *_ = found
+        require(status, refused == status, Status.UNREACHABLE)
+        # forward kinematics from the home pose does not find this pose again
+        require(
+            status,
+            (opposite(k.check_forward))
+            | (
+                (absolute(cos_heading - found_cos_heading) <= 1e-6)
+                & (absolute(found_sin_heading - sin_heading) <= 1e-6)
+                & (absolute(found_x - x) <= k.machine_scale_times_plane)
+                & (absolute(found_y - y) <= k.machine_scale_times_plane)
+            ),
+            Status.UNREACHABLE,
+        )
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -401,31 +389,41 @@ class ArrayPrograms(StartedPrograms):
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
         status = passed(axes)
-        # pose of the platform, by Newton's method from the home pose
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(k.start_x, k.start_y), Status.BAD_INPUT)
+        start_along = k.start_r11 + k.start_r22  # nearest rotation about Z
+        start_across = k.start_r21 - k.start_r12
+        start_length = sqrt(start_across * start_across + start_along * start_along)
+        start_divisor = select(start_length > 1e-11, start_length, 1.0)
+        start_cos_heading = start_along / start_divisor
+        start_sin_heading = start_across / start_divisor
+        # the tool points exactly the opposite way
+        require(status, start_length > 1e-11, Status.BAD_INPUT)
+        # pose of the platform, by Newton's method from the start
         found = self.find_platform(
-            (axis_a1, axis_a2, axis_a3, k.cos_home_heading_2, k.sin_home_heading_2, k.home_x, k.home_y), status
+            (axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, k.start_x, k.start_y), status
         )
-        x, y, cos_heading, sin_heading, determinant, *_ = found
+        found_x, found_y, found_cos_heading, found_sin_heading, determinant, *_ = found
         a1 = DEGREE * (axis_a1 - k.offset_a1)
         sin_a1 = sin(a1)
         cos_a1 = cos(a1)
         # rod 1: known part of its vector
-        span_1_x = x + k.platform_1_x * cos_heading - k.base_1_x - k.platform_1_y * sin_heading
-        span_1_y = y + k.platform_1_y * cos_heading + k.platform_1_x * sin_heading - k.base_1_y
+        span_1_x = found_x + found_cos_heading * k.platform_1_x - k.base_1_x - found_sin_heading * k.platform_1_y
+        span_1_y = found_y + found_cos_heading * k.platform_1_y + found_sin_heading * k.platform_1_x - k.base_1_y
         margin_stretched_1 = k.one_by_rod_length_1 * (span_1_y * cos_a1 - span_1_x * sin_a1)
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         sin_a2 = sin(a2)
         cos_a2 = cos(a2)
         # rod 2: known part of its vector
-        span_2_x = x + k.platform_2_x * cos_heading - k.base_2_x - k.platform_2_y * sin_heading
-        span_2_y = y + k.platform_2_y * cos_heading + k.platform_2_x * sin_heading - k.base_2_y
+        span_2_x = found_x + found_cos_heading * k.platform_2_x - k.base_2_x - found_sin_heading * k.platform_2_y
+        span_2_y = found_y + found_cos_heading * k.platform_2_y + found_sin_heading * k.platform_2_x - k.base_2_y
         margin_stretched_2 = k.one_by_rod_length_2 * (span_2_y * cos_a2 - span_2_x * sin_a2)
         a3 = DEGREE * (axis_a3 - k.offset_a3)
         sin_a3 = sin(a3)
         cos_a3 = cos(a3)
         # rod 3: known part of its vector
-        span_3_x = x + k.platform_3_x * cos_heading - k.base_3_x - k.platform_3_y * sin_heading
-        span_3_y = y + k.platform_3_y * cos_heading + k.platform_3_x * sin_heading - k.base_3_y
+        span_3_x = found_x + found_cos_heading * k.platform_3_x - k.base_3_x - found_sin_heading * k.platform_3_y
+        span_3_y = found_y + found_cos_heading * k.platform_3_y + found_sin_heading * k.platform_3_x - k.base_3_y
         margin_stretched_3 = k.one_by_rod_length_3 * (span_3_y * cos_a3 - span_3_x * sin_a3)
         return (margin_stretched_1, margin_stretched_2, margin_stretched_3, determinant), status
 
@@ -434,9 +432,19 @@ class ArrayPrograms(StartedPrograms):
         axis_a1, axis_a2, axis_a3 = axes
         k = self.constants
         status = passed(axes)
-        # pose of the platform, by Newton's method from the home pose
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(k.start_x, k.start_y), Status.BAD_INPUT)
+        start_along = k.start_r11 + k.start_r22  # nearest rotation about Z
+        start_across = k.start_r21 - k.start_r12
+        start_length = sqrt(start_across * start_across + start_along * start_along)
+        start_divisor = select(start_length > 1e-11, start_length, 1.0)
+        start_cos_heading = start_along / start_divisor
+        start_sin_heading = start_across / start_divisor
+        # the tool points exactly the opposite way
+        require(status, start_length > 1e-11, Status.BAD_INPUT)
+        # pose of the platform, by Newton's method from the start
         found = self.find_platform(
-            (axis_a1, axis_a2, axis_a3, k.cos_home_heading_2, k.sin_home_heading_2, k.home_x, k.home_y), status
+            (axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, k.start_x, k.start_y), status
         )
         (
             _,

@@ -9,22 +9,29 @@ from softkin._array import (
     DEGREE,
     Programs,
     absolute,
+    advanced,
+    atan2,
     cos,
     degrees,
     elsewhere,
+    initial,
     nearest_period,
+    opposite,
     passed,
     reasonable,
     require,
     root,
+    run_where,
     select,
+    settled,
     sin,
+    solve,
     sqrt,
 )
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Values, Vector
     from softkin.pos_rrr import Constants
 
 
@@ -32,8 +39,457 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 89
+    VALUES = 395
     JACOBIAN_ROWS = (0, 1, 2)
+
+    def meet_pose(self, given: Values, status: Codes) -> Values:
+        """The axes that meet a pose, found by steps on the closure, and whether they do."""
+        (
+            given_ref_a1,
+            given_ref_a2,
+            given_ref_a3,
+            given_sigma_arm,
+            given_sigma_elbow,
+            given_turn_a1,
+            given_turn_a2,
+            given_turn_a3,
+            goal_x,
+            goal_y,
+            goal_z,
+            start_a1,
+            start_a2,
+            start_a3,
+        ) = given
+        k = self.constants
+        closed_distance_q1 = sqrt(goal_x * goal_x + goal_y * goal_y)  # distance of the point from the axis of q1
+        # Pythagoras: square of the distance ahead of the axis
+        closed_ahead_squared_q1 = (closed_distance_q1 + k.d3) * (closed_distance_q1 - k.d3)
+        # how far ahead of the axis the point is; negative: behind it
+        closed_ahead_q1 = root(closed_ahead_squared_q1) * given_sigma_arm
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
+        closed_near_a1 = select(
+            given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
+        )
+        # coordinate of the point that the remaining links must reach
+        closed_wrist_x_from_q1 = closed_ahead_q1 - k.a1
+        closed_wrist_z_from_q1 = goal_z - k.d1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
+        closed_reach = sqrt(
+            closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+        )
+        # A2: without a commanded turn, the value nearest to this
+        closed_open_a2 = select(k.single_a2, k.mid_a2, given_ref_a2)
+        closed_near_a2 = select(
+            given_turn_a2 != 0, 360.0 * select(given_turn_a2 > 0, given_turn_a2 - 1, given_turn_a2), closed_open_a2
+        )
+        # A3: without a commanded turn, the value nearest to this
+        closed_open_a3 = select(k.single_a3, k.mid_a3, given_ref_a3)
+        closed_near_a3 = select(
+            given_turn_a3 != 0, 360.0 * select(given_turn_a3 > 0, given_turn_a3 - 1, given_turn_a3), closed_open_a3
+        )
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        closed_one_less_cos_q3 = (k.a2_plus_effective_q3_2 + closed_reach) * (k.a2_plus_effective_q3_2 - closed_reach)
+        # 1 + cosine, times the scale
+        closed_one_plus_cos_q3 = (closed_reach - k.a2_minus_effective_q3_2_2) * (
+            k.a2_minus_effective_q3_2_2 + closed_reach
+        )
+        # sum of both, twice the scale: cosine² + sine² is then 1
+        closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
+        closed_divisor_of_cos_q3 = select(closed_sum_q3 > 0.0, closed_sum_q3, 1.0)
+        # sine squared, times the squared scale
+        closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
+        closed_sin_swing_q3 = -2.0 * root(closed_sine_square_q3) * given_sigma_elbow / closed_divisor_of_cos_q3
+        closed_arm_along_q2 = -closed_sin_swing_q3 * k.effective_q3_2
+        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
+        closed_arm_across_q2 = k.a2 + closed_cos_swing_q3 * k.effective_q3_2
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        closed_cos_q3 = k.a3_by_effective_q3_2 * closed_cos_swing_q3 - closed_sin_swing_q3 * k.d4_by_effective_q3_2
+        closed_sin_q3 = k.a3_by_effective_q3_2 * closed_sin_swing_q3 + closed_cos_swing_q3 * k.d4_by_effective_q3_2
+        closed_axis_a3 = nearest_period(k.offset_a3 + degrees(closed_sin_q3, closed_cos_q3), closed_near_a3)
+        # steps of damped least squares on the closure, from one start after the other
+        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before = initial(
+            start_a1, start_a2, start_a3, 40, 0, 9.0
+        )
+        for _ in range(164):
+            q1 = (tried_a1 - k.offset_a1) * DEGREE
+            sin_q1 = sin(q1)
+            cos_q1 = cos(q1)
+            x_at_q2 = k.a1 * cos_q1
+            q2 = (tried_a2 - k.offset_a2) * DEGREE
+            sin_q2 = sin(q2)
+            r13_at_q2 = -cos_q1 * sin_q2
+            x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+            q3 = (tried_a3 - k.offset_a3) * DEGREE
+            q2_plus_q3 = q2 + q3
+            cos_q23 = cos(q2_plus_q3)
+            r11_at_q23 = cos_q1 * cos_q23
+            sin_q23 = sin(q2_plus_q3)
+            r13_at_q23 = -cos_q1 * sin_q23
+            x = x_at_q3 + k.a3 * r13_at_q23 + k.d3 * sin_q1 + k.d4 * r11_at_q23
+            y_at_q2 = k.a1 * sin_q1
+            r23_at_q2 = -sin_q1 * sin_q2
+            y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+            r21_at_q23 = cos_q23 * sin_q1
+            r23_at_q23 = -sin_q1 * sin_q23
+            y = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23 - k.d3 * cos_q1
+            branch_arm = k.one_by_machine_scale * (x * cos_q1 + y * sin_q1)
+            beside_arm = given_sigma_arm * branch_arm < -1e-6
+            sin_q3 = sin(q3)
+            cos_q3 = cos(q3)
+            branch_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2
+            beside_elbow = given_sigma_elbow * branch_elbow < -1e-6
+            error_1 = (goal_x - x) * k.one_by_machine_scale
+            error_2 = (goal_y - y) * k.one_by_machine_scale
+            cos_q2 = cos(q2)
+            z_at_q3 = k.d1 + k.a2 * cos_q2
+            z = z_at_q3 + k.a3 * cos_q23 + k.d4 * sin_q23
+            error_3 = (goal_z - z) * k.one_by_machine_scale
+            # error of the pose, in characteristic lengths and radians
+            error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
+            another = passes_left <= 0
+            # the error is rounding, and steps make it no smaller
+            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
+            pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow))
+            next_attempt = attempt + select(another, 1, 0)
+            mirrors = pose_is_close & (beside_arm | beside_elbow)
+            free_angle = select(next_attempt > 0, 1e-6, 1e-11)
+            free_turn = -137.5 * select(next_attempt > 1, 1 - next_attempt, 0)
+            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            closed_divisor_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * goal_x - k.d3 * goal_y) / closed_divisor_q1,
+                cos(closed_reference_a1),
+            )
+            closed_sin_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * goal_y + k.d3 * goal_x) / closed_divisor_q1,
+                sin(closed_reference_a1),
+            )
+            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
+            rate_1_1 = -k.one_by_machine_scale * y
+            rate_2_1 = k.one_by_machine_scale * x
+            z_minus_d1 = z - k.d1
+            cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
+            rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q3 = z - z_at_q3
+            rate_1_3 = -z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+            product_in_damping = 0.001 * error
+            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
+            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
+            rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
+            rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            rate_3_2 = -k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+            rate_3_3 = -k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
+            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
+            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            _, multiplier_1, multiplier_2, multiplier_3 = solve(
+                (
+                    (product_1_1, product_1_2, product_1_3),
+                    (product_1_2, product_2_2, product_2_3),
+                    (product_1_3, product_2_3, product_3_3),
+                ),
+                ((error_1,), (error_2,), (error_3,)),
+            )
+            step_a1 = multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
+            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
+            # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
+            # reference
+            closed_direction_x_q2 = select(
+                closed_reach > free_angle_times_machine_scale,
+                closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1,
+                cos(closed_reference_a2),
+            )
+            closed_direction_y_q2 = select(
+                closed_reach > free_angle_times_machine_scale,
+                closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1,
+                sin(closed_reference_a2),
+            )
+            closed_axis_a2 = nearest_period(
+                k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
+            )
+            shared_quotient = shrinking / DEGREE
+            done = pose_is_met | (another & (next_attempt >= 4))
+            if settled(done, status):
+                break
+            tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before = advanced(
+                done,
+                (tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before),
+                (
+                    select(
+                        another,
+                        closed_axis_a1,
+                        select(
+                            mirrors,
+                            select(beside_arm, 2.0 * closed_axis_a1 - tried_a1, tried_a1),
+                            tried_a1 + shared_quotient * step_a1,
+                        ),
+                    ),
+                    select(another, closed_axis_a2, select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2)),
+                    select(
+                        another,
+                        closed_axis_a3,
+                        select(
+                            mirrors,
+                            select(beside_elbow, 2.0 * closed_axis_a3 - tried_a3, tried_a3),
+                            tried_a3 + shared_quotient * step_a3,
+                        ),
+                    ),
+                    select(another, 40, passes_left - 1),
+                    next_attempt,
+                    select(another | mirrors, 9.0, error),
+                ),
+            )
+        require(status, done, Status.UNREACHABLE)
+        chosen_a1 = nearest_period(tried_a1, closed_near_a1)
+        chosen_a2 = nearest_period(tried_a2, closed_near_a2)
+        chosen_a3 = nearest_period(tried_a3, closed_near_a3)
+        return (pose_is_met, chosen_a1, chosen_a2, chosen_a3)
+
+    def meet_point(self, given: Values, status: Codes) -> Values:
+        """The axes that meet a point, found by steps on the closure, and whether they do."""
+        (
+            given_point_x,
+            given_point_y,
+            given_point_z,
+            given_ref_a1,
+            given_ref_a2,
+            given_ref_a3,
+            given_sigma_arm,
+            given_sigma_elbow,
+            given_turn_a1,
+            given_turn_a2,
+            given_turn_a3,
+            goal_x,
+            goal_y,
+            goal_z,
+            start_a1,
+            start_a2,
+            start_a3,
+        ) = given
+        k = self.constants
+        closed_distance_q1 = sqrt(goal_x * goal_x + goal_y * goal_y)  # distance of the point from the axis of q1
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
+        closed_near_a1 = select(
+            given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
+        )
+        closed_wrist_z_from_q1 = goal_z - k.d1  # coordinate of the point that the remaining links must reach
+        # A2: without a commanded turn, the value nearest to this
+        closed_open_a2 = select(k.single_a2, k.mid_a2, given_ref_a2)
+        closed_near_a2 = select(
+            given_turn_a2 != 0, 360.0 * select(given_turn_a2 > 0, given_turn_a2 - 1, given_turn_a2), closed_open_a2
+        )
+        # A3: without a commanded turn, the value nearest to this
+        closed_open_a3 = select(k.single_a3, k.mid_a3, given_ref_a3)
+        closed_near_a3 = select(
+            given_turn_a3 != 0, 360.0 * select(given_turn_a3 > 0, given_turn_a3 - 1, given_turn_a3), closed_open_a3
+        )
+        tool_x = k.d4 + given_point_z  # commanded point, in the frame of the last moving joint
+        tool_z = k.a3 + given_point_x  # commanded point, in the frame of the last moving joint
+        closed_tool_y = -k.d3 - given_point_y  # commanded point, in the frame of the last moving joint
+        # Pythagoras: square of the distance ahead of the axis
+        closed_ahead_squared_q1 = (closed_distance_q1 + closed_tool_y) * (closed_distance_q1 - closed_tool_y)
+        # how far ahead of the axis the point is; negative: behind it
+        closed_ahead_q1 = root(closed_ahead_squared_q1) * given_sigma_arm
+        # coordinate of the point that the remaining links must reach
+        closed_wrist_x_from_q1 = closed_ahead_q1 - k.a1
+        # distance that the remaining links must span
+        closed_reach = sqrt(
+            closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+        )
+        closed_effective_q3 = sqrt(tool_x * tool_x + tool_z * tool_z)  # effective length of the arm that q3 turns
+        closed_divisor_q3 = select(closed_effective_q3 > k.a2_times_shortest_link, closed_effective_q3, 1.0)
+        a2_minus_closed_reach = k.a2 - closed_reach
+        a2_plus_closed_reach = k.a2 + closed_reach
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        closed_one_less_cos_q3 = (a2_minus_closed_reach + closed_divisor_q3) * (
+            a2_plus_closed_reach + closed_divisor_q3
+        )
+        # 1 + cosine, times the scale
+        closed_one_plus_cos_q3 = (closed_divisor_q3 - a2_plus_closed_reach) * (
+            a2_minus_closed_reach - closed_divisor_q3
+        )
+        # sum of both, twice the scale: cosine² + sine² is then 1
+        closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
+        closed_divisor_of_cos_q3 = select(closed_sum_q3 > 0.0, closed_sum_q3, 1.0)
+        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
+        # sine squared, times the squared scale
+        closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
+        closed_sin_swing_q3 = -2.0 * root(closed_sine_square_q3) * given_sigma_elbow / closed_divisor_of_cos_q3
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        closed_cos_q3 = (closed_cos_swing_q3 * tool_z - closed_sin_swing_q3 * tool_x) / closed_divisor_q3
+        closed_sin_q3 = (closed_cos_swing_q3 * tool_x + closed_sin_swing_q3 * tool_z) / closed_divisor_q3
+        closed_arm_along_q2 = closed_cos_q3 * tool_x - closed_sin_q3 * tool_z
+        closed_arm_across_q2 = k.a2 + closed_cos_q3 * tool_z + closed_sin_q3 * tool_x
+        closed_axis_a3 = nearest_period(k.offset_a3 + degrees(closed_sin_q3, closed_cos_q3), closed_near_a3)
+        # steps of damped least squares on the closure, from one start after the other
+        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before = initial(
+            start_a1, start_a2, start_a3, 40, 0, 9.0
+        )
+        for _ in range(164):
+            q1 = (tried_a1 - k.offset_a1) * DEGREE
+            sin_q1 = sin(q1)
+            cos_q1 = cos(q1)
+            q2 = (tried_a2 - k.offset_a2) * DEGREE
+            q3 = (tried_a3 - k.offset_a3) * DEGREE
+            q2_plus_q3 = q2 + q3
+            cos_q23 = cos(q2_plus_q3)
+            r11_at_q23 = cos_q1 * cos_q23
+            sin_q23 = sin(q2_plus_q3)
+            r13_at_q23 = -cos_q1 * sin_q23
+            x_at_q2 = k.a1 * cos_q1
+            sin_q2 = sin(q2)
+            r13_at_q2 = -cos_q1 * sin_q2
+            x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+            flange_x = x_at_q3 + k.a3 * r13_at_q23 + k.d3 * sin_q1 + k.d4 * r11_at_q23
+            x = flange_x + given_point_x * r13_at_q23 + given_point_y * sin_q1 + given_point_z * r11_at_q23
+            r21_at_q23 = cos_q23 * sin_q1
+            r23_at_q23 = -sin_q1 * sin_q23
+            y_at_q2 = k.a1 * sin_q1
+            r23_at_q2 = -sin_q1 * sin_q2
+            y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+            flange_y = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23 - k.d3 * cos_q1
+            y = flange_y + given_point_x * r23_at_q23 + given_point_z * r21_at_q23 - given_point_y * cos_q1
+            branch_arm = k.one_by_machine_scale * (x * cos_q1 + y * sin_q1)
+            beside_arm = given_sigma_arm * branch_arm < -1e-6
+            sin_q3 = sin(q3)
+            cos_q3 = cos(q3)
+            branch_elbow = k.one_by_machine_scale * (tool_x * cos_q3 - tool_z * sin_q3)
+            beside_elbow = given_sigma_elbow * branch_elbow < -1e-6
+            error_1 = (goal_x - x) * k.one_by_machine_scale
+            error_2 = (goal_y - y) * k.one_by_machine_scale
+            cos_q2 = cos(q2)
+            z_at_q3 = k.d1 + k.a2 * cos_q2
+            flange_z = z_at_q3 + k.a3 * cos_q23 + k.d4 * sin_q23
+            z = flange_z + given_point_x * cos_q23 + given_point_z * sin_q23
+            error_3 = (goal_z - z) * k.one_by_machine_scale
+            # error of the pose, in characteristic lengths and radians
+            error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
+            another = passes_left <= 0
+            # the error is rounding, and steps make it no smaller
+            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
+            pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow))
+            next_attempt = attempt + select(another, 1, 0)
+            mirrors = pose_is_close & (beside_arm | beside_elbow)
+            free_angle = select(next_attempt > 0, 1e-6, 1e-11)
+            free_turn = -137.5 * select(next_attempt > 1, 1 - next_attempt, 0)
+            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            closed_divisor_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * goal_x + closed_tool_y * goal_y) / closed_divisor_q1,
+                cos(closed_reference_a1),
+            )
+            closed_sin_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * goal_y - closed_tool_y * goal_x) / closed_divisor_q1,
+                sin(closed_reference_a1),
+            )
+            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
+            rate_1_1 = -k.one_by_machine_scale * y
+            rate_2_1 = k.one_by_machine_scale * x
+            z_minus_d1 = z - k.d1
+            cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
+            rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
+            z_minus_z_at_q3 = z - z_at_q3
+            rate_1_3 = -z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+            product_in_damping = 0.001 * error
+            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
+            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
+            rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
+            rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            rate_3_2 = -k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+            rate_3_3 = -k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
+            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
+            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            _, multiplier_1, multiplier_2, multiplier_3 = solve(
+                (
+                    (product_1_1, product_1_2, product_1_3),
+                    (product_1_2, product_2_2, product_2_3),
+                    (product_1_3, product_2_3, product_3_3),
+                ),
+                ((error_1,), (error_2,), (error_3,)),
+            )
+            step_a1 = multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
+            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
+            # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
+            # reference
+            closed_direction_x_q2 = select(
+                closed_reach > free_angle_times_machine_scale,
+                closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1,
+                cos(closed_reference_a2),
+            )
+            closed_direction_y_q2 = select(
+                closed_reach > free_angle_times_machine_scale,
+                closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1,
+                sin(closed_reference_a2),
+            )
+            closed_axis_a2 = nearest_period(
+                k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
+            )
+            shared_quotient = shrinking / DEGREE
+            done = pose_is_met | (another & (next_attempt >= 4))
+            if settled(done, status):
+                break
+            tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before = advanced(
+                done,
+                (tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before),
+                (
+                    select(
+                        another,
+                        closed_axis_a1,
+                        select(
+                            mirrors,
+                            select(beside_arm, 2.0 * closed_axis_a1 - tried_a1, tried_a1),
+                            tried_a1 + shared_quotient * step_a1,
+                        ),
+                    ),
+                    select(another, closed_axis_a2, select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2)),
+                    select(
+                        another,
+                        closed_axis_a3,
+                        select(
+                            mirrors,
+                            select(beside_elbow, 2.0 * closed_axis_a3 - tried_a3, tried_a3),
+                            tried_a3 + shared_quotient * step_a3,
+                        ),
+                    ),
+                    select(another, 40, passes_left - 1),
+                    next_attempt,
+                    select(another | mirrors, 9.0, error),
+                ),
+            )
+        require(status, done, Status.UNREACHABLE)
+        chosen_a1 = nearest_period(tried_a1, closed_near_a1)
+        chosen_a2 = nearest_period(tried_a2, closed_near_a2)
+        chosen_a3 = nearest_period(tried_a3, closed_near_a3)
+        return (pose_is_met, chosen_a1, chosen_a2, chosen_a3)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -48,31 +504,31 @@ class ArrayPrograms(Programs):
         q2 = DEGREE * (axis_a2 - k.offset_a2)
         q3 = DEGREE * (axis_a3 - k.offset_a3)
         q2_plus_q3 = q2 + q3
-        sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1 * cos_q23
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = -cos_q1 * sin_q23
         x_at_q2 = k.a1 * cos_q1
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + k.a2 * r11_at_q2
-        x = x_at_q3 + k.a3 * r11_at_q23 + k.d3 * sin_q1 - k.d4 * r12_at_q23
-        r21_at_q23 = -sin_q1 * sin_q23
-        r22_at_q23 = -cos_q23 * sin_q1
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        x = x_at_q3 + k.a3 * r13_at_q23 + k.d3 * sin_q1 + k.d4 * r11_at_q23
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = -sin_q1 * sin_q23
         y_at_q2 = k.a1 * sin_q1
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + k.a2 * r21_at_q2
-        y = y_at_q3 + k.a3 * r21_at_q23 - k.d3 * cos_q1 - k.d4 * r22_at_q23
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        y = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23 - k.d3 * cos_q1
         cos_q2 = cos(q2)
         z_at_q3 = k.d1 + k.a2 * cos_q2
         z = z_at_q3 + k.a3 * cos_q23 + k.d4 * sin_q23
         branch_arm = k.one_by_machine_scale * (x * cos_q1 + y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = k.d4_by_effective_q3_2 * cos_q3 - k.a3_by_effective_q3_2 * sin_q3
+        branch_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2_2
         return (
             (x, y, z),
-            ((r11_at_q23, sin_q1, -r12_at_q23), (r21_at_q23, -cos_q1, -r22_at_q23), (cos_q23, 0.0, sin_q23)),
+            ((r13_at_q23, sin_q1, r11_at_q23), (r23_at_q23, -cos_q1, r21_at_q23), (cos_q23, 0.0, sin_q23)),
             (branch_arm, branch_elbow),
         ), status
 
@@ -92,139 +548,33 @@ class ArrayPrograms(Programs):
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - k.d3) * (k.d3 + distance_q1)
         distance_q1_squared = distance_q1 * distance_q1
-        wrist_y_from_q1 = z - k.d1  # coordinate of the point that the remaining links must reach
-        wrist_y_from_q1_squared = wrist_y_from_q1 * wrist_y_from_q1
-        # how far ahead of the axis the point is; negative: behind it
-        ahead_q1_before_q1_for_q3 = root(ahead_squared_q1) * sigma_arm
-
-        def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
-            reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(reference_a1)
-            sin_q1_before_q1_for_q3 = sin(reference_a1)
-            return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
-
-        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - k.d3 * y) / distance_q1_squared
-        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + k.d3 * x) / distance_q1_squared
-        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
-        cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
-            distance_q1 > k.machine_scale_times_free_angle,
-            (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
-            elsewhere_cos_q1_before_q1_for_q3,
-            (ref_a1,),
-        )
-
-        def elsewhere_ahead_q1(
-            ahead_q1_before_q1_for_q3: Real,
-            cos_q1_before_q1_for_q3: Real,
-            sin_q1_before_q1_for_q3: Real,
-            wrist_y_from_q1_squared: Real,
-            x: Real,
-            y: Real,
-        ) -> Reals:
-            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - k.a1
-            # q3 has solutions where this is within its bound
-            value_q1_for_q3 = (
-                wrist_y_from_q1_squared
-                + wrist_x_from_q1_before_q1_for_q3 * wrist_x_from_q1_before_q1_for_q3
-                - k.a2_squared_plus_effective_q3_2_squared
-            )
-
-            def elsewhere_ahead_q1(
-                ahead_q1_before_q1_for_q3: Real,
-                cos_q1_before_q1_for_q3: Real,
-                sin_q1_before_q1_for_q3: Real,
-                value_q1_for_q3: Real,
-                wrist_x_from_q1_before_q1_for_q3: Real,
-                x: Real,
-                y: Real,
-            ) -> Reals:
-                rate_q1_for_q3 = -k.twice_d3 * wrist_x_from_q1_before_q1_for_q3  # its derivative by q1
-                excess_q1_for_q3 = select(
-                    value_q1_for_q3 > 0.0, value_q1_for_q3 - k.size_q1_for_q3_2, k.size_q1_for_q3_2 + value_q1_for_q3
-                )
-                # turn of q1 to first order
-                turn_q1_for_q3 = select(
-                    absolute(rate_q1_for_q3) > k.size_q1_for_q3_2_times_rounding,
-                    -excess_q1_for_q3 / rate_q1_for_q3,
-                    0.0,
-                )
-                turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3 * turn_q1_for_q3)
-                one_by_turned_length_q1_for_q3 = 1.0 / turned_length_q1_for_q3
-                turned_cos_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                    cos_q1_before_q1_for_q3 - turn_q1_for_q3 * sin_q1_before_q1_for_q3
-                )
-                turned_sin_q1_for_q3 = one_by_turned_length_q1_for_q3 * (
-                    sin_q1_before_q1_for_q3 + turn_q1_for_q3 * cos_q1_before_q1_for_q3
-                )
-                # residual of the equation of q1
-                turned_cost_q1_for_q3 = absolute(k.d3 + turned_cos_q1_for_q3 * y - turned_sin_q1_for_q3 * x)
-
-                def elsewhere_ahead_q1(
-                    ahead_q1_before_q1_for_q3: Real,
-                    one_by_turned_length_q1_for_q3: Real,
-                    turn_q1_for_q3: Real,
-                    turned_cos_q1_for_q3: Real,
-                    turned_sin_q1_for_q3: Real,
-                ) -> Reals:
-                    ahead_q1 = (ahead_q1_before_q1_for_q3 - k.d3 * turn_q1_for_q3) * one_by_turned_length_q1_for_q3
-                    return (ahead_q1, turned_cos_q1_for_q3, turned_sin_q1_for_q3)
-
-                # turned so that q3 has a solution
-                ahead_q1, cos_q1, sin_q1 = elsewhere(
-                    turned_cost_q1_for_q3 > k.machine_scale_times_rounding,
-                    (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
-                    elsewhere_ahead_q1,
-                    (
-                        ahead_q1_before_q1_for_q3,
-                        one_by_turned_length_q1_for_q3,
-                        turn_q1_for_q3,
-                        turned_cos_q1_for_q3,
-                        turned_sin_q1_for_q3,
-                    ),
-                )
-                return (ahead_q1, cos_q1, sin_q1)
-
-            # turned so that q3 has a solution
-            ahead_q1, cos_q1, sin_q1 = elsewhere(
-                absolute(value_q1_for_q3) <= k.size_q1_for_q3_2,
-                (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
-                elsewhere_ahead_q1,
-                (
-                    ahead_q1_before_q1_for_q3,
-                    cos_q1_before_q1_for_q3,
-                    sin_q1_before_q1_for_q3,
-                    value_q1_for_q3,
-                    wrist_x_from_q1_before_q1_for_q3,
-                    x,
-                    y,
-                ),
-            )
-            return (ahead_q1, cos_q1, sin_q1)
-
-        # turned so that q3 has a solution
-        ahead_q1, cos_q1, sin_q1 = elsewhere(
-            ahead_squared_q1 > k.machine_scale_squared_times_plane,
-            (ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
-            elsewhere_ahead_q1,
-            (
-                ahead_q1_before_q1_for_q3,
-                cos_q1_before_q1_for_q3,
-                sin_q1_before_q1_for_q3,
-                wrist_y_from_q1_squared,
-                x,
-                y,
-            ),
-        )
+        ahead_q1 = root(ahead_squared_q1) * sigma_arm  # how far ahead of the axis the point is; negative: behind it
         wrist_x_from_q1 = ahead_q1 - k.a1  # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1 = z - k.d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = root(wrist_y_from_q1_squared + wrist_x_from_q1 * wrist_x_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (k.a2_plus_effective_q3_2 + reach) * (k.a2_plus_effective_q3_2 - reach)
+        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3 = (k.a2_plus_effective_q3_2_2 + reach) * (k.a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - k.a2_minus_effective_q3_2) * (k.a2_minus_effective_q3_2 + reach)
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = select(sum_q3 > 0.0, sum_q3, 1.0)
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        within_19 = absolute(cos_swing_q3) <= 1.0
+        lost_digits_19 = (opposite(within_19)) & (absolute(ahead_q1) <= k.product_in_lost_digits_19)
+
+        def elsewhere_cos_q1(ref_a1: Real) -> Reals:
+            reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
+            cos_q1 = cos(reference_a1)
+            sin_q1 = sin(reference_a1)
+            return (cos_q1, sin_q1)
+
+        cos_q1 = (ahead_q1 * x - k.d3 * y) / distance_q1_squared
+        sin_q1 = (ahead_q1 * y + k.d3 * x) / distance_q1_squared
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+        cos_q1, sin_q1 = elsewhere(
+            distance_q1 > k.machine_scale_times_free_angle, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,)
+        )
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
@@ -239,8 +589,8 @@ class ArrayPrograms(Programs):
 
         arm_along_q2 = -k.effective_q3_2 * sin_swing_q3
         arm_across_q2 = k.a2 + k.effective_q3_2 * cos_swing_q3
-        direction_x_q2 = arm_across_q2 * wrist_y_from_q1 + arm_along_q2 * wrist_x_from_q1
-        direction_y_q2 = arm_along_q2 * wrist_y_from_q1 - arm_across_q2 * wrist_x_from_q1
+        direction_x_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+        direction_y_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
         # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
         # reference
         direction_x_q2, direction_y_q2 = elsewhere(
@@ -254,16 +604,42 @@ class ArrayPrograms(Programs):
         # A2: whole turns added
         axis_a2 = nearest_period(k.offset_a2 + degrees(direction_y_q2, direction_x_q2), near_a2)
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = k.a3_by_effective_q3_2 * cos_swing_q3 - k.d4_by_effective_q3_2 * sin_swing_q3
-        sin_q3 = k.a3_by_effective_q3_2 * sin_swing_q3 + k.d4_by_effective_q3_2 * cos_swing_q3
+        cos_q3 = k.a3_by_effective_q3_2_2 * cos_swing_q3 - k.d4_by_effective_q3_2_2 * sin_swing_q3
+        sin_q3 = k.a3_by_effective_q3_2_2 * sin_swing_q3 + k.d4_by_effective_q3_2_2 * cos_swing_q3
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(k.offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: whole turns added
         # q1: out of reach
         require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
-        require(status, absolute(cos_swing_q3) <= 1.0000000000005, Status.UNREACHABLE)
-        return (axis_a1, axis_a2, axis_a3), status
+        require(status, lost_digits_19 | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
+        # digits were lost: the pose is met by steps on the closure
+        found = run_where(
+            lost_digits_19,
+            self.meet_pose,
+            (
+                ref_a1,
+                ref_a2,
+                ref_a3,
+                sigma_arm,
+                sigma_elbow,
+                turn_a1,
+                turn_a2,
+                turn_a3,
+                x,
+                y,
+                z,
+                axis_a1,
+                axis_a2,
+                axis_a3,
+            ),
+            status,
+            (False, 0.0, 0.0, 0.0),
+        )
+        met, found_a1, found_a2, found_a3 = found
+        # q3: out of reach
+        require(status, met | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
+        return (select(met, found_a1, axis_a1), select(met, found_a2, axis_a2), select(met, found_a3, axis_a3)), status
 
     def limits(self, axes: Reals) -> Codes:
         """The test of the limits."""
@@ -291,25 +667,25 @@ class ArrayPrograms(Programs):
         x_at_q2 = k.a1 * cos_q1
         q2 = DEGREE * (axis_a2 - k.offset_a2)
         sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + k.a2 * r11_at_q2
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
         q3 = DEGREE * (axis_a3 - k.offset_a3)
         q2_plus_q3 = q2 + q3
-        sin_q23 = sin(q2_plus_q3)
-        r11_at_q23 = -cos_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r12_at_q23 = -cos_q1 * cos_q23
-        x = x_at_q3 + k.a3 * r11_at_q23 + k.d3 * sin_q1 - k.d4 * r12_at_q23
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = -cos_q1 * sin_q23
+        x = x_at_q3 + k.a3 * r13_at_q23 + k.d3 * sin_q1 + k.d4 * r11_at_q23
         y_at_q2 = k.a1 * sin_q1
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + k.a2 * r21_at_q2
-        r21_at_q23 = -sin_q1 * sin_q23
-        r22_at_q23 = -cos_q23 * sin_q1
-        y = y_at_q3 + k.a3 * r21_at_q23 - k.d3 * cos_q1 - k.d4 * r22_at_q23
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = -sin_q1 * sin_q23
+        y = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23 - k.d3 * cos_q1
         margin_point_on_axis_1 = k.one_by_machine_scale * (x * cos_q1 + y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        margin_elbow = k.d4_by_effective_q3_2 * cos_q3 - k.a3_by_effective_q3_2 * sin_q3
+        margin_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2_2
         return (margin_point_on_axis_1, margin_elbow), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
@@ -325,21 +701,21 @@ class ArrayPrograms(Programs):
         y_at_q2 = k.a1 * sin_q1
         q2 = DEGREE * (axis_a2 - k.offset_a2)
         sin_q2 = sin(q2)
-        r21_at_q2 = -sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + k.a2 * r21_at_q2
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
         q3 = DEGREE * (axis_a3 - k.offset_a3)
         q2_plus_q3 = q2 + q3
-        sin_q23 = sin(q2_plus_q3)
-        r21_at_q23 = -sin_q1 * sin_q23
         cos_q23 = cos(q2_plus_q3)
-        r22_at_q23 = -cos_q23 * sin_q1
-        y = y_at_q3 + k.a3 * r21_at_q23 - k.d3 * cos_q1 - k.d4 * r22_at_q23
+        r21_at_q23 = cos_q23 * sin_q1
+        sin_q23 = sin(q2_plus_q3)
+        r23_at_q23 = -sin_q1 * sin_q23
+        y = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23 - k.d3 * cos_q1
         x_at_q2 = k.a1 * cos_q1
-        r11_at_q2 = -cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + k.a2 * r11_at_q2
-        r11_at_q23 = -cos_q1 * sin_q23
-        r12_at_q23 = -cos_q1 * cos_q23
-        x = x_at_q3 + k.a3 * r11_at_q23 + k.d3 * sin_q1 - k.d4 * r12_at_q23
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        r11_at_q23 = cos_q1 * cos_q23
+        r13_at_q23 = -cos_q1 * sin_q23
+        x = x_at_q3 + k.a3 * r13_at_q23 + k.d3 * sin_q1 + k.d4 * r11_at_q23
         cos_q2 = cos(q2)
         z_at_q3 = k.d1 + k.a2 * cos_q2
         z = z_at_q3 + k.a3 * cos_q23 + k.d4 * sin_q23

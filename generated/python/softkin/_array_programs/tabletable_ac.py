@@ -94,12 +94,12 @@ class ArrayPrograms(Programs):
         x_from_c = x * cos_c - y * sin_c
         axis_x = k.offset_x + x_from_c
         c_radius_of_a = sigma_tilt * radius_c
+        z_from_c = k.pivot_z + z
         y_from_c = y * cos_c + x * sin_c
         pivot_y_plus_y_from_c = k.pivot_y + y_from_c
-        pivot_z_plus_z = k.pivot_z + z
-        y_from_c_a = pivot_y_plus_y_from_c * r33 - c_radius_of_a * pivot_z_plus_z
+        y_from_c_a = pivot_y_plus_y_from_c * r33 - c_radius_of_a * z_from_c
         axis_y = k.offset_y + y_from_c_a
-        z_from_c_a = c_radius_of_a * pivot_y_plus_y_from_c + pivot_z_plus_z * r33
+        z_from_c_a = c_radius_of_a * pivot_y_plus_y_from_c + r33 * z_from_c
         joint_z = k.tool_length + z_from_c_a  # joint_z from the z_from_c_a equation, which is linear in it
         axis_z = joint_z + k.offset_z
         open_a = select(k.single_a, k.mid_a, ref_a)  # A: without a commanded turn, the value nearest to this

@@ -80,16 +80,14 @@ class ArrayPrograms(Programs):
         branch_carriage_1 = (a1 + z * k.cos_rail_angle + span_1_x * k.sin_rail_angle) * k.one_by_arm_length
         span_2_y = y - k.sum_in_pivot_2_y
         span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
-        sum_in_branch_carriage_2 = (
-            span_2_x * k.sin_rail_angle_times_half_by_arm_length - z * k.cos_rail_angle_by_arm_length
-        )
+        sum_in_branch_carriage_2 = k.twice_cos_rail_angle * z - span_2_x * k.sin_rail_angle
         branch_carriage_2 = (
-            a2 * k.one_by_arm_length + k.quotient_in_branch_carriage_2 * span_2_y - sum_in_branch_carriage_2
-        )
+            2.0 * a2 + sum_in_branch_carriage_2 + span_2_y * k.sin_rail_angle_times_root_of_3
+        ) * k.half_by_arm_length
         span_3_y = k.sum_in_pivot_2_y + y
         branch_carriage_3 = (
-            a3 * k.one_by_arm_length - sum_in_branch_carriage_2 - k.quotient_in_branch_carriage_2 * span_3_y
-        )
+            2.0 * a3 + sum_in_branch_carriage_2 - span_3_y * k.sin_rail_angle_times_root_of_3
+        ) * k.half_by_arm_length
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
         require(
@@ -268,12 +266,14 @@ class ArrayPrograms(Programs):
         y = foot_y + height_by_normal * normal_y
         span_2_y = y - k.sum_in_pivot_2_y
         span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
-        sum_in_margin_square_2 = (
-            span_2_x * k.sin_rail_angle_times_half_by_arm_length - z * k.cos_rail_angle_by_arm_length
-        )
-        margin_square_2 = a2 * k.one_by_arm_length + k.quotient_in_branch_carriage_2 * span_2_y - sum_in_margin_square_2
+        sum_in_margin_square_2 = k.twice_cos_rail_angle * z - span_2_x * k.sin_rail_angle
+        margin_square_2 = (
+            2.0 * a2 + sum_in_margin_square_2 + span_2_y * k.sin_rail_angle_times_root_of_3
+        ) * k.half_by_arm_length
         span_3_y = k.sum_in_pivot_2_y + y
-        margin_square_3 = a3 * k.one_by_arm_length - sum_in_margin_square_2 - k.quotient_in_branch_carriage_2 * span_3_y
+        margin_square_3 = (
+            2.0 * a3 + sum_in_margin_square_2 - span_3_y * k.sin_rail_angle_times_root_of_3
+        ) * k.half_by_arm_length
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
         rod_2_x = x - pivot_2_x

@@ -46,11 +46,11 @@ class ArrayPrograms(OrientationPrograms):
         sin_b = sin(b)
         r31_at_b = -k.tool_side * sin_b
         r13_at_b = -r31_at_b * cos_a
-        x_at_b = k.roll_axis_offset_x * cos_a - k.roll_axis_offset_y * sin_a
-        x = x_at_b + r13_at_b * k.tool_length_times_tool_side
+        x_at_b = k.roll_axis_offset_x * cos_a
+        x = x_at_b + r13_at_b * k.tool_length_times_tool_side - k.roll_axis_offset_y * sin_a
         r23_at_b = -r31_at_b * sin_a
-        y_at_b = k.roll_axis_offset_y * cos_a + k.roll_axis_offset_x * sin_a
-        y = y_at_b + r23_at_b * k.tool_length_times_tool_side
+        y_at_b = k.roll_axis_offset_x * sin_a
+        y = y_at_b + k.roll_axis_offset_y * cos_a + r23_at_b * k.tool_length_times_tool_side
         cos_b = cos(b)
         z = k.roll_axis_offset_z + k.tool_length_times_tool_side * cos_b
         r11_at_b = cos_a * cos_b
@@ -150,18 +150,18 @@ class ArrayPrograms(OrientationPrograms):
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(axis_a, axis_b), Status.BAD_INPUT)
         a = DEGREE * (axis_a - k.offset_a)
-        sin_a = sin(a)
         cos_a = cos(a)
-        y_at_b = k.roll_axis_offset_y * cos_a + k.roll_axis_offset_x * sin_a
+        sin_a = sin(a)
+        y_at_b = k.roll_axis_offset_x * sin_a
         sin_a_times_tool_side = k.tool_side * sin_a
         b = DEGREE * (axis_b - k.offset_b)
         sin_b = sin(b)
         r23_at_b = sin_a_times_tool_side * sin_b
-        y = y_at_b + r23_at_b * k.tool_length_times_tool_side
-        x_at_b = k.roll_axis_offset_x * cos_a - k.roll_axis_offset_y * sin_a
+        y = y_at_b + k.roll_axis_offset_y * cos_a + r23_at_b * k.tool_length_times_tool_side
+        x_at_b = k.roll_axis_offset_x * cos_a
         cos_a_times_tool_side = k.tool_side * cos_a
         r13_at_b = cos_a_times_tool_side * sin_b
-        x = x_at_b + r13_at_b * k.tool_length_times_tool_side
+        x = x_at_b + r13_at_b * k.tool_length_times_tool_side - k.roll_axis_offset_y * sin_a
         cos_b = cos(b)
         z = k.roll_axis_offset_z + k.tool_length_times_tool_side * cos_b
         z_minus_roll_axis_offset_z = z - k.roll_axis_offset_z

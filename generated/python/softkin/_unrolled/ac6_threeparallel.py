@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from softkin._configuration import FIRST_TURN, SECOND_TURN, UNREACHABLE
 from softkin._core import NOTHING, Unrolled
-from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -18,20 +18,17 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    a2, a2_minus_a3, a2_plus_a3 = k.a2, k.a2_minus_a3, k.a2_plus_a3
-    a2_squared_plus_a3_squared, a3, d1, d4, d5, d6 = k.a2_squared_plus_a3_squared, k.a3, k.d1, k.d4, k.d5, k.d6
-    highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
-    highest_a5, highest_a6, lowest_a1, lowest_a2 = k.highest_a5, k.highest_a6, k.lowest_a1, k.lowest_a2
-    lowest_a3, lowest_a4, lowest_a5, lowest_a6 = k.lowest_a3, k.lowest_a4, k.lowest_a5, k.lowest_a6
-    machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
-    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
-    mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
-    offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-    offset_a6, product_in_cos_q6, quotient_in_cos_q3 = k.offset_a6, k.product_in_cos_q6, k.quotient_in_cos_q3
-    quotient_in_sin_q3, rounding_q1, single_a1 = k.quotient_in_sin_q3, k.rounding_q1, k.single_a1
-    single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
-    single_a6, size_q1_for_q3 = k.single_a6, k.size_q1_for_q3
-    size_q1_for_q3_times_rounding = k.size_q1_for_q3_times_rounding
+    a2, a2_minus_a3, a2_plus_a3, a3, d1, d4, d5 = k.a2, k.a2_minus_a3, k.a2_plus_a3, k.a3, k.d1, k.d4, k.d5
+    d6, highest_a1, highest_a2, highest_a3 = k.d6, k.highest_a1, k.highest_a2, k.highest_a3
+    highest_a4, highest_a5, highest_a6, lowest_a1 = k.highest_a4, k.highest_a5, k.highest_a6, k.lowest_a1
+    lowest_a2, lowest_a3, lowest_a4, lowest_a5 = k.lowest_a2, k.lowest_a3, k.lowest_a4, k.lowest_a5
+    lowest_a6, machine_scale_times_free_angle, mid_a1 = k.lowest_a6, k.machine_scale_times_free_angle, k.mid_a1
+    mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
+    offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+    offset_a5, offset_a6, product_in_lost_digits_37 = k.offset_a5, k.offset_a6, k.product_in_lost_digits_37
+    quotient_in_closed_cos_q3, quotient_in_closed_sin_q3 = k.quotient_in_closed_cos_q3, k.quotient_in_closed_sin_q3
+    rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
+    single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
     def branches(
@@ -45,605 +42,282 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d4) * (d4 + distance_q1)
-        # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
-            return ()
         # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
-            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
+            ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return 8 * (refused[Status.UNREACHABLE],)
-            ahead_q1_before_q1_for_q3 = 0.0
+            ahead_q1 = 0.0
+        d4_times_wrist_y = d4 * wrist_y
+        ahead_q1_right_times_wrist_x = ahead_q1 * wrist_x
+        d4_times_wrist_x = d4 * wrist_x
+        ahead_q1_right_times_wrist_y = ahead_q1 * wrist_y
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
-            d4_times_wrist_y = d4 * wrist_y
-            product_in_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
-            cos_q1_before_q1_for_q3_left = (-d4_times_wrist_y - product_in_cos_q1_before_q1_for_q3) / divisor_q1
-            d4_times_wrist_x = d4 * wrist_x
-            product_in_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
-            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - product_in_sin_q1_before_q1_for_q3) / divisor_q1
-            cos_q1_before_q1_for_q3_right = (product_in_cos_q1_before_q1_for_q3 - d4_times_wrist_y) / divisor_q1
-            sin_q1_before_q1_for_q3_right = (d4_times_wrist_x + product_in_sin_q1_before_q1_for_q3) / divisor_q1
+            cos_q1_left = (-ahead_q1_right_times_wrist_x - d4_times_wrist_y) / divisor_q1
+            sin_q1_left = (d4_times_wrist_x - ahead_q1_right_times_wrist_y) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3_left = cos(reference_a1)
-            sin_q1_before_q1_for_q3_left = sin(reference_a1)
-            cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left
-            sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
-        # cosine and sine of q5 from the q6 radius and r32 equations
-        cos_q5 = r13 * sin_q1_before_q1_for_q3_left - r23 * cos_q1_before_q1_for_q3_left
-        r21_from_q1 = r21 * cos_q1_before_q1_for_q3_left - r11 * sin_q1_before_q1_for_q3_left
-        r22_from_q1 = r22 * cos_q1_before_q1_for_q3_left - r12 * sin_q1_before_q1_for_q3_left
+            cos_of_reference_a1 = cos(reference_a1)
+            sin_of_reference_a1 = sin(reference_a1)
+            divisor_q1 = 1.0
+            cos_q1_left = cos_of_reference_a1
+            sin_q1_left = sin_of_reference_a1
+        r21_from_q1 = r21 * cos_q1_left - r11 * sin_q1_left
+        r22_from_q1 = r22 * cos_q1_left - r12 * sin_q1_left
         # polar coordinates: the radius at angle q6
-        radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
+        radius_q6_left = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
+        # cosine and sine of q5 from the q6 radius and r22 equations
+        cos_q5_left = r13 * sin_q1_left - r23 * cos_q1_left
+        reference_a6 = (ref_a6 - offset_a6) * DEGREE
+        cos_of_reference_a6 = cos(reference_a6)
+        length_q6 = radius_q6_left if radius_q6_left > 1e-11 else 1.0
+        r21_from_q1_left_by_radius_q6 = r21_from_q1 / length_q6
         # at a singularity: the angle of the reference
-        if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = -(r21_from_q1 / radius_q6)
-            sin_q6_before_q6_of_q3_down = r22_from_q1 / radius_q6
-            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
-            sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
-        else:
-            reference_a6 = (ref_a6 - offset_a6) * DEGREE
-            cos_of_reference_a6 = cos(reference_a6)
-            sin_of_reference_a6 = sin(reference_a6)
-            cos_q6_before_q6_of_q3_down = cos_of_reference_a6
-            sin_q6_before_q6_of_q3_down = sin_of_reference_a6
-            cos_q6_before_q6_of_q3_up = cos_of_reference_a6
-            sin_q6_before_q6_of_q3_up = sin_of_reference_a6
-        r21_from_q1_before_q6_before_q6_of_q3_down = (
-            r31 * cos_q6_before_q6_of_q3_down - r32 * sin_q6_before_q6_of_q3_down
-        )
-        radius_q6_left_times_r33 = r33 * radius_q6
-        r21_from_q1_before_q56_before_q6_of_q3_down = (
-            r21_from_q1_before_q6_before_q6_of_q3_down * cos_q5 - radius_q6_left_times_r33
-        )
-        wrist_x_from_q1_before_q6_of_q3 = -ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3_down
-        r22_from_q1_before_q6_before_q6_of_q3_down = (
-            r32 * cos_q6_before_q6_of_q3_down + r31 * sin_q6_before_q6_of_q3_down
-        )
-        wrist_y_from_q1_fixed = z - d6 * r33 - d1
-        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q6_of_q3_down
-        # q3 has solutions where this is within its bound
-        value_q6_of_q3 = (
-            wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
-            - a2_squared_plus_a3_squared
-        )
-        # moved so that q3 has a solution
+        cos_q6_left_down = -r21_from_q1_left_by_radius_q6 if radius_q6_left > 1e-11 else cos_of_reference_a6
+        sin_of_reference_a6 = sin(reference_a6)
+        r22_from_q1_left_by_radius_q6 = r22_from_q1 / length_q6
+        sin_q6_left_down = r22_from_q1_left_by_radius_q6 if radius_q6_left > 1e-11 else sin_of_reference_a6
+        radius_q6_left_times_r33 = r33 * radius_q6_left
+        r31_from_q1_before_q56_left_down = (
+            r31 * cos_q6_left_down - r32 * sin_q6_left_down
+        ) * cos_q5_left - radius_q6_left_times_r33
         # coordinate of the point that the remaining links must reach
-        if abs(value_q6_of_q3) <= size_q1_for_q3:
-            cos_q6 = cos_q6_before_q6_of_q3_down
-            sin_q6 = sin_q6_before_q6_of_q3_down
-            r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_down
-            wrist_x_from_q1 = wrist_x_from_q1_before_q6_of_q3
-            r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
-            wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
-        else:
-            radius_q6_left_times_r33_times_d5 = d5 * radius_q6_left_times_r33
-            cos_q5_left_times_d5 = d5 * cos_q5
-            wrist_x_from_q1_along = -r31 * cos_q5_left_times_d5
-            wrist_y_from_q1_along = d5 * r32
-            product_in_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
-            wrist_x_from_q1_across = r32 * cos_q5_left_times_d5
-            wrist_y_from_q1_across = d5 * r31
-            product_in_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
-            # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6:
-                cos_q6 = cos_q6_before_q6_of_q3_down
-                sin_q6 = sin_q6_before_q6_of_q3_down
-            else:
-                wrist_x_from_q1_fixed = radius_q6_left_times_r33_times_d5 - ahead_q1_before_q1_for_q3
-                along_q6_of_q3 = 2.0 * product_in_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                across_q6_of_q3 = (
-                    2.0 * product_in_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
-                )
-                swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
-                # feasible arc: cosines of its ends
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3
-                        - across_q6_of_q3 * sin_q6_before_q6_of_q3_down
-                        - along_q6_of_q3 * cos_q6_before_q6_of_q3_down
-                    )
-                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
-                    highest_q6_of_q3 = (
-                        1.0
-                        if quotient_in_highest_q6_of_q3 > 1.0
-                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
-                    )
-                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
-                    lowest_q6_of_q3 = (
-                        1.0
-                        if -quotient_in_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
-                    )
-                else:
-                    highest_q6_of_q3 = 1.0
-                    lowest_q6_of_q3 = -1.0
-                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3) * (1.0 + highest_q6_of_q3)), highest_q6_of_q3)
-                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3) * (1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-                side_q6_of_q3 = (
-                    1.0
-                    if along_q6_of_q3 * sin_q6_before_q6_of_q3_down - across_q6_of_q3 * cos_q6_before_q6_of_q3_down
-                    >= 0.0
-                    else -1.0
-                )
-                moved_q6_of_q3 = nearest_on_arc(
-                    arctan2(sin_q6_before_q6_of_q3_down, cos_q6_before_q6_of_q3_down),
-                    arctan2(across_q6_of_q3, along_q6_of_q3) + 0.5 * (far_q6_of_q3 + near_q6_of_q3) * side_q6_of_q3,
-                    0.5 * far_q6_of_q3 - 0.5 * near_q6_of_q3,
-                )
-                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
-                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
-                sum_in_cost_q6_of_q3_left_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
-                # change of the pose by this motion
-                cost_q6_of_q3 = (
-                    sqrt(
-                        sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3
-                        + sum_in_cost_q6_of_q3_left_down_2 * sum_in_cost_q6_of_q3_left_down_2
-                    )
-                    * radius_q6
-                )
-                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved so that q3 has a solution
-                if stays_q6_of_q3:
-                    cos_q6 = cos_q6_before_q6_of_q3_down
-                    sin_q6 = sin_q6_before_q6_of_q3_down
-                else:
-                    cos_q6 = cos_q6_after_q6_of_q3
-                    sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q56 = (r31 * cos_q6 - r32 * sin_q6) * cos_q5 - radius_q6_left_times_r33
-            wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56
-            r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
-            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
+        wrist_x_from_q1_left_down = -ahead_q1 - d5 * r31_from_q1_before_q56_left_down
+        r33_from_q1_before_q6_left_down = r32 * cos_q6_left_down + r31 * sin_q6_left_down
+        wrist_z_minus_d1 = z - d6 * r33 - d1
+        # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1_left_down = wrist_z_minus_d1 + d5 * r33_from_q1_before_q6_left_down
         # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
-        one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
-        refusal_left_down = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left) * RADIAN
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_sin_q3
-        if reach > machine_scale_times_free_angle:
-            angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
-            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
+        reach_left_down = sqrt(
+            wrist_x_from_q1_left_down * wrist_x_from_q1_left_down
+            + wrist_z_from_q1_left_down * wrist_z_from_q1_left_down
+        )
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3_left_down = (a2_plus_a3 + reach_left_down) * (a2_plus_a3 - reach_left_down)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_left_down = (reach_left_down - a2_minus_a3) * (a2_minus_a3 + reach_left_down)
+        cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down) * quotient_in_closed_cos_q3
+        within_37 = -1.0 <= cos_q3_left_down <= 1.0
+        lost_digits_37 = (not within_37) and (
+            (-0.01 <= radius_q6_left <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_37)
+        )
+        # digits may be lost
+        if not (not lost_digits_37):
+            return ()
+        # at a singularity: the angle of the reference
+        if radius_q6_left > 1e-11:
+            cos_q6_left_up = r21_from_q1_left_by_radius_q6
+            sin_q6_left_up = -r22_from_q1_left_by_radius_q6
+            r31_from_q1_before_q56_left_up = -r31_from_q1_before_q56_left_down
+            r33_from_q1_before_q6_left_up = -r33_from_q1_before_q6_left_down
+        else:
+            cos_q6_left_up = cos_of_reference_a6
+            sin_q6_left_up = sin_of_reference_a6
+            r31_from_q1_before_q56_left_up = (
+                radius_q6_left_times_r33 + (r31 * cos_q6_left_up - r32 * sin_q6_left_up) * cos_q5_left
+            )
+            r33_from_q1_before_q6_left_up = r32 * cos_q6_left_up + r31 * sin_q6_left_up
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1_left_up = -ahead_q1 - d5 * r31_from_q1_before_q56_left_up
+        # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1_left_up = wrist_z_minus_d1 + d5 * r33_from_q1_before_q6_left_up
+        # distance that the remaining links must span
+        reach_left_up = sqrt(
+            wrist_x_from_q1_left_up * wrist_x_from_q1_left_up + wrist_z_from_q1_left_up * wrist_z_from_q1_left_up
+        )
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3_left_up = (a2_plus_a3 + reach_left_up) * (a2_plus_a3 - reach_left_up)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_left_up = (reach_left_up - a2_minus_a3) * (a2_minus_a3 + reach_left_up)
+        cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up) * quotient_in_closed_cos_q3
+        within_37 = -1.0 <= cos_q3_left_up <= 1.0
+        lost_digits_37 = (not within_37) and (
+            (-0.01 <= radius_q6_left <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_37)
+        )
+        # digits may be lost
+        if not (not lost_digits_37):
+            return ()
+        # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+        if distance_q1 > machine_scale_times_free_angle:
+            cos_q1_right = (ahead_q1_right_times_wrist_x - d4_times_wrist_y) / divisor_q1
+            sin_q1_right = (ahead_q1_right_times_wrist_y + d4_times_wrist_x) / divisor_q1
+        else:
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            cos_of_reference_a1 = cos(reference_a1)
+            sin_of_reference_a1 = sin(reference_a1)
+            cos_q1_right = cos_of_reference_a1
+            sin_q1_right = sin_of_reference_a1
+        r21_from_q1 = r21 * cos_q1_right - r11 * sin_q1_right
+        r22_from_q1 = r22 * cos_q1_right - r12 * sin_q1_right
+        # polar coordinates: the radius at angle q6
+        radius_q6_right = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
+        # cosine and sine of q5 from the q6 radius and r22 equations
+        cos_q5_right = r13 * sin_q1_right - r23 * cos_q1_right
+        length_q6 = radius_q6_right if radius_q6_right > 1e-11 else 1.0
+        r21_from_q1_right_by_radius_q6 = r21_from_q1 / length_q6
+        # at a singularity: the angle of the reference
+        cos_q6_right_down = -r21_from_q1_right_by_radius_q6 if radius_q6_right > 1e-11 else cos_of_reference_a6
+        r22_from_q1_right_by_radius_q6 = r22_from_q1 / length_q6
+        sin_q6_right_down = r22_from_q1_right_by_radius_q6 if radius_q6_right > 1e-11 else sin_of_reference_a6
+        radius_q6_right_times_r33 = r33 * radius_q6_right
+        r31_from_q1_before_q56_right_down = (
+            r31 * cos_q6_right_down - r32 * sin_q6_right_down
+        ) * cos_q5_right - radius_q6_right_times_r33
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1_right_down = ahead_q1 - d5 * r31_from_q1_before_q56_right_down
+        r33_from_q1_before_q6_right_down = r32 * cos_q6_right_down + r31 * sin_q6_right_down
+        # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1_right_down = wrist_z_minus_d1 + d5 * r33_from_q1_before_q6_right_down
+        # distance that the remaining links must span
+        reach_right_down = sqrt(
+            wrist_x_from_q1_right_down * wrist_x_from_q1_right_down
+            + wrist_z_from_q1_right_down * wrist_z_from_q1_right_down
+        )
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3_right_down = (a2_plus_a3 + reach_right_down) * (a2_plus_a3 - reach_right_down)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_right_down = (reach_right_down - a2_minus_a3) * (a2_minus_a3 + reach_right_down)
+        cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down) * quotient_in_closed_cos_q3
+        within_37 = -1.0 <= cos_q3_right_down <= 1.0
+        lost_digits_37 = (not within_37) and (
+            (-0.01 <= radius_q6_right <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_37)
+        )
+        # digits may be lost
+        if not (not lost_digits_37):
+            return ()
+        # at a singularity: the angle of the reference
+        if radius_q6_right > 1e-11:
+            cos_q6_right_up = r21_from_q1_right_by_radius_q6
+            sin_q6_right_up = -r22_from_q1_right_by_radius_q6
+            r31_from_q1_before_q56_right_up = -r31_from_q1_before_q56_right_down
+            r33_from_q1_before_q6_right_up = -r33_from_q1_before_q6_right_down
+        else:
+            cos_q6_right_up = cos_of_reference_a6
+            sin_q6_right_up = sin_of_reference_a6
+            r31_from_q1_before_q56_right_up = (
+                radius_q6_right_times_r33 + (r31 * cos_q6_right_up - r32 * sin_q6_right_up) * cos_q5_right
+            )
+            r33_from_q1_before_q6_right_up = r32 * cos_q6_right_up + r31 * sin_q6_right_up
+        # coordinate of the point that the remaining links must reach
+        wrist_x_from_q1_right_up = ahead_q1 - d5 * r31_from_q1_before_q56_right_up
+        # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1_right_up = wrist_z_minus_d1 + d5 * r33_from_q1_before_q6_right_up
+        # distance that the remaining links must span
+        reach_right_up = sqrt(
+            wrist_x_from_q1_right_up * wrist_x_from_q1_right_up + wrist_z_from_q1_right_up * wrist_z_from_q1_right_up
+        )
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3_right_up = (a2_plus_a3 + reach_right_up) * (a2_plus_a3 - reach_right_up)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_right_up = (reach_right_up - a2_minus_a3) * (a2_minus_a3 + reach_right_up)
+        cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up) * quotient_in_closed_cos_q3
+        within_37 = -1.0 <= cos_q3_right_up <= 1.0
+        lost_digits_37 = (not within_37) and (
+            (-0.01 <= radius_q6_right <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_37)
+        )
+        # digits may be lost
+        if not (not lost_digits_37):
+            return ()
+        refusal_left_down = 0 if -1.0000000000005 <= cos_q3_left_down <= 1.0000000000005 else 3  # q3: out of reach
+        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left) * RADIAN
+        # sine squared, times the squared scale
+        sine_square_q3 = one_less_cos_q3_left_down * one_plus_cos_q3_left_down
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
+        if reach_left_down > machine_scale_times_free_angle:
+            angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3_left_down)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_z_from_q1_left_down, wrist_x_from_q1_left_down)
             angle_q2_left_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_left_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             angle_q2_left_up_down = reference_a2
             angle_q2_left_down_down = reference_a2
-        angle_q3_down = arctan2(sin_q3, cos_q3)
+        angle_q3_down = arctan2(sin_q3, cos_q3_left_down)
         quotient_in_axis_a3_left_up_down = angle_q3_down * RADIAN
-        angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
+        angle_with_q4_down = arctan2(r31_from_q1_before_q56_left_down, r33_from_q1_before_q6_left_down)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_left_up_down - angle_q3_down) * RADIAN
-        quotient_in_axis_a5 = arctan2(radius_q6, cos_q5) * RADIAN
+        quotient_in_axis_a5 = arctan2(radius_q6_left, cos_q5_left) * RADIAN
         axis_a5_left_down = offset_a5 + quotient_in_axis_a5
-        axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
-        if radius_q6 > 1e-11:
-            r21_from_q1_before_q6_before_q6_of_q3_up = -r21_from_q1_before_q6_before_q6_of_q3_down
-            r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
-            r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
-        else:
-            r21_from_q1_before_q6_before_q6_of_q3_up = r31 * cos_q6_before_q6_of_q3_up - r32 * sin_q6_before_q6_of_q3_up
-            r21_from_q1_before_q56_before_q6_of_q3_up = (
-                radius_q6_left_times_r33 + r21_from_q1_before_q6_before_q6_of_q3_up * cos_q5
-            )
-            r22_from_q1_before_q6_before_q6_of_q3_up = r32 * cos_q6_before_q6_of_q3_up + r31 * sin_q6_before_q6_of_q3_up
-        wrist_x_from_q1_before_q6_of_q3 = -ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3_up
-        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q6_of_q3_up
-        # q3 has solutions where this is within its bound
-        value_q6_of_q3 = (
-            wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
-            - a2_squared_plus_a3_squared
-        )
-        # moved so that q3 has a solution
-        # coordinate of the point that the remaining links must reach
-        if abs(value_q6_of_q3) <= size_q1_for_q3:
-            cos_q6 = cos_q6_before_q6_of_q3_up
-            sin_q6 = sin_q6_before_q6_of_q3_up
-            r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_up
-            wrist_x_from_q1 = wrist_x_from_q1_before_q6_of_q3
-            r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_up
-            wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
-        else:
-            radius_q6_left_times_r33_times_d5 = d5 * radius_q6_left_times_r33
-            cos_q5_left_times_d5 = d5 * cos_q5
-            wrist_x_from_q1_along = -r31 * cos_q5_left_times_d5
-            wrist_y_from_q1_along = d5 * r32
-            product_in_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
-            wrist_x_from_q1_across = r32 * cos_q5_left_times_d5
-            wrist_y_from_q1_across = d5 * r31
-            product_in_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
-            # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6:
-                cos_q6 = cos_q6_before_q6_of_q3_up
-                sin_q6 = sin_q6_before_q6_of_q3_up
-            else:
-                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - radius_q6_left_times_r33_times_d5
-                along_q6_of_q3 = 2.0 * product_in_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                across_q6_of_q3 = (
-                    2.0 * product_in_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
-                )
-                swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
-                # feasible arc: cosines of its ends
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3
-                        - across_q6_of_q3 * sin_q6_before_q6_of_q3_up
-                        - along_q6_of_q3 * cos_q6_before_q6_of_q3_up
-                    )
-                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
-                    highest_q6_of_q3 = (
-                        1.0
-                        if quotient_in_highest_q6_of_q3 > 1.0
-                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
-                    )
-                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
-                    lowest_q6_of_q3 = (
-                        1.0
-                        if -quotient_in_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
-                    )
-                else:
-                    highest_q6_of_q3 = 1.0
-                    lowest_q6_of_q3 = -1.0
-                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3) * (1.0 + highest_q6_of_q3)), highest_q6_of_q3)
-                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3) * (1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-                side_q6_of_q3 = (
-                    1.0
-                    if along_q6_of_q3 * sin_q6_before_q6_of_q3_up - across_q6_of_q3 * cos_q6_before_q6_of_q3_up >= 0.0
-                    else -1.0
-                )
-                moved_q6_of_q3 = nearest_on_arc(
-                    arctan2(sin_q6_before_q6_of_q3_up, cos_q6_before_q6_of_q3_up),
-                    arctan2(across_q6_of_q3, along_q6_of_q3) + 0.5 * (far_q6_of_q3 + near_q6_of_q3) * side_q6_of_q3,
-                    0.5 * far_q6_of_q3 - 0.5 * near_q6_of_q3,
-                )
-                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
-                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
-                sum_in_cost_q6_of_q3_left_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
-                # change of the pose by this motion
-                cost_q6_of_q3 = (
-                    sqrt(
-                        sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3
-                        + sum_in_cost_q6_of_q3_left_up_2 * sum_in_cost_q6_of_q3_left_up_2
-                    )
-                    * radius_q6
-                )
-                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved so that q3 has a solution
-                if stays_q6_of_q3:
-                    cos_q6 = cos_q6_before_q6_of_q3_up
-                    sin_q6 = sin_q6_before_q6_of_q3_up
-                else:
-                    cos_q6 = cos_q6_after_q6_of_q3
-                    sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q56 = radius_q6_left_times_r33 + (r31 * cos_q6 - r32 * sin_q6) * cos_q5
-            wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56
-            r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
-            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
-        # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
-        one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
-        refusal_left_up = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_sin_q3
-        if reach > machine_scale_times_free_angle:
-            angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
-            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
+        axis_a6_left_down = offset_a6 + arctan2(sin_q6_left_down, cos_q6_left_down) * RADIAN
+        refusal_left_up = 0 if -1.0000000000005 <= cos_q3_left_up <= 1.0000000000005 else 3  # q3: out of reach
+        sine_square_q3 = one_less_cos_q3_left_up * one_plus_cos_q3_left_up  # sine squared, times the squared scale
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
+        if reach_left_up > machine_scale_times_free_angle:
+            angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3_left_up)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_z_from_q1_left_up, wrist_x_from_q1_left_up)
             angle_q2_left_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_left_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             angle_q2_left_up_up = reference_a2
             angle_q2_left_down_up = reference_a2
-        angle_q3_up = arctan2(sin_q3, cos_q3)
+        angle_q3_up = arctan2(sin_q3, cos_q3_left_up)
         quotient_in_axis_a3_left_up_up = angle_q3_up * RADIAN
-        angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
+        if radius_q6_left > 1e-11:
+            angle_with_q4_up = 180.0 * DEGREE + angle_with_q4_down
+            axis_a6_left_up = 180.0 + axis_a6_left_down
+        else:
+            angle_with_q4_up = arctan2(r31_from_q1_before_q56_left_up, r33_from_q1_before_q6_left_up)
+            axis_a6_left_up = offset_a6 + arctan2(sin_q6_left_up, cos_q6_left_up) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_left_up_up - angle_q3_up) * RADIAN
         axis_a5_left_up = offset_a5 - quotient_in_axis_a5
-        axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_left_down_down) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_left_down_up) * RADIAN
-        # cosine and sine of q5 from the q6 radius and r32 equations
-        cos_q5 = r13 * sin_q1_before_q1_for_q3_right - r23 * cos_q1_before_q1_for_q3_right
-        r21_from_q1 = r21 * cos_q1_before_q1_for_q3_right - r11 * sin_q1_before_q1_for_q3_right
-        r22_from_q1 = r22 * cos_q1_before_q1_for_q3_right - r12 * sin_q1_before_q1_for_q3_right
-        # polar coordinates: the radius at angle q6
-        radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
-        # at a singularity: the angle of the reference
-        if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = -(r21_from_q1 / radius_q6)
-            sin_q6_before_q6_of_q3_down = r22_from_q1 / radius_q6
-            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
-            sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
-        else:
-            reference_a6 = (ref_a6 - offset_a6) * DEGREE
-            cos_of_reference_a6 = cos(reference_a6)
-            sin_of_reference_a6 = sin(reference_a6)
-            cos_q6_before_q6_of_q3_down = cos_of_reference_a6
-            sin_q6_before_q6_of_q3_down = sin_of_reference_a6
-            cos_q6_before_q6_of_q3_up = cos_of_reference_a6
-            sin_q6_before_q6_of_q3_up = sin_of_reference_a6
-        r21_from_q1_before_q6_before_q6_of_q3_down = (
-            r31 * cos_q6_before_q6_of_q3_down - r32 * sin_q6_before_q6_of_q3_down
-        )
-        radius_q6_right_times_r33 = r33 * radius_q6
-        r21_from_q1_before_q56_before_q6_of_q3_down = (
-            r21_from_q1_before_q6_before_q6_of_q3_down * cos_q5 - radius_q6_right_times_r33
-        )
-        wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3_down
-        r22_from_q1_before_q6_before_q6_of_q3_down = (
-            r32 * cos_q6_before_q6_of_q3_down + r31 * sin_q6_before_q6_of_q3_down
-        )
-        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q6_of_q3_down
-        # q3 has solutions where this is within its bound
-        value_q6_of_q3 = (
-            wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
-            - a2_squared_plus_a3_squared
-        )
-        # moved so that q3 has a solution
-        # coordinate of the point that the remaining links must reach
-        if abs(value_q6_of_q3) <= size_q1_for_q3:
-            cos_q6 = cos_q6_before_q6_of_q3_down
-            sin_q6 = sin_q6_before_q6_of_q3_down
-            r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_down
-            wrist_x_from_q1 = wrist_x_from_q1_before_q6_of_q3
-            r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
-            wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
-        else:
-            wrist_y_from_q1_along = d5 * r32
-            product_in_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
-            wrist_y_from_q1_across = d5 * r31
-            product_in_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
-            radius_q6_right_times_r33_times_d5 = d5 * radius_q6_right_times_r33
-            cos_q5_right_times_d5 = d5 * cos_q5
-            wrist_x_from_q1_along = -r31 * cos_q5_right_times_d5
-            wrist_x_from_q1_across = r32 * cos_q5_right_times_d5
-            # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6:
-                cos_q6 = cos_q6_before_q6_of_q3_down
-                sin_q6 = sin_q6_before_q6_of_q3_down
-            else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + radius_q6_right_times_r33_times_d5
-                along_q6_of_q3 = 2.0 * product_in_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                across_q6_of_q3 = (
-                    2.0 * product_in_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
-                )
-                swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
-                # feasible arc: cosines of its ends
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3
-                        - across_q6_of_q3 * sin_q6_before_q6_of_q3_down
-                        - along_q6_of_q3 * cos_q6_before_q6_of_q3_down
-                    )
-                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
-                    highest_q6_of_q3 = (
-                        1.0
-                        if quotient_in_highest_q6_of_q3 > 1.0
-                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
-                    )
-                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
-                    lowest_q6_of_q3 = (
-                        1.0
-                        if -quotient_in_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
-                    )
-                else:
-                    highest_q6_of_q3 = 1.0
-                    lowest_q6_of_q3 = -1.0
-                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3) * (1.0 + highest_q6_of_q3)), highest_q6_of_q3)
-                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3) * (1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-                side_q6_of_q3 = (
-                    1.0
-                    if along_q6_of_q3 * sin_q6_before_q6_of_q3_down - across_q6_of_q3 * cos_q6_before_q6_of_q3_down
-                    >= 0.0
-                    else -1.0
-                )
-                moved_q6_of_q3 = nearest_on_arc(
-                    arctan2(sin_q6_before_q6_of_q3_down, cos_q6_before_q6_of_q3_down),
-                    arctan2(across_q6_of_q3, along_q6_of_q3) + 0.5 * (far_q6_of_q3 + near_q6_of_q3) * side_q6_of_q3,
-                    0.5 * far_q6_of_q3 - 0.5 * near_q6_of_q3,
-                )
-                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
-                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
-                sum_in_cost_q6_of_q3_right_down_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
-                # change of the pose by this motion
-                cost_q6_of_q3 = (
-                    sqrt(
-                        sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3
-                        + sum_in_cost_q6_of_q3_right_down_2 * sum_in_cost_q6_of_q3_right_down_2
-                    )
-                    * radius_q6
-                )
-                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved so that q3 has a solution
-                if stays_q6_of_q3:
-                    cos_q6 = cos_q6_before_q6_of_q3_down
-                    sin_q6 = sin_q6_before_q6_of_q3_down
-                else:
-                    cos_q6 = cos_q6_after_q6_of_q3
-                    sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q56 = (r31 * cos_q6 - r32 * sin_q6) * cos_q5 - radius_q6_right_times_r33
-            wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56
-            r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
-            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
-        # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
-        one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
-        refusal_right_down = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right) * RADIAN
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_sin_q3
-        if reach > machine_scale_times_free_angle:
-            angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
-            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
+        # q3: out of reach
+        refusal_right_down = 0 if -1.0000000000005 <= cos_q3_right_down <= 1.0000000000005 else 3
+        axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right) * RADIAN
+        # sine squared, times the squared scale
+        sine_square_q3 = one_less_cos_q3_right_down * one_plus_cos_q3_right_down
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
+        if reach_right_down > machine_scale_times_free_angle:
+            angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3_right_down)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_z_from_q1_right_down, wrist_x_from_q1_right_down)
             angle_q2_right_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_right_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             angle_q2_right_up_down = reference_a2
             angle_q2_right_down_down = reference_a2
-        angle_q3_down = arctan2(sin_q3, cos_q3)
+        angle_q3_down = arctan2(sin_q3, cos_q3_right_down)
         quotient_in_axis_a3_right_up_down = angle_q3_down * RADIAN
-        angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
+        angle_with_q4_down = arctan2(r31_from_q1_before_q56_right_down, r33_from_q1_before_q6_right_down)
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_up_down = offset_a4 + (angle_with_q4_down - angle_q2_right_up_down - angle_q3_down) * RADIAN
-        quotient_in_axis_a5 = arctan2(radius_q6, cos_q5) * RADIAN
+        quotient_in_axis_a5 = arctan2(radius_q6_right, cos_q5_right) * RADIAN
         axis_a5_right_down = offset_a5 + quotient_in_axis_a5
-        axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
-        if radius_q6 > 1e-11:
-            r21_from_q1_before_q6_before_q6_of_q3_up = -r21_from_q1_before_q6_before_q6_of_q3_down
-            r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
-            r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
-        else:
-            r21_from_q1_before_q6_before_q6_of_q3_up = r31 * cos_q6_before_q6_of_q3_up - r32 * sin_q6_before_q6_of_q3_up
-            r21_from_q1_before_q56_before_q6_of_q3_up = (
-                radius_q6_right_times_r33 + r21_from_q1_before_q6_before_q6_of_q3_up * cos_q5
-            )
-            r22_from_q1_before_q6_before_q6_of_q3_up = r32 * cos_q6_before_q6_of_q3_up + r31 * sin_q6_before_q6_of_q3_up
-        wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3_up
-        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q6_of_q3_up
-        # q3 has solutions where this is within its bound
-        value_q6_of_q3 = (
-            wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
-            - a2_squared_plus_a3_squared
-        )
-        # moved so that q3 has a solution
-        # coordinate of the point that the remaining links must reach
-        if abs(value_q6_of_q3) <= size_q1_for_q3:
-            cos_q6 = cos_q6_before_q6_of_q3_up
-            sin_q6 = sin_q6_before_q6_of_q3_up
-            r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_up
-            wrist_x_from_q1 = wrist_x_from_q1_before_q6_of_q3
-            r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_up
-            wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
-        else:
-            wrist_y_from_q1_along = d5 * r32
-            product_in_along_q6_of_q3 = wrist_y_from_q1_along * wrist_y_from_q1_fixed
-            wrist_y_from_q1_across = d5 * r31
-            product_in_across_q6_of_q3 = wrist_y_from_q1_across * wrist_y_from_q1_fixed
-            radius_q6_right_times_r33_times_d5 = d5 * radius_q6_right_times_r33
-            cos_q5_right_times_d5 = d5 * cos_q5
-            wrist_x_from_q1_along = -r31 * cos_q5_right_times_d5
-            wrist_x_from_q1_across = r32 * cos_q5_right_times_d5
-            # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6:
-                cos_q6 = cos_q6_before_q6_of_q3_up
-                sin_q6 = sin_q6_before_q6_of_q3_up
-            else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - radius_q6_right_times_r33_times_d5
-                along_q6_of_q3 = 2.0 * product_in_along_q6_of_q3 + 2.0 * wrist_x_from_q1_along * wrist_x_from_q1_fixed
-                across_q6_of_q3 = (
-                    2.0 * product_in_across_q6_of_q3 + 2.0 * wrist_x_from_q1_across * wrist_x_from_q1_fixed
-                )
-                swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
-                # feasible arc: cosines of its ends
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3
-                        - across_q6_of_q3 * sin_q6_before_q6_of_q3_up
-                        - along_q6_of_q3 * cos_q6_before_q6_of_q3_up
-                    )
-                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
-                    highest_q6_of_q3 = (
-                        1.0
-                        if quotient_in_highest_q6_of_q3 > 1.0
-                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
-                    )
-                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
-                    lowest_q6_of_q3 = (
-                        1.0
-                        if -quotient_in_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
-                    )
-                else:
-                    highest_q6_of_q3 = 1.0
-                    lowest_q6_of_q3 = -1.0
-                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3) * (1.0 + highest_q6_of_q3)), highest_q6_of_q3)
-                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3) * (1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-                side_q6_of_q3 = (
-                    1.0
-                    if along_q6_of_q3 * sin_q6_before_q6_of_q3_up - across_q6_of_q3 * cos_q6_before_q6_of_q3_up >= 0.0
-                    else -1.0
-                )
-                moved_q6_of_q3 = nearest_on_arc(
-                    arctan2(sin_q6_before_q6_of_q3_up, cos_q6_before_q6_of_q3_up),
-                    arctan2(across_q6_of_q3, along_q6_of_q3) + 0.5 * (far_q6_of_q3 + near_q6_of_q3) * side_q6_of_q3,
-                    0.5 * far_q6_of_q3 - 0.5 * near_q6_of_q3,
-                )
-                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
-                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
-                sum_in_cost_q6_of_q3_right_up_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
-                # change of the pose by this motion
-                cost_q6_of_q3 = (
-                    sqrt(
-                        sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3
-                        + sum_in_cost_q6_of_q3_right_up_2 * sum_in_cost_q6_of_q3_right_up_2
-                    )
-                    * radius_q6
-                )
-                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved so that q3 has a solution
-                if stays_q6_of_q3:
-                    cos_q6 = cos_q6_before_q6_of_q3_up
-                    sin_q6 = sin_q6_before_q6_of_q3_up
-                else:
-                    cos_q6 = cos_q6_after_q6_of_q3
-                    sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q56 = radius_q6_right_times_r33 + (r31 * cos_q6 - r32 * sin_q6) * cos_q5
-            wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56
-            r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
-            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
-        # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
-        one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
-        refusal_right_up = 0 if -1.0000000000005 <= cos_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_sin_q3
-        if reach > machine_scale_times_free_angle:
-            angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
-            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
+        axis_a6_right_down = offset_a6 + arctan2(sin_q6_right_down, cos_q6_right_down) * RADIAN
+        refusal_right_up = 0 if -1.0000000000005 <= cos_q3_right_up <= 1.0000000000005 else 3  # q3: out of reach
+        # sine squared, times the squared scale
+        sine_square_q3 = one_less_cos_q3_right_up * one_plus_cos_q3_right_up
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
+        if reach_right_up > machine_scale_times_free_angle:
+            angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3_right_up)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_z_from_q1_right_up, wrist_x_from_q1_right_up)
             angle_q2_right_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_right_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             angle_q2_right_up_up = reference_a2
             angle_q2_right_down_up = reference_a2
-        angle_q3_up = arctan2(sin_q3, cos_q3)
+        angle_q3_up = arctan2(sin_q3, cos_q3_right_up)
         quotient_in_axis_a3_right_up_up = angle_q3_up * RADIAN
-        angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
+        if radius_q6_right > 1e-11:
+            angle_with_q4_up = 180.0 * DEGREE + angle_with_q4_down
+            axis_a6_right_up = 180.0 + axis_a6_right_down
+        else:
+            angle_with_q4_up = arctan2(r31_from_q1_before_q56_right_up, r33_from_q1_before_q6_right_up)
+            axis_a6_right_up = offset_a6 + arctan2(sin_q6_right_up, cos_q6_right_up) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_right_up_up - angle_q3_up) * RADIAN
         axis_a5_right_up = offset_a5 - quotient_in_axis_a5
-        axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_right_down_down) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
@@ -741,156 +415,74 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d4) * (d4 + distance_q1)
-        # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
-            return ()
         # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
-            ahead_q1_before_q1_for_q3 = -sqrt(ahead_squared_q1) * sigma_shoulder
+            ahead_q1 = -sqrt(ahead_squared_q1) * sigma_shoulder
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return None
-            ahead_q1_before_q1_for_q3 = 0.0
+            ahead_q1 = 0.0
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d4 * wrist_y) / divisor_q1
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d4 * wrist_x) / divisor_q1
+            cos_q1 = (ahead_q1 * wrist_x - d4 * wrist_y) / divisor_q1
+            sin_q1 = (ahead_q1 * wrist_y + d4 * wrist_x) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(reference_a1)
-            sin_q1_before_q1_for_q3 = sin(reference_a1)
-        # cosine and sine of q5 from the q6 radius and r32 equations
-        cos_q5 = r13 * sin_q1_before_q1_for_q3 - r23 * cos_q1_before_q1_for_q3
-        r21_from_q1 = r21 * cos_q1_before_q1_for_q3 - r11 * sin_q1_before_q1_for_q3
-        r22_from_q1 = r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3
+            cos_q1 = cos(reference_a1)
+            sin_q1 = sin(reference_a1)
+        r21_from_q1 = r21 * cos_q1 - r11 * sin_q1
+        r22_from_q1 = r22 * cos_q1 - r12 * sin_q1
         # polar coordinates: the radius at angle q6
         radius_q6 = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
+        q6_radius_of_q5 = sigma_wrist * radius_q6
+        cos_q5 = r13 * sin_q1 - r23 * cos_q1  # cosine and sine of q5 from the q6 radius and r22 equations
         # at a singularity: the angle of the reference
         if radius_q6 > 1e-11:
-            along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r31 and r32 equations
-            cos_q6_before_q6_of_q3 = along_q6 / radius_q6
-            sin_q6_before_q6_of_q3 = (sigma_wrist * r22_from_q1) / radius_q6
+            along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r21 and r23 equations
+            cos_q6 = along_q6 / radius_q6
+            sin_q6 = (sigma_wrist * r22_from_q1) / radius_q6
         else:
             reference_a6 = (ref_a6 - offset_a6) * DEGREE
-            cos_q6_before_q6_of_q3 = cos(reference_a6)
-            sin_q6_before_q6_of_q3 = sin(reference_a6)
-        q6_radius_of_q5 = sigma_wrist * radius_q6
-        q6_radius_of_q5_times_r33 = q6_radius_of_q5 * r33
-        r21_from_q1_before_q56_before_q6_of_q3 = (
-            r31 * cos_q6_before_q6_of_q3 - r32 * sin_q6_before_q6_of_q3
-        ) * cos_q5 - q6_radius_of_q5_times_r33
-        wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56_before_q6_of_q3
-        r22_from_q1_before_q6_before_q6_of_q3 = r32 * cos_q6_before_q6_of_q3 + r31 * sin_q6_before_q6_of_q3
-        wrist_y_from_q1_fixed = z - d6 * r33 - d1
-        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6_before_q6_of_q3
-        # q3 has solutions where this is within its bound
-        value_q6_of_q3 = (
-            wrist_x_from_q1_before_q6_of_q3 * wrist_x_from_q1_before_q6_of_q3
-            + wrist_y_from_q1_before_q6_of_q3 * wrist_y_from_q1_before_q6_of_q3
-            - a2_squared_plus_a3_squared
-        )
-        # moved so that q3 has a solution
+            cos_q6 = cos(reference_a6)
+            sin_q6 = sin(reference_a6)
+        r31_from_q1_before_q56 = (r31 * cos_q6 - r32 * sin_q6) * cos_q5 - q6_radius_of_q5 * r33
         # coordinate of the point that the remaining links must reach
-        if abs(value_q6_of_q3) <= size_q1_for_q3:
-            cos_q6 = cos_q6_before_q6_of_q3
-            sin_q6 = sin_q6_before_q6_of_q3
-            r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3
-            wrist_x_from_q1 = wrist_x_from_q1_before_q6_of_q3
-            r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3
-            wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
-        else:
-            # moved so that q3 has a solution
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > product_in_cos_q6:
-                cos_q6 = cos_q6_before_q6_of_q3
-                sin_q6 = sin_q6_before_q6_of_q3
-            else:
-                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + d5 * q6_radius_of_q5_times_r33
-                cos_q5_times_d5 = d5 * cos_q5
-                along_q6_of_q3 = (
-                    2.0 * (-r31 * cos_q5_times_d5) * wrist_x_from_q1_fixed + 2.0 * (d5 * r32) * wrist_y_from_q1_fixed
-                )
-                across_q6_of_q3 = (
-                    2.0 * (r32 * cos_q5_times_d5) * wrist_x_from_q1_fixed + 2.0 * (d5 * r31) * wrist_y_from_q1_fixed
-                )
-                swing_q6_of_q3 = sqrt(across_q6_of_q3 * across_q6_of_q3 + along_q6_of_q3 * along_q6_of_q3)
-                # feasible arc: cosines of its ends
-                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3
-                        - across_q6_of_q3 * sin_q6_before_q6_of_q3
-                        - along_q6_of_q3 * cos_q6_before_q6_of_q3
-                    )
-                    quotient_in_highest_q6_of_q3 = (size_q1_for_q3 - level_q6_of_q3) / swing_q6_of_q3
-                    highest_q6_of_q3 = (
-                        1.0
-                        if quotient_in_highest_q6_of_q3 > 1.0
-                        else (-1.0 if quotient_in_highest_q6_of_q3 < -1.0 else quotient_in_highest_q6_of_q3)
-                    )
-                    quotient_in_lowest_q6_of_q3 = (level_q6_of_q3 + size_q1_for_q3) / swing_q6_of_q3
-                    lowest_q6_of_q3 = (
-                        1.0
-                        if -quotient_in_lowest_q6_of_q3 > 1.0
-                        else (-1.0 if -quotient_in_lowest_q6_of_q3 < -1.0 else -quotient_in_lowest_q6_of_q3)
-                    )
-                else:
-                    highest_q6_of_q3 = 1.0
-                    lowest_q6_of_q3 = -1.0
-                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3) * (1.0 + highest_q6_of_q3)), highest_q6_of_q3)
-                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3) * (1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-                side_q6_of_q3 = (
-                    1.0
-                    if along_q6_of_q3 * sin_q6_before_q6_of_q3 - across_q6_of_q3 * cos_q6_before_q6_of_q3 >= 0.0
-                    else -1.0
-                )
-                moved_q6_of_q3 = nearest_on_arc(
-                    arctan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3),
-                    arctan2(across_q6_of_q3, along_q6_of_q3) + 0.5 * (far_q6_of_q3 + near_q6_of_q3) * side_q6_of_q3,
-                    0.5 * (far_q6_of_q3 - near_q6_of_q3),
-                )
-                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
-                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-                sum_in_cost_q6_of_q3 = sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3
-                sum_in_cost_q6_of_q3_2 = cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3
-                # change of the pose by this motion
-                cost_q6_of_q3 = (
-                    sqrt(sum_in_cost_q6_of_q3 * sum_in_cost_q6_of_q3 + sum_in_cost_q6_of_q3_2 * sum_in_cost_q6_of_q3_2)
-                    * radius_q6
-                )
-                stays_q6_of_q3 = (cost_q6_of_q3 > 1e-12) and (radius_q6 > 1e-11)
-                # moved so that q3 has a solution
-                if stays_q6_of_q3:
-                    cos_q6 = cos_q6_before_q6_of_q3
-                    sin_q6 = sin_q6_before_q6_of_q3
-                else:
-                    cos_q6 = cos_q6_after_q6_of_q3
-                    sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q56 = (r31 * cos_q6 - r32 * sin_q6) * cos_q5 - q6_radius_of_q5_times_r33
-            wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5 * r21_from_q1_before_q56
-            r22_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
-            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5 * r22_from_q1_before_q6
+        wrist_x_from_q1 = ahead_q1 - d5 * r31_from_q1_before_q56
+        r33_from_q1_before_q6 = r32 * cos_q6 + r31 * sin_q6
+        # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1 = z - d6 * r33 + d5 * r33_from_q1_before_q6 - d1
         # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
+        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_cos_q3
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_closed_cos_q3
+        within_37 = -1.0 <= cos_q3 <= 1.0
+        lost_digits_37 = (not within_37) and (
+            (-0.01 <= q6_radius_of_q5 <= 0.01)
+            or (-0.01 <= radius_q6 <= 0.01)
+            or (abs(ahead_q1) <= product_in_lost_digits_37)
+        )
+        # digits may be lost
+        if not (not lost_digits_37):
+            return ()
         # q3: out of reach
         if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):
             return None
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_sin_q3
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_closed_sin_q3
         if reach > machine_scale_times_free_angle:
-            angle_q2 = arctan2(wrist_y_from_q1, wrist_x_from_q1) - arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
+            angle_q2 = arctan2(wrist_z_from_q1, wrist_x_from_q1) - arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
         else:
             angle_q2 = (ref_a2 - offset_a2) * DEGREE
         angle_q3 = arctan2(sin_q3, cos_q3)
         # q4 from the sum q234 of angles about parallel axes
-        axis_a4 = offset_a4 + (arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6) - angle_q2 - angle_q3) * RADIAN
+        axis_a4 = offset_a4 + (arctan2(r31_from_q1_before_q56, r33_from_q1_before_q6) - angle_q2 - angle_q3) * RADIAN
         if no_offsets:
             return (
-                arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
+                arctan2(sin_q1, cos_q1) * RADIAN,
                 angle_q2 * RADIAN,
                 angle_q3 * RADIAN,
                 axis_a4,
@@ -898,7 +490,7 @@ def unrolled(k: Constants) -> Unrolled:
                 arctan2(sin_q6, cos_q6) * RADIAN,
             )
         return (
-            offset_a1 + arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
+            offset_a1 + arctan2(sin_q1, cos_q1) * RADIAN,
             offset_a2 + angle_q2 * RADIAN,
             offset_a3 + angle_q3 * RADIAN,
             axis_a4,

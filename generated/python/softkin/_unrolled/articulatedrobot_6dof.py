@@ -18,19 +18,19 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    a1, a2, a2_minus_effective_q3 = k.a1, k.a2, k.a2_minus_effective_q3
-    a2_plus_effective_q3, a3_by_effective_q3, d1, d3 = k.a2_plus_effective_q3, k.a3_by_effective_q3, k.d1, k.d3
-    d4_by_effective_q3, d6, effective_q3, highest_a1 = k.d4_by_effective_q3, k.d6, k.effective_q3, k.highest_a1
-    highest_a2, highest_a3, highest_a4, highest_a5 = k.highest_a2, k.highest_a3, k.highest_a4, k.highest_a5
-    highest_a6, lowest_a1, lowest_a2, lowest_a3 = k.highest_a6, k.lowest_a1, k.lowest_a2, k.lowest_a3
-    lowest_a4, lowest_a5, lowest_a6 = k.lowest_a4, k.lowest_a5, k.lowest_a6
-    machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
-    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
-    mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
-    offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-    offset_a6, rounding_q1, single_a1, single_a2 = k.offset_a6, k.rounding_q1, k.single_a1, k.single_a2
-    single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
-    angle_of_a3_by_effective_q3 = arctan2(d4_by_effective_q3 + 0.0, a3_by_effective_q3 + 0.0)
+    a1, a2, a2_minus_effective_q3_2_2 = k.a1, k.a2, k.a2_minus_effective_q3_2_2
+    a2_plus_effective_q3_2_2, a3_by_effective_q3_2_2 = k.a2_plus_effective_q3_2_2, k.a3_by_effective_q3_2_2
+    d1, d3, d4_by_effective_q3_2_2, d6 = k.d1, k.d3, k.d4_by_effective_q3_2_2, k.d6
+    effective_q3_2, highest_a1, highest_a2, highest_a3 = k.effective_q3_2, k.highest_a1, k.highest_a2, k.highest_a3
+    highest_a4, highest_a5, highest_a6, lowest_a1 = k.highest_a4, k.highest_a5, k.highest_a6, k.lowest_a1
+    lowest_a2, lowest_a3, lowest_a4, lowest_a5 = k.lowest_a2, k.lowest_a3, k.lowest_a4, k.lowest_a5
+    lowest_a6, machine_scale_times_free_angle, mid_a1 = k.lowest_a6, k.machine_scale_times_free_angle, k.mid_a1
+    mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
+    offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+    offset_a5, offset_a6, product_in_lost_digits_23 = k.offset_a5, k.offset_a6, k.product_in_lost_digits_23
+    rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
+    single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
+    angle_of_a3_by_effective_q3_2_2 = arctan2(d4_by_effective_q3_2_2 + 0.0, a3_by_effective_q3_2_2 + 0.0)
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
     def branches(
@@ -44,98 +44,114 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)
-        # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
-            return ()
         # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
-            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
+            ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return 8 * (refused[Status.UNREACHABLE],)
-            ahead_q1_before_q1_for_q3 = 0.0
-        # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
-        wrist_y_from_q1 = z - d6 * r33 - d1  # coordinate of the point that the remaining links must reach
+            ahead_q1 = 0.0
+        wrist_x_from_q1_front = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1 = z - d6 * r33 - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
+        reach_front = sqrt(wrist_x_from_q1_front * wrist_x_from_q1_front + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3_front = (a2_plus_effective_q3_2_2 + reach_front) * (a2_plus_effective_q3_2_2 - reach_front)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
-        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
-        refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
+        one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach_front)
+        # sum of both, twice the scale: cosine² + sine² is then 1
+        sum_q3 = one_less_cos_q3_front + one_plus_cos_q3_front
+        divisor_of_cos_q3_front = sum_q3 if sum_q3 > 0.0 else 1.0
+        cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front) / divisor_of_cos_q3_front
+        within_23 = -1.0 <= cos_swing_q3_front <= 1.0
+        lost_digits_23 = (not within_23) and (abs(ahead_q1) <= product_in_lost_digits_23)
+        # digits may be lost
+        if not (not lost_digits_23):
+            return ()
+        wrist_x_from_q1_back = -a1 - ahead_q1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
+        reach_back = sqrt(wrist_x_from_q1_back * wrist_x_from_q1_back + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3_back = (a2_plus_effective_q3_2_2 + reach_back) * (a2_plus_effective_q3_2_2 - reach_back)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach_back)
+        # sum of both, twice the scale: cosine² + sine² is then 1
+        sum_q3 = one_less_cos_q3_back + one_plus_cos_q3_back
+        divisor_of_cos_q3_back = sum_q3 if sum_q3 > 0.0 else 1.0
+        cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back) / divisor_of_cos_q3_back
+        within_23 = -1.0 <= cos_swing_q3_back <= 1.0
+        lost_digits_23 = (not within_23) and (abs(ahead_q1) <= product_in_lost_digits_23)
+        # digits may be lost
+        if not (not lost_digits_23):
+            return ()
+        refusal_front = 0 if -1.0000000000005 <= cos_swing_q3_front <= 1.0000000000005 else 3  # q3: out of reach
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             d3_times_wrist_y = d3 * wrist_y
-            product_in_cos_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_x
-            cos_q1_before_q1_for_q3_front = (product_in_cos_q1_before_q1_for_q3 - d3_times_wrist_y) / divisor_q1
+            ahead_q1_front_times_wrist_x = ahead_q1 * wrist_x
+            cos_q1_front = (ahead_q1_front_times_wrist_x - d3_times_wrist_y) / divisor_q1
             d3_times_wrist_x = d3 * wrist_x
-            product_in_sin_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 * wrist_y
-            sin_q1_before_q1_for_q3_front = (d3_times_wrist_x + product_in_sin_q1_before_q1_for_q3) / divisor_q1
-            cos_q1_before_q1_for_q3_back = (-d3_times_wrist_y - product_in_cos_q1_before_q1_for_q3) / divisor_q1
-            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - product_in_sin_q1_before_q1_for_q3) / divisor_q1
+            ahead_q1_front_times_wrist_y = ahead_q1 * wrist_y
+            sin_q1_front = (ahead_q1_front_times_wrist_y + d3_times_wrist_x) / divisor_q1
+            cos_q1_back = (-ahead_q1_front_times_wrist_x - d3_times_wrist_y) / divisor_q1
+            sin_q1_back = (d3_times_wrist_x - ahead_q1_front_times_wrist_y) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3_front = cos(reference_a1)
-            sin_q1_before_q1_for_q3_front = sin(reference_a1)
-            cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
-            sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
-        axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front) * RADIAN
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3
-        if reach > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(effective_q3 * sin_swing_q3, a2 + effective_q3 * cos_swing_q3)
-            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
-            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
-            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            cos_q1_front = cos(reference_a1)
+            sin_q1_front = sin(reference_a1)
+            cos_q1_back = cos_q1_front
+            sin_q1_back = sin_q1_front
+        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front) * RADIAN
+        sine_square_q3 = one_less_cos_q3_front * one_plus_cos_q3_front  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_front
+        if reach_front > machine_scale_times_free_angle:
+            angle_of_arm_across_q2 = arctan2(effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3_front)
+            angle_of_wrist_z_from_q1 = arctan2(wrist_x_from_q1_front, wrist_z_from_q1)
+            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
+            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             angle_q2_down = reference_a2
             angle_q2_up = reference_a2
         axis_a2_front_down = offset_a2 + angle_q2_down * RADIAN
-        angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3_front)
+        angle_q3 = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3
         axis_a3_front_down = offset_a3 + angle_q3 * RADIAN
-        r13_from_q1 = r13 * cos_q1_before_q1_for_q3_front + r23 * sin_q1_before_q1_for_q3_front
+        r13_from_q1 = r13 * cos_q1_front + r23 * sin_q1_front
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
-        r23_from_q1 = r23 * cos_q1_before_q1_for_q3_front - r13 * sin_q1_before_q1_for_q3_front
+        r33_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
+        r23_from_q1 = r23 * cos_q1_front - r13 * sin_q1_front
         # polar coordinates: the radius at angle q4
-        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        r11_from_q1 = r11 * cos_q1_before_q1_for_q3_front + r21 * sin_q1_before_q1_for_q3_front
-        r12_from_q1 = r12 * cos_q1_before_q1_for_q3_front + r22 * sin_q1_before_q1_for_q3_front
-        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        quotient_in_axis_a5_front_down_down = arctan2(radius_q4, cos_q5) * RADIAN
+        radius_q4 = sqrt(r23_from_q1 * r23_from_q1 + r33_from_q123 * r33_from_q123)
+        r12_from_q1 = r12 * cos_q1_front + r22 * sin_q1_front
+        r11_from_q1 = r11 * cos_q1_front + r21 * sin_q1_front
+        quotient_in_axis_a5_front_down_down = arctan2(radius_q4, r13_from_q1 * cos_q23 + r33 * sin_q23) * RADIAN
         if radius_q4 > 0.1:
-            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+            # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
-            direction_x_q4_down = -r13_from_q123
+            direction_x_q4_down = -r33_from_q123
             direction_y_q4_down = r23_from_q1
-            scaled_r21_from_q1234_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
-            scaled_r22_from_q1234_down = r11_from_q1 * cos_q23 + r31 * sin_q23
+            # cosine and sine of q6 from the r22 and r23 equations
+            direction_x_q6_down = r11_from_q1 * cos_q23 + r31 * sin_q23
+            direction_y_q6_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
             axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
-            axis_a6_front_down_down = (
-                offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
-            )
+            axis_a6_front_down_down = offset_a6 + arctan2(direction_y_q6_down, direction_x_q6_down) * RADIAN
             axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
             axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
             cos_of_reference_a4 = cos(reference_a4)
             sin_of_reference_a4 = sin(reference_a4)
-            r21_from_q1 = r21 * cos_q1_before_q1_for_q3_front - r11 * sin_q1_before_q1_for_q3_front
-            r22_from_q1 = r22 * cos_q1_before_q1_for_q3_front - r12 * sin_q1_before_q1_for_q3_front
-            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+            r22_from_q1 = r22 * cos_q1_front - r12 * sin_q1_front
+            r21_from_q1 = r21 * cos_q1_front - r11 * sin_q1_front
+            # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
             if radius_q4 > 1e-11:
-                direction_x_q4_down = -r13_from_q123
+                direction_x_q4_down = -r33_from_q123
                 direction_y_q4_down = r23_from_q1
                 direction_x_q4_up = -direction_x_q4_down
                 direction_y_q4_up = -r23_from_q1
@@ -144,58 +160,58 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_y_q4_down = sin_of_reference_a4
                 direction_x_q4_up = cos_of_reference_a4
                 direction_y_q4_up = sin_of_reference_a4
-            r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
-            scaled_r21_from_q1234_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r11_from_q123
-            r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
-            scaled_r22_from_q1234_down = -direction_x_q4_down * r22_from_q1 - direction_y_q4_down * r12_from_q123
+            r32_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
+            # cosine and sine of q6 from the r22 and r23 equations
+            direction_x_q6_down = -direction_x_q4_down * r22_from_q1 - direction_y_q4_down * r32_from_q123
+            r31_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
+            direction_y_q6_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r31_from_q123
+            # cosine and sine of q6 from the r22 and r23 equations
             if radius_q4 > 1e-11:
-                scaled_r21_from_q1234_up = -scaled_r21_from_q1234_down
-                scaled_r22_from_q1234_up = -scaled_r22_from_q1234_down
+                direction_x_q6_up = -direction_x_q6_down
+                direction_y_q6_up = -direction_y_q6_down
             else:
-                scaled_r21_from_q1234_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r11_from_q123
-                scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
+                direction_x_q6_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r32_from_q123
+                direction_y_q6_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r31_from_q123
             axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
-            axis_a6_front_down_down = (
-                offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
-            )
+            axis_a6_front_down_down = offset_a6 + arctan2(direction_y_q6_down, direction_x_q6_down) * RADIAN
             if radius_q4 > 1e-11:
                 axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
                 axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
             else:
                 axis_a4_front_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-                axis_a6_front_down_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
+                axis_a6_front_down_up = offset_a6 + arctan2(direction_y_q6_up, direction_x_q6_up) * RADIAN
         axis_a2_front_up = offset_a2 + angle_q2_up * RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3 * RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
+        r33_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         # polar coordinates: the radius at angle q4
-        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        quotient_in_axis_a5_front_up_down = arctan2(radius_q4, cos_q5) * RADIAN
+        radius_q4 = sqrt(r23_from_q1 * r23_from_q1 + r33_from_q123 * r33_from_q123)
+        quotient_in_axis_a5_front_up_down = arctan2(radius_q4, r13_from_q1 * cos_q23 + r33 * sin_q23) * RADIAN
         if radius_q4 > 0.1:
-            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+            # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
-            direction_x_q4_down = -r13_from_q123
+            direction_x_q4_down = -r33_from_q123
             direction_y_q4_down = r23_from_q1
-            scaled_r21_from_q1234_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
-            scaled_r22_from_q1234_down = r11_from_q1 * cos_q23 + r31 * sin_q23
+            # cosine and sine of q6 from the r22 and r23 equations
+            direction_x_q6_down = r11_from_q1 * cos_q23 + r31 * sin_q23
+            direction_y_q6_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
             axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
-            axis_a6_front_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
+            axis_a6_front_up_down = offset_a6 + arctan2(direction_y_q6_down, direction_x_q6_down) * RADIAN
             axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
             axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
             cos_of_reference_a4 = cos(reference_a4)
             sin_of_reference_a4 = sin(reference_a4)
-            r21_from_q1 = r21 * cos_q1_before_q1_for_q3_front - r11 * sin_q1_before_q1_for_q3_front
-            r22_from_q1 = r22 * cos_q1_before_q1_for_q3_front - r12 * sin_q1_before_q1_for_q3_front
-            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+            r22_from_q1 = r22 * cos_q1_front - r12 * sin_q1_front
+            r21_from_q1 = r21 * cos_q1_front - r11 * sin_q1_front
+            # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
             if radius_q4 > 1e-11:
-                direction_x_q4_down = -r13_from_q123
+                direction_x_q4_down = -r33_from_q123
                 direction_y_q4_down = r23_from_q1
                 direction_x_q4_up = -direction_x_q4_down
                 direction_y_q4_up = -r23_from_q1
@@ -204,87 +220,76 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_y_q4_down = sin_of_reference_a4
                 direction_x_q4_up = cos_of_reference_a4
                 direction_y_q4_up = sin_of_reference_a4
-            r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
-            scaled_r21_from_q1234_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r11_from_q123
-            r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
-            scaled_r22_from_q1234_down = -direction_x_q4_down * r22_from_q1 - direction_y_q4_down * r12_from_q123
+            r32_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
+            # cosine and sine of q6 from the r22 and r23 equations
+            direction_x_q6_down = -direction_x_q4_down * r22_from_q1 - direction_y_q4_down * r32_from_q123
+            r31_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
+            direction_y_q6_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r31_from_q123
+            # cosine and sine of q6 from the r22 and r23 equations
             if radius_q4 > 1e-11:
-                scaled_r21_from_q1234_up = -scaled_r21_from_q1234_down
-                scaled_r22_from_q1234_up = -scaled_r22_from_q1234_down
+                direction_x_q6_up = -direction_x_q6_down
+                direction_y_q6_up = -direction_y_q6_down
             else:
-                scaled_r21_from_q1234_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r11_from_q123
-                scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
+                direction_x_q6_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r32_from_q123
+                direction_y_q6_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r31_from_q123
             axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
-            axis_a6_front_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
+            axis_a6_front_up_down = offset_a6 + arctan2(direction_y_q6_down, direction_x_q6_down) * RADIAN
             if radius_q4 > 1e-11:
                 axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
                 axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
             else:
                 axis_a4_front_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-                axis_a6_front_up_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
-        # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
-        # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
-        # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
-        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
-        refusal_back = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back) * RADIAN
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3
-        if reach > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(effective_q3 * sin_swing_q3, a2 + effective_q3 * cos_swing_q3)
-            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
-            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
-            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+                axis_a6_front_up_up = offset_a6 + arctan2(direction_y_q6_up, direction_x_q6_up) * RADIAN
+        refusal_back = 0 if -1.0000000000005 <= cos_swing_q3_back <= 1.0000000000005 else 3  # q3: out of reach
+        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back) * RADIAN
+        sine_square_q3 = one_less_cos_q3_back * one_plus_cos_q3_back  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_back
+        if reach_back > machine_scale_times_free_angle:
+            angle_of_arm_across_q2 = arctan2(effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3_back)
+            angle_of_wrist_z_from_q1 = arctan2(wrist_x_from_q1_back, wrist_z_from_q1)
+            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
+            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             angle_q2_down = reference_a2
             angle_q2_up = reference_a2
         axis_a2_back_down = offset_a2 + angle_q2_down * RADIAN
-        angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3_back)
+        angle_q3 = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3
         axis_a3_back_down = offset_a3 + angle_q3 * RADIAN
-        r13_from_q1 = r13 * cos_q1_before_q1_for_q3_back + r23 * sin_q1_before_q1_for_q3_back
+        r13_from_q1 = r13 * cos_q1_back + r23 * sin_q1_back
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
-        r23_from_q1 = r23 * cos_q1_before_q1_for_q3_back - r13 * sin_q1_before_q1_for_q3_back
+        r33_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
+        r23_from_q1 = r23 * cos_q1_back - r13 * sin_q1_back
         # polar coordinates: the radius at angle q4
-        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        r11_from_q1 = r11 * cos_q1_before_q1_for_q3_back + r21 * sin_q1_before_q1_for_q3_back
-        r12_from_q1 = r12 * cos_q1_before_q1_for_q3_back + r22 * sin_q1_before_q1_for_q3_back
-        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        quotient_in_axis_a5_back_down_down = arctan2(radius_q4, cos_q5) * RADIAN
+        radius_q4 = sqrt(r23_from_q1 * r23_from_q1 + r33_from_q123 * r33_from_q123)
+        r12_from_q1 = r12 * cos_q1_back + r22 * sin_q1_back
+        r11_from_q1 = r11 * cos_q1_back + r21 * sin_q1_back
+        quotient_in_axis_a5_back_down_down = arctan2(radius_q4, r13_from_q1 * cos_q23 + r33 * sin_q23) * RADIAN
         if radius_q4 > 0.1:
-            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+            # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
-            direction_x_q4_down = -r13_from_q123
+            direction_x_q4_down = -r33_from_q123
             direction_y_q4_down = r23_from_q1
-            scaled_r21_from_q1234_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
-            scaled_r22_from_q1234_down = r11_from_q1 * cos_q23 + r31 * sin_q23
+            # cosine and sine of q6 from the r22 and r23 equations
+            direction_x_q6_down = r11_from_q1 * cos_q23 + r31 * sin_q23
+            direction_y_q6_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
             axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
-            axis_a6_back_down_down = (
-                offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
-            )
+            axis_a6_back_down_down = offset_a6 + arctan2(direction_y_q6_down, direction_x_q6_down) * RADIAN
             axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
             axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
             cos_of_reference_a4 = cos(reference_a4)
             sin_of_reference_a4 = sin(reference_a4)
-            r21_from_q1 = r21 * cos_q1_before_q1_for_q3_back - r11 * sin_q1_before_q1_for_q3_back
-            r22_from_q1 = r22 * cos_q1_before_q1_for_q3_back - r12 * sin_q1_before_q1_for_q3_back
-            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+            r22_from_q1 = r22 * cos_q1_back - r12 * sin_q1_back
+            r21_from_q1 = r21 * cos_q1_back - r11 * sin_q1_back
+            # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
             if radius_q4 > 1e-11:
-                direction_x_q4_down = -r13_from_q123
+                direction_x_q4_down = -r33_from_q123
                 direction_y_q4_down = r23_from_q1
                 direction_x_q4_up = -direction_x_q4_down
                 direction_y_q4_up = -r23_from_q1
@@ -293,58 +298,58 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_y_q4_down = sin_of_reference_a4
                 direction_x_q4_up = cos_of_reference_a4
                 direction_y_q4_up = sin_of_reference_a4
-            r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
-            scaled_r21_from_q1234_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r11_from_q123
-            r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
-            scaled_r22_from_q1234_down = -direction_x_q4_down * r22_from_q1 - direction_y_q4_down * r12_from_q123
+            r32_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
+            # cosine and sine of q6 from the r22 and r23 equations
+            direction_x_q6_down = -direction_x_q4_down * r22_from_q1 - direction_y_q4_down * r32_from_q123
+            r31_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
+            direction_y_q6_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r31_from_q123
+            # cosine and sine of q6 from the r22 and r23 equations
             if radius_q4 > 1e-11:
-                scaled_r21_from_q1234_up = -scaled_r21_from_q1234_down
-                scaled_r22_from_q1234_up = -scaled_r22_from_q1234_down
+                direction_x_q6_up = -direction_x_q6_down
+                direction_y_q6_up = -direction_y_q6_down
             else:
-                scaled_r21_from_q1234_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r11_from_q123
-                scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
+                direction_x_q6_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r32_from_q123
+                direction_y_q6_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r31_from_q123
             axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
-            axis_a6_back_down_down = (
-                offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
-            )
+            axis_a6_back_down_down = offset_a6 + arctan2(direction_y_q6_down, direction_x_q6_down) * RADIAN
             if radius_q4 > 1e-11:
                 axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
                 axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
             else:
                 axis_a4_back_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-                axis_a6_back_down_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
+                axis_a6_back_down_up = offset_a6 + arctan2(direction_y_q6_up, direction_x_q6_up) * RADIAN
         axis_a2_back_up = offset_a2 + angle_q2_up * RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3 * RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
+        r33_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         # polar coordinates: the radius at angle q4
-        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
-        quotient_in_axis_a5_back_up_down = arctan2(radius_q4, cos_q5) * RADIAN
+        radius_q4 = sqrt(r23_from_q1 * r23_from_q1 + r33_from_q123 * r33_from_q123)
+        quotient_in_axis_a5_back_up_down = arctan2(radius_q4, r13_from_q1 * cos_q23 + r33 * sin_q23) * RADIAN
         if radius_q4 > 0.1:
-            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+            # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
-            direction_x_q4_down = -r13_from_q123
+            direction_x_q4_down = -r33_from_q123
             direction_y_q4_down = r23_from_q1
-            scaled_r21_from_q1234_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
-            scaled_r22_from_q1234_down = r11_from_q1 * cos_q23 + r31 * sin_q23
+            # cosine and sine of q6 from the r22 and r23 equations
+            direction_x_q6_down = r11_from_q1 * cos_q23 + r31 * sin_q23
+            direction_y_q6_down = -(r12_from_q1 * cos_q23 + r32 * sin_q23)
             axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
-            axis_a6_back_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
+            axis_a6_back_up_down = offset_a6 + arctan2(direction_y_q6_down, direction_x_q6_down) * RADIAN
             axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
             axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
         else:
             reference_a4 = (ref_a4 - offset_a4) * DEGREE
             cos_of_reference_a4 = cos(reference_a4)
             sin_of_reference_a4 = sin(reference_a4)
-            r21_from_q1 = r21 * cos_q1_before_q1_for_q3_back - r11 * sin_q1_before_q1_for_q3_back
-            r22_from_q1 = r22 * cos_q1_before_q1_for_q3_back - r12 * sin_q1_before_q1_for_q3_back
-            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+            r22_from_q1 = r22 * cos_q1_back - r12 * sin_q1_back
+            r21_from_q1 = r21 * cos_q1_back - r11 * sin_q1_back
+            # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
             if radius_q4 > 1e-11:
-                direction_x_q4_down = -r13_from_q123
+                direction_x_q4_down = -r33_from_q123
                 direction_y_q4_down = r23_from_q1
                 direction_x_q4_up = -direction_x_q4_down
                 direction_y_q4_up = -r23_from_q1
@@ -353,24 +358,26 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_y_q4_down = sin_of_reference_a4
                 direction_x_q4_up = cos_of_reference_a4
                 direction_y_q4_up = sin_of_reference_a4
-            r11_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
-            scaled_r21_from_q1234_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r11_from_q123
-            r12_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
-            scaled_r22_from_q1234_down = -direction_x_q4_down * r22_from_q1 - direction_y_q4_down * r12_from_q123
+            r32_from_q123 = r32 * cos_q23 - r12_from_q1 * sin_q23
+            # cosine and sine of q6 from the r22 and r23 equations
+            direction_x_q6_down = -direction_x_q4_down * r22_from_q1 - direction_y_q4_down * r32_from_q123
+            r31_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
+            direction_y_q6_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r31_from_q123
+            # cosine and sine of q6 from the r22 and r23 equations
             if radius_q4 > 1e-11:
-                scaled_r21_from_q1234_up = -scaled_r21_from_q1234_down
-                scaled_r22_from_q1234_up = -scaled_r22_from_q1234_down
+                direction_x_q6_up = -direction_x_q6_down
+                direction_y_q6_up = -direction_y_q6_down
             else:
-                scaled_r21_from_q1234_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r11_from_q123
-                scaled_r22_from_q1234_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r12_from_q123
+                direction_x_q6_up = -direction_x_q4_up * r22_from_q1 - direction_y_q4_up * r32_from_q123
+                direction_y_q6_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r31_from_q123
             axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
-            axis_a6_back_up_down = offset_a6 + arctan2(scaled_r21_from_q1234_down, scaled_r22_from_q1234_down) * RADIAN
+            axis_a6_back_up_down = offset_a6 + arctan2(direction_y_q6_down, direction_x_q6_down) * RADIAN
             if radius_q4 > 1e-11:
                 axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
                 axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
             else:
                 axis_a4_back_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
-                axis_a6_back_up_up = offset_a6 + arctan2(scaled_r21_from_q1234_up, scaled_r22_from_q1234_up) * RADIAN
+                axis_a6_back_up_up = offset_a6 + arctan2(direction_y_q6_up, direction_x_q6_up) * RADIAN
         return (
             (
                 axis_a1_front,
@@ -464,106 +471,98 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)
-        # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
-            return ()
         # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
-            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1) * sigma_arm
+            ahead_q1 = sqrt(ahead_squared_q1) * sigma_arm
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return None
-            ahead_q1_before_q1_for_q3 = 0.0
-        wrist_y_from_q1 = z - d6 * r33 - d1  # coordinate of the point that the remaining links must reach
-        # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
+            ahead_q1 = 0.0
+        wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1 = z - d6 * r33 - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
+        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach)
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        within_23 = -1.0 <= cos_swing_q3 <= 1.0
+        lost_digits_23 = (not within_23) and (abs(ahead_q1) <= product_in_lost_digits_23)
+        # digits may be lost
+        if not (not lost_digits_23):
+            return ()
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_x - d3 * wrist_y) / divisor_q1
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * wrist_y + d3 * wrist_x) / divisor_q1
+            cos_q1 = (ahead_q1 * wrist_x - d3 * wrist_y) / divisor_q1
+            sin_q1 = (ahead_q1 * wrist_y + d3 * wrist_x) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(reference_a1)
-            sin_q1_before_q1_for_q3 = sin(reference_a1)
+            cos_q1 = cos(reference_a1)
+            sin_q1 = sin(reference_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         if reach > machine_scale_times_free_angle:
-            angle_q2 = arctan2(-effective_q3 * sin_swing_q3, a2 + effective_q3 * cos_swing_q3) - arctan2(
-                wrist_x_from_q1, wrist_y_from_q1
+            angle_q2 = arctan2(-effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3) - arctan2(
+                wrist_x_from_q1, wrist_z_from_q1
             )
         else:
             angle_q2 = (ref_a2 - offset_a2) * DEGREE
-        angle_q3 = angle_of_a3_by_effective_q3 + arctan2(sin_swing_q3, cos_swing_q3)
-        r13_from_q1 = r13 * cos_q1_before_q1_for_q3 + r23 * sin_q1_before_q1_for_q3
+        angle_q3 = angle_of_a3_by_effective_q3_2_2 + arctan2(sin_swing_q3, cos_swing_q3)
+        r13_from_q1 = r13 * cos_q1 + r23 * sin_q1
         angle_q23 = angle_q2 + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
-        r23_from_q1 = r23 * cos_q1_before_q1_for_q3 - r13 * sin_q1_before_q1_for_q3
+        r33_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
+        r23_from_q1 = r23 * cos_q1 - r13 * sin_q1
         # polar coordinates: the radius at angle q4
-        radius_q4 = sqrt(r13_from_q123 * r13_from_q123 + r23_from_q1 * r23_from_q1)
-        # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+        radius_q4 = sqrt(r23_from_q1 * r23_from_q1 + r33_from_q123 * r33_from_q123)
+        # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
         # reference
+        # cosine and sine of q6 from the r22 and r23 equations
         if radius_q4 > 0.1:
-            direction_x_q4 = -sigma_hand * r13_from_q123
+            direction_x_q4 = -sigma_hand * r33_from_q123
             direction_y_q4 = sigma_hand * r23_from_q1
-            scaled_r21_from_q1234 = -sigma_hand * (
-                (r12 * cos_q1_before_q1_for_q3 + r22 * sin_q1_before_q1_for_q3) * cos_q23 + r32 * sin_q23
-            )
-            scaled_r22_from_q1234 = sigma_hand * (
-                (r11 * cos_q1_before_q1_for_q3 + r21 * sin_q1_before_q1_for_q3) * cos_q23 + r31 * sin_q23
-            )
+            direction_x_q6 = sigma_hand * ((r11 * cos_q1 + r21 * sin_q1) * cos_q23 + r31 * sin_q23)
+            direction_y_q6 = -sigma_hand * ((r12 * cos_q1 + r22 * sin_q1) * cos_q23 + r32 * sin_q23)
         else:
-            # polar coordinates: angle q4 from the r13 and r23 equations; at a singularity: the angle of the
+            # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
             if radius_q4 > 1e-11:
-                direction_x_q4 = -sigma_hand * r13_from_q123
+                direction_x_q4 = -sigma_hand * r33_from_q123
                 direction_y_q4 = sigma_hand * r23_from_q1
             else:
                 reference_a4 = (ref_a4 - offset_a4) * DEGREE
                 direction_x_q4 = cos(reference_a4)
                 direction_y_q4 = sin(reference_a4)
-            r11_from_q123 = r31 * cos_q23 - (r11 * cos_q1_before_q1_for_q3 + r21 * sin_q1_before_q1_for_q3) * sin_q23
-            scaled_r21_from_q1234 = (
-                -(r21 * cos_q1_before_q1_for_q3 - r11 * sin_q1_before_q1_for_q3) * direction_x_q4
-                - direction_y_q4 * r11_from_q123
-            )
-            r12_from_q123 = r32 * cos_q23 - (r12 * cos_q1_before_q1_for_q3 + r22 * sin_q1_before_q1_for_q3) * sin_q23
-            scaled_r22_from_q1234 = (
-                -(r22 * cos_q1_before_q1_for_q3 - r12 * sin_q1_before_q1_for_q3) * direction_x_q4
-                - direction_y_q4 * r12_from_q123
-            )
-        cos_q5 = r13_from_q1 * cos_q23 + r33 * sin_q23  # cosine and sine of q5 from the q4 radius and r23 equations
+            r32_from_q123 = r32 * cos_q23 - (r12 * cos_q1 + r22 * sin_q1) * sin_q23
+            direction_x_q6 = -(r22 * cos_q1 - r12 * sin_q1) * direction_x_q4 - direction_y_q4 * r32_from_q123
+            r31_from_q123 = r31 * cos_q23 - (r11 * cos_q1 + r21 * sin_q1) * sin_q23
+            direction_y_q6 = -(r21 * cos_q1 - r11 * sin_q1) * direction_x_q4 - direction_y_q4 * r31_from_q123
+        axis_a5 = offset_a5 + arctan2(sigma_hand * radius_q4, r13_from_q1 * cos_q23 + r33 * sin_q23) * RADIAN
         if no_offsets:
             return (
-                arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
+                arctan2(sin_q1, cos_q1) * RADIAN,
                 angle_q2 * RADIAN,
                 angle_q3 * RADIAN,
                 arctan2(direction_y_q4, direction_x_q4) * RADIAN,
-                arctan2(sigma_hand * radius_q4, cos_q5) * RADIAN,
-                arctan2(scaled_r21_from_q1234, scaled_r22_from_q1234) * RADIAN,
+                axis_a5,
+                arctan2(direction_y_q6, direction_x_q6) * RADIAN,
             )
         return (
-            offset_a1 + arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
+            offset_a1 + arctan2(sin_q1, cos_q1) * RADIAN,
             offset_a2 + angle_q2 * RADIAN,
             offset_a3 + angle_q3 * RADIAN,
             offset_a4 + arctan2(direction_y_q4, direction_x_q4) * RADIAN,
-            offset_a5 + arctan2(sigma_hand * radius_q4, cos_q5) * RADIAN,
-            offset_a6 + arctan2(scaled_r21_from_q1234, scaled_r22_from_q1234) * RADIAN,
+            axis_a5,
+            offset_a6 + arctan2(direction_y_q6, direction_x_q6) * RADIAN,
         )
 
     def finish(found: tuple[Reals | int, ...], reference: Reals) -> tuple[Reals | int, ...]:

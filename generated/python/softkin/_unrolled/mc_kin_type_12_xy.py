@@ -22,17 +22,16 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
     link_length_1_plus_link_length_2 = k.link_length_1_plus_link_length_2
     link_length_1_times_shortest_link, link_length_2 = k.link_length_1_times_shortest_link, k.link_length_2
-    link_length_3, link_length_3_by_link_length_2 = k.link_length_3, k.link_length_3_by_link_length_2
-    link_length_4_plus_link_length_5 = k.link_length_4_plus_link_length_5
+    link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
+    link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
+    link_length_4_plus_link_length_5, link_length_5 = k.link_length_4_plus_link_length_5, k.link_length_5
     link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
     link_length_5_times_shortest_link, lowest_a1 = k.link_length_5_times_shortest_link, k.lowest_a1
     lowest_a2, machine_scale_times_plane, mid_a1 = k.lowest_a2, k.machine_scale_times_plane, k.mid_a1
     mid_a2, min_type2_margin, offset_a1, offset_a2 = k.mid_a2, k.min_type2_margin, k.offset_a1, k.offset_a2
-    quotient_in_scaled_pivot_rear_y_2 = k.quotient_in_scaled_pivot_rear_y_2
+    one_by_link_length_2, product_in_branch_w = k.one_by_link_length_2, k.product_in_branch_w
     quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
     single_a2, sum_in_pivot_rear_x, swap_xy = k.single_a2, k.sum_in_pivot_rear_x, k.swap_xy
-    quotient_in_along_a2_left = link_length_1 * (link_length_2 + link_length_3) / link_length_2
-    quotient_in_scaled_pivot_rear_y_left_left = link_length_2 * sum_in_pivot_rear_x / link_length_3
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -76,13 +75,14 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1_right_times_span_upper_y = span_upper_y * sin_swing_a1
         sin_a1 = (cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y) / divisor_a1
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1
+        link_length_2_times_span_rear_x = link_length_2 * span_rear_x
+        along_a2 = (link_length_2_times_span_rear_x - product_in_branch_w * sin_a1) * one_by_link_length_2
         cos_swing_a1_times_span_upper_y = span_upper_y * cos_swing_a1
         sin_swing_a1_right_times_span_upper_x = span_upper_x * sin_swing_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (cos_swing_a1_times_span_upper_y + sin_swing_a1_right_times_span_upper_x) / divisor_a1
-        span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        across_a2 = quotient_in_along_a2_left * cos_a1 - span_rear_y
+        link_length_2_times_span_rear_y = (-link_length_3_by_link_length_2 * span_upper_y) * link_length_2
+        across_a2 = one_by_link_length_2 * (product_in_branch_w * cos_a1 - link_length_2_times_span_rear_y)
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -112,44 +112,34 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if effective_a2 > link_length_5_times_shortest_link and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
-            product_in_scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y_left_left * sin_a1
-            # rod rear: centre about which it swings
-            scaled_pivot_rear_x_left = (
-                product_in_scaled_pivot_rear_x - quotient_in_scaled_pivot_rear_y_2 * cos_a2_left_left
-            )
-            product_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y_left_left * cos_a1
-            # rod rear: centre about which it swings
-            scaled_pivot_rear_x_right = (
-                product_in_scaled_pivot_rear_x - quotient_in_scaled_pivot_rear_y_2 * cos_a2_left_right
-            )
             if swap_xy:
                 centre_1_x = -link_length_1 * cos_a1
                 centre_1_y = pivot_upper_x
-                centre_2_x_left = -(
-                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_left_left
-                )
-                centre_2_y_left = -scaled_pivot_rear_x_left
-                centre_2_x_right = -(
-                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_left_right
-                )
-                centre_2_y_right = -scaled_pivot_rear_x_right
             else:
                 centre_1_x = pivot_upper_x
                 centre_1_y = -link_length_1 * cos_a1
-                centre_2_x_left = -scaled_pivot_rear_x_left
-                centre_2_y_left = -(
-                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_left_left
-                )
-                centre_2_x_right = -scaled_pivot_rear_x_right
-                centre_2_y_right = -(
-                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_left_right
-                )
             rod_1_x = x - centre_1_x
             rod_1_y = y - centre_1_y
+            sum_in_pivot_rear_x_times_sin_a1 = sum_in_pivot_rear_x * sin_a1
+            # rod rear: centre about which it swings
+            pivot_rear_x_left = sum_in_pivot_rear_x_times_sin_a1 - link_length_5 * cos_a2_left_left
+            sum_in_pivot_rear_x_times_cos_a1 = sum_in_pivot_rear_x * cos_a1
+            pivot_rear_y_left = sum_in_pivot_rear_x_times_cos_a1 + link_length_5 * sin_a2_left_left
+            centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left) * link_length_2_by_link_length_3
+            centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left) * link_length_2_by_link_length_3
             type2_arms_aligned_left = quotient_in_type2_arms_aligned * (
                 (y - centre_2_y_left) * rod_1_x - (x - centre_2_x_left) * rod_1_y
             )
             refusal_left_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
+            # rod rear: centre about which it swings
+            pivot_rear_x_right = sum_in_pivot_rear_x_times_sin_a1 - link_length_5 * cos_a2_left_right
+            pivot_rear_y_right = sum_in_pivot_rear_x_times_cos_a1 + link_length_5 * sin_a2_left_right
+            centre_2_x_right = (
+                -pivot_rear_y_right if swap_xy else -pivot_rear_x_right
+            ) * link_length_2_by_link_length_3
+            centre_2_y_right = (
+                -pivot_rear_x_right if swap_xy else -pivot_rear_y_right
+            ) * link_length_2_by_link_length_3
             type2_arms_aligned_right = quotient_in_type2_arms_aligned * (
                 (y - centre_2_y_right) * rod_1_x - (x - centre_2_x_right) * rod_1_y
             )
@@ -159,10 +149,10 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_right = 3
         axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         sin_a1 = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y) / divisor_a1
-        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1
+        along_a2 = (link_length_2_times_span_rear_x - product_in_branch_w * sin_a1) * one_by_link_length_2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x) / divisor_a1
-        across_a2 = quotient_in_along_a2_left * cos_a1 - span_rear_y
+        across_a2 = one_by_link_length_2 * (product_in_branch_w * cos_a1 - link_length_2_times_span_rear_y)
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -192,44 +182,34 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: in the other assembly mode, or too close to a type 2 singularity
         if effective_a2 > link_length_5_times_shortest_link and -1.0000000000005 <= cos_swing_a2 <= 1.0000000000005:
             pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
-            product_in_scaled_pivot_rear_x = quotient_in_scaled_pivot_rear_y_left_left * sin_a1
-            # rod rear: centre about which it swings
-            scaled_pivot_rear_x_left = (
-                product_in_scaled_pivot_rear_x - quotient_in_scaled_pivot_rear_y_2 * cos_a2_right_left
-            )
-            product_in_scaled_pivot_rear_y = quotient_in_scaled_pivot_rear_y_left_left * cos_a1
-            # rod rear: centre about which it swings
-            scaled_pivot_rear_x_right = (
-                product_in_scaled_pivot_rear_x - quotient_in_scaled_pivot_rear_y_2 * cos_a2_right_right
-            )
             if swap_xy:
                 centre_1_x = -link_length_1 * cos_a1
                 centre_1_y = pivot_upper_x
-                centre_2_x_left = -(
-                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_right_left
-                )
-                centre_2_y_left = -scaled_pivot_rear_x_left
-                centre_2_x_right = -(
-                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_right_right
-                )
-                centre_2_y_right = -scaled_pivot_rear_x_right
             else:
                 centre_1_x = pivot_upper_x
                 centre_1_y = -link_length_1 * cos_a1
-                centre_2_x_left = -scaled_pivot_rear_x_left
-                centre_2_y_left = -(
-                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_right_left
-                )
-                centre_2_x_right = -scaled_pivot_rear_x_right
-                centre_2_y_right = -(
-                    product_in_scaled_pivot_rear_y + quotient_in_scaled_pivot_rear_y_2 * sin_a2_right_right
-                )
             rod_1_x = x - centre_1_x
             rod_1_y = y - centre_1_y
+            sum_in_pivot_rear_x_times_sin_a1 = sum_in_pivot_rear_x * sin_a1
+            # rod rear: centre about which it swings
+            pivot_rear_x_left = sum_in_pivot_rear_x_times_sin_a1 - link_length_5 * cos_a2_right_left
+            sum_in_pivot_rear_x_times_cos_a1 = sum_in_pivot_rear_x * cos_a1
+            pivot_rear_y_left = sum_in_pivot_rear_x_times_cos_a1 + link_length_5 * sin_a2_right_left
+            centre_2_x_left = (-pivot_rear_y_left if swap_xy else -pivot_rear_x_left) * link_length_2_by_link_length_3
+            centre_2_y_left = (-pivot_rear_x_left if swap_xy else -pivot_rear_y_left) * link_length_2_by_link_length_3
             type2_arms_aligned_left = quotient_in_type2_arms_aligned * (
                 (y - centre_2_y_left) * rod_1_x - (x - centre_2_x_left) * rod_1_y
             )
             refusal_right_left = 0 if type2_arms_aligned_left >= min_type2_margin else 3
+            # rod rear: centre about which it swings
+            pivot_rear_x_right = sum_in_pivot_rear_x_times_sin_a1 - link_length_5 * cos_a2_right_right
+            pivot_rear_y_right = sum_in_pivot_rear_x_times_cos_a1 + link_length_5 * sin_a2_right_right
+            centre_2_x_right = (
+                -pivot_rear_y_right if swap_xy else -pivot_rear_x_right
+            ) * link_length_2_by_link_length_3
+            centre_2_y_right = (
+                -pivot_rear_x_right if swap_xy else -pivot_rear_y_right
+            ) * link_length_2_by_link_length_3
             type2_arms_aligned_right = quotient_in_type2_arms_aligned * (
                 (y - centre_2_y_right) * rod_1_x - (x - centre_2_x_right) * rod_1_y
             )
@@ -291,10 +271,12 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
         sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = span_rear_x - quotient_in_along_a2_left * sin_a1
+        along_a2 = (link_length_2 * span_rear_x - product_in_branch_w * sin_a1) * one_by_link_length_2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
-        across_a2 = quotient_in_along_a2_left * cos_a1 - (-link_length_3_by_link_length_2 * span_upper_y)
+        across_a2 = one_by_link_length_2 * (
+            product_in_branch_w * cos_a1 - (-link_length_3_by_link_length_2 * span_upper_y) * link_length_2
+        )
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
@@ -316,29 +298,22 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             return None
         pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
+        if swap_xy:
+            centre_1_x = -link_length_1 * cos_a1
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = -link_length_1 * cos_a1
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_w / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
-        scaled_pivot_rear_x = (
-            quotient_in_scaled_pivot_rear_y_left_left * sin_a1 - quotient_in_scaled_pivot_rear_y_2 * cos_a2
-        )
+        pivot_rear_x = sum_in_pivot_rear_x * sin_a1 - link_length_5 * cos_a2
         sin_a2 = (across_a2 * cos_swing_a2 + along_a2 * sin_swing_a2) / divisor_a2
-        if swap_xy:
-            centre_1_x = -link_length_1 * cos_a1
-            centre_1_y = pivot_upper_x
-            centre_2_x = -(
-                quotient_in_scaled_pivot_rear_y_left_left * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
-            )
-            centre_2_y = -scaled_pivot_rear_x
-        else:
-            centre_1_x = pivot_upper_x
-            centre_1_y = -link_length_1 * cos_a1
-            centre_2_x = -scaled_pivot_rear_x
-            centre_2_y = -(
-                quotient_in_scaled_pivot_rear_y_left_left * cos_a1 + quotient_in_scaled_pivot_rear_y_2 * sin_a2
-            )
+        pivot_rear_y = sum_in_pivot_rear_x * cos_a1 + link_length_5 * sin_a2
+        centre_2_x = (-pivot_rear_y if swap_xy else -pivot_rear_x) * link_length_2_by_link_length_3
+        centre_2_y = (-pivot_rear_x if swap_xy else -pivot_rear_y) * link_length_2_by_link_length_3
         type2_arms_aligned = (
             (x - centre_1_x) * (y - centre_2_y) - (y - centre_1_y) * (x - centre_2_x)
         ) * quotient_in_type2_arms_aligned

@@ -23,7 +23,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
     machine_scale_times_free_angle, offset_a1 = k.machine_scale_times_free_angle, k.offset_a1
     offset_a2, offset_a3, offset_a4 = k.offset_a2, k.offset_a3, k.offset_a4
-    quotient_in_cos_swing_a3_from_a2 = k.quotient_in_cos_swing_a3_from_a2
+    quotient_in_closed_cos_swing_a3_from_a2 = k.quotient_in_closed_cos_swing_a3_from_a2
     shoulder_offset_plus_wrist_offset_x = k.shoulder_offset_plus_wrist_offset_x
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4))
 
@@ -56,7 +56,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         cos_swing_a3_from_a2_front = (
             one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
-        ) * quotient_in_cos_swing_a3_from_a2
+        ) * quotient_in_closed_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
         refusal_front = 0 if -1.0000000000005 <= cos_swing_a3_from_a2_front <= 1.0000000000005 else 3
         # sine squared, times the squared scale
@@ -81,7 +81,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         cos_swing_a3_from_a2_back = (
             one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
-        ) * quotient_in_cos_swing_a3_from_a2
+        ) * quotient_in_closed_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
         refusal_back = 0 if -1.0000000000005 <= cos_swing_a3_from_a2_back <= 1.0000000000005 else 3
         # a3 from the sum a3_from_a2 of angles about parallel axes
@@ -204,7 +204,9 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach) * (
             link_length_1_plus_link_length_2 - reach
         )
-        cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2) * quotient_in_cos_swing_a3_from_a2
+        cos_swing_a3_from_a2 = (
+            one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
+        ) * quotient_in_closed_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005):
             return None

@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    a1, a2, a2_minus_effective_q3_2 = k.a1, k.a2, k.a2_minus_effective_q3_2
-    a2_plus_effective_q3_2, a3_by_effective_q3_2, d1 = k.a2_plus_effective_q3_2, k.a3_by_effective_q3_2, k.d1
-    d3, d4_by_effective_q3_2, effective_q3_2 = k.d3, k.d4_by_effective_q3_2, k.effective_q3_2
+    a1, a2, a2_minus_effective_q3_2_2 = k.a1, k.a2, k.a2_minus_effective_q3_2_2
+    a2_plus_effective_q3_2_2, a3_by_effective_q3_2_2 = k.a2_plus_effective_q3_2_2, k.a3_by_effective_q3_2_2
+    d1, d3, d4_by_effective_q3_2_2, effective_q3_2 = k.d1, k.d3, k.d4_by_effective_q3_2_2, k.effective_q3_2
     highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
     lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
-    machine_scale_squared_times_plane = k.machine_scale_squared_times_plane
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-    rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-    angle_of_a3_by_effective_q3_2 = arctan2(d4_by_effective_q3_2 + 0.0, a3_by_effective_q3_2 + 0.0)
+    product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
+    single_a2, single_a3 = k.single_a2, k.single_a3
+    angle_of_a3_by_effective_q3_2_2 = arctan2(d4_by_effective_q3_2_2 + 0.0, a3_by_effective_q3_2_2 + 0.0)
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -39,111 +39,118 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)
-        # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
-            return ()
         # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
-            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
+            ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return 4 * (refused[Status.UNREACHABLE],)
-            ahead_q1_before_q1_for_q3 = 0.0
-        # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
-        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
+            ahead_q1 = 0.0
+        wrist_x_from_q1_front = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
+        reach_front = sqrt(wrist_x_from_q1_front * wrist_x_from_q1_front + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3_front = (a2_plus_effective_q3_2_2 + reach_front) * (a2_plus_effective_q3_2_2 - reach_front)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
-        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
-        refusal_front = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
+        one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach_front)
+        # sum of both, twice the scale: cosine² + sine² is then 1
+        sum_q3 = one_less_cos_q3_front + one_plus_cos_q3_front
+        divisor_of_cos_q3_front = sum_q3 if sum_q3 > 0.0 else 1.0
+        cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front) / divisor_of_cos_q3_front
+        within_19 = -1.0 <= cos_swing_q3_front <= 1.0
+        lost_digits_19 = (not within_19) and (abs(ahead_q1) <= product_in_lost_digits_19)
+        # digits may be lost
+        if not (not lost_digits_19):
+            return ()
+        wrist_x_from_q1_back = -a1 - ahead_q1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
+        reach_back = sqrt(wrist_x_from_q1_back * wrist_x_from_q1_back + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3_back = (a2_plus_effective_q3_2_2 + reach_back) * (a2_plus_effective_q3_2_2 - reach_back)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach_back)
+        # sum of both, twice the scale: cosine² + sine² is then 1
+        sum_q3 = one_less_cos_q3_back + one_plus_cos_q3_back
+        divisor_of_cos_q3_back = sum_q3 if sum_q3 > 0.0 else 1.0
+        cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back) / divisor_of_cos_q3_back
+        within_19 = -1.0 <= cos_swing_q3_back <= 1.0
+        lost_digits_19 = (not within_19) and (abs(ahead_q1) <= product_in_lost_digits_19)
+        # digits may be lost
+        if not (not lost_digits_19):
+            return ()
+        refusal_front = 0 if -1.0000000000005 <= cos_swing_q3_front <= 1.0000000000005 else 3  # q3: out of reach
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
             d3_times_y = d3 * y
-            ahead_q1_before_q1_for_q3_front_times_x = ahead_q1_before_q1_for_q3 * x
-            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_x - d3_times_y) / divisor_q1
+            ahead_q1_front_times_x = ahead_q1 * x
+            cos_q1_front = (ahead_q1_front_times_x - d3_times_y) / divisor_q1
             d3_times_x = d3 * x
-            ahead_q1_before_q1_for_q3_front_times_y = ahead_q1_before_q1_for_q3 * y
-            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front_times_y + d3_times_x) / divisor_q1
-            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front_times_x - d3_times_y) / divisor_q1
-            sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_front_times_y) / divisor_q1
+            ahead_q1_front_times_y = ahead_q1 * y
+            sin_q1_front = (ahead_q1_front_times_y + d3_times_x) / divisor_q1
+            cos_q1_back = (-ahead_q1_front_times_x - d3_times_y) / divisor_q1
+            sin_q1_back = (d3_times_x - ahead_q1_front_times_y) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3_front = cos(reference_a1)
-            sin_q1_before_q1_for_q3_front = sin(reference_a1)
-            cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
-            sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
-        axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front) * RADIAN
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3
-        if reach > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3)
-            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
-            angle_q2_front_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
-            angle_q2_front_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            cos_q1_front = cos(reference_a1)
+            sin_q1_front = sin(reference_a1)
+            cos_q1_back = cos_q1_front
+            sin_q1_back = sin_q1_front
+        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front) * RADIAN
+        sine_square_q3 = one_less_cos_q3_front * one_plus_cos_q3_front  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_front
+        if reach_front > machine_scale_times_free_angle:
+            angle_of_arm_across_q2 = arctan2(effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3_front)
+            angle_of_wrist_z_from_q1 = arctan2(wrist_x_from_q1_front, wrist_z_from_q1)
+            angle_q2_front_down = angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
+            angle_q2_front_up = -angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             angle_q2_front_down = reference_a2
             angle_q2_front_up = reference_a2
-        angle_of_swing_q3_front_down = -arctan2(sin_swing_q3, cos_swing_q3)
-        # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3
-        # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
-        # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
-        sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
-        divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
-        refusal_back = 0 if -1.0000000000005 <= cos_swing_q3 <= 1.0000000000005 else 3  # q3: out of reach
-        axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back) * RADIAN
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3
-        if reach > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3)
-            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
-            angle_q2_back_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
-            angle_q2_back_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+        angle_of_swing_q3_front_down = -arctan2(sin_swing_q3, cos_swing_q3_front)
+        refusal_back = 0 if -1.0000000000005 <= cos_swing_q3_back <= 1.0000000000005 else 3  # q3: out of reach
+        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back) * RADIAN
+        sine_square_q3 = one_less_cos_q3_back * one_plus_cos_q3_back  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_back
+        if reach_back > machine_scale_times_free_angle:
+            angle_of_arm_across_q2 = arctan2(effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3_back)
+            angle_of_wrist_z_from_q1 = arctan2(wrist_x_from_q1_back, wrist_z_from_q1)
+            angle_q2_back_down = angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
+            angle_q2_back_up = -angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             angle_q2_back_down = reference_a2
             angle_q2_back_up = reference_a2
-        angle_of_swing_q3_back_down = -arctan2(sin_swing_q3, cos_swing_q3)
+        angle_of_swing_q3_back_down = -arctan2(sin_swing_q3, cos_swing_q3_back)
         return (
             (
                 axis_a1_front,
                 offset_a2 + angle_q2_front_down * RADIAN,
-                offset_a3 + (angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_front_down) * RADIAN,
+                offset_a3 + (angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_front_down) * RADIAN,
             )
             if refusal_front == 0
             else refused[refusal_front],
             (
                 axis_a1_back,
                 offset_a2 + angle_q2_back_down * RADIAN,
-                offset_a3 + (angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_back_down) * RADIAN,
+                offset_a3 + (angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_back_down) * RADIAN,
             )
             if refusal_back == 0
             else refused[refusal_back],
             (
                 axis_a1_front,
                 offset_a2 + angle_q2_front_up * RADIAN,
-                offset_a3 + (angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_front_down) * RADIAN,
+                offset_a3 + (angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_front_down) * RADIAN,
             )
             if refusal_front == 0
             else refused[refusal_front],
             (
                 axis_a1_back,
                 offset_a2 + angle_q2_back_up * RADIAN,
-                offset_a3 + (angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_back_down) * RADIAN,
+                offset_a3 + (angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_back_down) * RADIAN,
             )
             if refusal_back == 0
             else refused[refusal_back],
@@ -157,59 +164,60 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)
-        # near a fold
-        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
-            return ()
         # how far ahead of the axis the point is; negative: behind it
         if ahead_squared_q1 > 0.0:
-            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1) * sigma_arm
+            ahead_q1 = sqrt(ahead_squared_q1) * sigma_arm
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
                 return None
-            ahead_q1_before_q1_for_q3 = 0.0
-        wrist_y_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
-        # coordinate of the point that the remaining links must reach
-        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1
+            ahead_q1 = 0.0
+        wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        wrist_z_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_y_from_q1 * wrist_y_from_q1)
-        # law of cosines for q3 (x_from_q1² + y_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
+        reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
+        # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
+        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach)
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
+        within_19 = -1.0 <= cos_swing_q3 <= 1.0
+        lost_digits_19 = (not within_19) and (abs(ahead_q1) <= product_in_lost_digits_19)
+        # digits may be lost
+        if not (not lost_digits_19):
+            return ()
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
-            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * x - d3 * y) / divisor_q1
-            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3 * y + d3 * x) / divisor_q1
+            cos_q1 = (ahead_q1 * x - d3 * y) / divisor_q1
+            sin_q1 = (ahead_q1 * y + d3 * x) / divisor_q1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
-            cos_q1_before_q1_for_q3 = cos(reference_a1)
-            sin_q1_before_q1_for_q3 = sin(reference_a1)
+            cos_q1 = cos(reference_a1)
+            sin_q1 = sin(reference_a1)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         if reach > machine_scale_times_free_angle:
             angle_q2 = arctan2(-effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3) - arctan2(
-                wrist_x_from_q1, wrist_y_from_q1
+                wrist_x_from_q1, wrist_z_from_q1
             )
         else:
             angle_q2 = (ref_a2 - offset_a2) * DEGREE
         if no_offsets:
             return (
-                arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
+                arctan2(sin_q1, cos_q1) * RADIAN,
                 angle_q2 * RADIAN,
-                (angle_of_a3_by_effective_q3_2 + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
+                (angle_of_a3_by_effective_q3_2_2 + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
             )
         return (
-            offset_a1 + arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3) * RADIAN,
+            offset_a1 + arctan2(sin_q1, cos_q1) * RADIAN,
             offset_a2 + angle_q2 * RADIAN,
-            offset_a3 + (angle_of_a3_by_effective_q3_2 + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
+            offset_a3 + (angle_of_a3_by_effective_q3_2_2 + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
         )
 
     def finish(found: tuple[Reals | int, ...], reference: Reals) -> tuple[Reals | int, ...]:

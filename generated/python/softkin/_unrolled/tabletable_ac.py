@@ -31,9 +31,9 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         _, _, _, _, ref_c = 5 * (0.0,) if reference is None else reference
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
-        pivot_z_plus_z = pivot_z + z
-        radius_c_times_pivot_z_plus_z = pivot_z_plus_z * radius_c
-        r33_times_pivot_z_plus_z = pivot_z_plus_z * r33
+        z_from_c = pivot_z + z
+        radius_c_times_z_from_c = radius_c * z_from_c
+        r33_times_z_from_c = r33 * z_from_c
         quotient_in_axis_a = arctan2(radius_c, r33) * RADIAN
         if radius_c > 1e-11:
             cos_c_positive = r23 / radius_c  # at a singularity: the angle of the reference
@@ -42,9 +42,9 @@ def unrolled(k: Constants) -> Unrolled:
             axis_x = offset_x + x_from_c_positive
             y_from_c_positive = y * cos_c_positive + x * sin_c_positive
             pivot_y_plus_y_from_c = pivot_y + y_from_c_positive
-            y_from_c_a = pivot_y_plus_y_from_c * r33 - radius_c_times_pivot_z_plus_z
+            y_from_c_a = pivot_y_plus_y_from_c * r33 - radius_c_times_z_from_c
             axis_y = offset_y + y_from_c_a
-            z_from_c_a = r33_times_pivot_z_plus_z + pivot_y_plus_y_from_c * radius_c
+            z_from_c_a = r33_times_z_from_c + pivot_y_plus_y_from_c * radius_c
             joint_z = tool_length + z_from_c_a  # joint_z from the z_from_c_a equation, which is linear in it
             axis_z = joint_z + offset_z
             axis_c_positive = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
@@ -61,9 +61,9 @@ def unrolled(k: Constants) -> Unrolled:
             axis_x = offset_x + x_from_c_positive
             y_from_c_positive = y * cos_c_positive + x * sin_c_positive
             pivot_y_plus_y_from_c = pivot_y + y_from_c_positive
-            y_from_c_a = pivot_y_plus_y_from_c * r33 - radius_c_times_pivot_z_plus_z
+            y_from_c_a = pivot_y_plus_y_from_c * r33 - radius_c_times_z_from_c
             axis_y = offset_y + y_from_c_a
-            z_from_c_a = r33_times_pivot_z_plus_z + pivot_y_plus_y_from_c * radius_c
+            z_from_c_a = r33_times_z_from_c + pivot_y_plus_y_from_c * radius_c
             joint_z = tool_length + z_from_c_a  # joint_z from the z_from_c_a equation, which is linear in it
             axis_z = joint_z + offset_z
             axis_c_positive = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
@@ -72,12 +72,12 @@ def unrolled(k: Constants) -> Unrolled:
             axis_c_negative = offset_c + arctan2(sin_c_negative, cos_c_negative) * RADIAN
         pivot_y_plus_y_from_c = pivot_y + y_from_c_negative
         # joint_z from the z_from_c_a equation, which is linear in it
-        joint_z = tool_length + (r33_times_pivot_z_plus_z - pivot_y_plus_y_from_c * radius_c)
+        joint_z = tool_length + (r33_times_z_from_c - pivot_y_plus_y_from_c * radius_c)
         return (
             (axis_x, axis_y, axis_z, offset_a + quotient_in_axis_a, axis_c_positive),
             (
                 offset_x + x_from_c_negative,
-                offset_y + (radius_c_times_pivot_z_plus_z + pivot_y_plus_y_from_c * r33),
+                offset_y + (radius_c_times_z_from_c + pivot_y_plus_y_from_c * r33),
                 joint_z + offset_z,
                 offset_a - quotient_in_axis_a,
                 axis_c_negative,
@@ -100,21 +100,21 @@ def unrolled(k: Constants) -> Unrolled:
             cos_c = cos(reference_c)
             sin_c = sin(reference_c)
         c_radius_of_a = sigma_tilt * radius_c
+        z_from_c = pivot_z + z
         pivot_y_plus_y_from_c = pivot_y + (y * cos_c + x * sin_c)
-        pivot_z_plus_z = pivot_z + z
         # joint_z from the z_from_c_a equation, which is linear in it
-        joint_z = tool_length + (c_radius_of_a * pivot_y_plus_y_from_c + pivot_z_plus_z * r33)
+        joint_z = tool_length + (c_radius_of_a * pivot_y_plus_y_from_c + r33 * z_from_c)
         if no_offsets:
             return (
                 x * cos_c - y * sin_c,
-                pivot_y_plus_y_from_c * r33 - c_radius_of_a * pivot_z_plus_z,
+                pivot_y_plus_y_from_c * r33 - c_radius_of_a * z_from_c,
                 joint_z,
                 arctan2(c_radius_of_a, r33) * RADIAN,
                 arctan2(sin_c, cos_c) * RADIAN,
             )
         return (
             offset_x + (x * cos_c - y * sin_c),
-            offset_y + (pivot_y_plus_y_from_c * r33 - c_radius_of_a * pivot_z_plus_z),
+            offset_y + (pivot_y_plus_y_from_c * r33 - c_radius_of_a * z_from_c),
             joint_z + offset_z,
             offset_a + arctan2(c_radius_of_a, r33) * RADIAN,
             offset_c + arctan2(sin_c, cos_c) * RADIAN,
