@@ -104,6 +104,9 @@ def _trial(mechanism: Mechanism, inverse: Inverse) -> Iterator[str]:
     yield from _equations(inverse.closure.equations)
     for number, step in enumerate(inverse.derivation.steps, 1):
         yield from _step(mechanism, number, step, ())
+    for residual in inverse.derivation.residuals:
+        yield f"  residual: {_plain(residual)}; the root is where it is 0"
+    yield from _branches(mechanism)
 
 
 def _equations(equations: Sequence[Equation]) -> Iterator[str]:
@@ -147,6 +150,9 @@ def _branches(mechanism: Mechanism) -> Iterator[str]:
     yield "Branches"
     for branch in mechanism.branches:
         signs = ", ".join(f"{n}={s:+d}" for n, s in zip(branch.names, branch.signs, strict=True))
+        if branch.is_crossing:
+            yield f'  crossing("{branch.name}", {signs}): whether the residual rises or falls at the root'
+            continue
         indicator = in_words(mechanism, branch.indicator)
         yield f'  branch("{branch.name}", {indicator}, {signs})'
         if branch.meanings[0]:
