@@ -14,7 +14,7 @@ from pathlib import Path
 from derive.description.mechanism import DescriptionError
 from derive.description.places import in_place
 from derive.description.remedies import with_remedy
-from derive.solver.solve import Unsolved
+from derive.solver.unsolved import Unsolved
 from derive.witness.disagreement import Disagreement
 
 UNFIT = (DescriptionError, Unsolved, Disagreement)

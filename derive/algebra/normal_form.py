@@ -12,6 +12,7 @@ from functools import cache
 import sympy as sp
 
 from derive.algebra.rings import is_rational, reduced_in_ring
+from derive.algebra.work import counted, spend, terms_of_products
 from derive.ir.constants import DEGREE
 from derive.ir.symbols import cosine, sine
 
@@ -25,7 +26,7 @@ def polynomial(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence
     return _polynomial(sp.sympify(expression), tuple(angles), tuple(signs))
 
 
-@cache
+@counted
 def _polynomial(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> sp.Expr:
     if _is_expanded(expression) and not expression.has(sp.sin, sp.cos):
         return reduce_units(expression, angles, signs)
@@ -85,7 +86,7 @@ def reduce_units(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequen
     return _reduced(sp.sympify(expression), tuple(angles), tuple(signs))
 
 
-@cache
+@counted
 def _reduced(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> sp.Expr:
     table = _reduction(angles, signs)
     if is_rational(expression):
@@ -94,6 +95,7 @@ def _reduced(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple[sp
     def lower(power: sp.Pow) -> sp.Expr:
         return table[power.base] ** (power.exp // 2) * power.base ** (power.exp % 2)
 
+    spend(terms_of_products(expression))
     expanded = expression if _is_expanded(expression) else sp.expand(expression)
     while True:
         if not any(p.base in table and p.exp.is_Integer and p.exp >= 2 for p in expanded.atoms(sp.Pow)):
@@ -103,6 +105,7 @@ def _reduced(expression: sp.Expr, angles: tuple[sp.Symbol, ...], signs: tuple[sp
         )
         if lowered == expanded:
             return expanded
+        spend(terms_of_products(lowered))
         expanded = sp.expand(lowered)
 
 
@@ -132,7 +135,7 @@ def linear_coefficients(expression: sp.Expr, atoms: Sequence[sp.Symbol]) -> tupl
     return None if found is None else (list(found[:-1]), found[-1])
 
 
-@cache
+@counted
 def _linear(expression: sp.Expr, atoms: tuple[sp.Symbol, ...]) -> tuple[sp.Expr, ...] | None:
     """The coefficients, then the rest. Cached: every rule examines the same equations."""
     if _is_expanded(expression):
@@ -167,7 +170,7 @@ def split_known(expression: sp.Expr, unknown: Iterable[sp.Symbol]) -> tuple[sp.E
     return _split_known(expression, frozenset(unknown))
 
 
-@cache
+@counted
 def _split_known(expression: sp.Expr, atoms: frozenset[sp.Symbol]) -> tuple[sp.Expr, sp.Expr]:
     moving, known = list[sp.Expr](), list[sp.Expr]()
     for term in sp.Add.make_args(expression if _is_expanded(expression) else sp.expand(expression)):
@@ -175,13 +178,13 @@ def _split_known(expression: sp.Expr, atoms: frozenset[sp.Symbol]) -> tuple[sp.E
     return sp.Add(*moving), sp.Add(*known)
 
 
-@cache
+@counted
 def cancelled(value: sp.Expr) -> sp.Expr:
     """A quotient of polynomials in lowest terms. Cached: every rule meets the same equations again after each step."""
     return sp.cancel(value)
 
 
-@cache
+@counted
 def factored(value: sp.Expr) -> sp.Expr:
     """A value in factored form. Cached, as `cancelled` is."""
     return sp.factor(value)

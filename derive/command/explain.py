@@ -27,7 +27,8 @@ from derive.kinematics.scan.choice import with_search
 from derive.kinematics.scan.derivations import without_search
 from derive.plate.passive import solve_passive
 from derive.report.used import equations_of
-from derive.solver.solve import Step, Unsolved
+from derive.solver.solve import Step
+from derive.solver.unsolved import Unsolved
 
 _FORMS = {
     "affine": "linear in it",

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, fields, replace
 import sympy as sp
 
 from derive.algebra.normal_form import cancelled, reduce_units
+from derive.algebra.work import spend
 from derive.geometry.frames import Factor
 from derive.ir.constants import DEGREE
 from derive.ir.program import Let, Statement
@@ -232,6 +233,7 @@ class Problem:
     def is_never_zero(self, expression: sp.Expr) -> bool:
         """Whether an expression of known names cannot vanish for any legal machine and pose."""
         reduced = self.reduce(expression).xreplace({DEGREE: sp.pi / 180})
+        spend(len(sp.Add.make_args(reduced)))
         return bool(reduced.is_nonzero) or self._is_number(reduced)
 
     def _is_number(self, value: sp.Expr) -> bool:

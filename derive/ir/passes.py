@@ -242,6 +242,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
     A program that others call comes before them.
     """
     known = set(constants)
+    programs = [_with_constants_before_loops(program, known) for program in programs]
     commanded = {s.name for s in (*POSITION, *ROTATION_ENTRIES)}  # languages spell these as parts of a pose
     names_taken = Names(known | commanded | {name.name for p in programs for name in _varying(p, known)})
     by_value: dict[sp.Expr, sp.Symbol] = {}
@@ -268,6 +269,23 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
         outputs = tuple(replace(o, value=replaced(o.value, names)) for o in program.outputs)
         lowered[program.name] = with_inputs(replace(program, body=tuple(body), outputs=outputs))
     return tuple(lowered.values()), tuple(hoisted)
+
+
+def _with_constants_before_loops(program: Program, constants: set[str]) -> Program:
+    """The program with the steps of its loops that depend on constants alone in front of these loops."""
+    known, body = set(constants), list[Statement]()
+    for s in program.body:
+        step = s.step if isinstance(s, Iterate) else (s,)
+        fixed = list[Let]()
+        for let in (one for one in step if isinstance(one, Let)):
+            if {v.name for v in symbols_of(let.value)} <= known:
+                known.add(let.name.name)
+                fixed.append(let)
+        if isinstance(s, Iterate):
+            body += fixed
+            s = replace(s, step=tuple(one for one in s.step if one not in fixed))
+        body.append(s)
+    return replace(program, body=tuple(body))
 
 
 def calling(statement: Statement, programs: Mapping[str, Program]) -> Statement:

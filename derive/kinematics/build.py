@@ -65,7 +65,7 @@ from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
 from derive.plate.stated_rods import with_positive_lengths, with_stated_rods
 from derive.plate.turning import joints_at_home
-from derive.solver.solve import Unsolved
+from derive.solver.unsolved import Unsolved
 
 
 def build(mechanism: Mechanism) -> Kinematics:

@@ -7,16 +7,19 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
+from math import inf
 
 import sympy as sp
 
+from derive.algebra.work import Work, at_most
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.form.inner_names import in_given_names, inputs_named, joined, suspects, with_inner_names
 from derive.ir.program import Call, Program, Statement, shared
 from derive.ir.symbols import cosine, sine
 from derive.ir.verify import BrokenProgram, RepeatedName
 from derive.kinematics.kinematics import Kinematics
-from derive.solver.solve import Unsolved
+from derive.solver.solve import MOST_TERMS
+from derive.solver.unsolved import Unsolved
 
 _ATTEMPTS = 4
 """The largest number of times that an input gets another name."""
@@ -59,12 +62,14 @@ def with_free_names(mechanism: Mechanism, derived: Callable[[Mapping[str, int]],
     """
     further: Counter[str] = Counter()
     while True:
+        work = Work()
         try:
-            return derived(further)
+            with at_most(inf, work):
+                return derived(further)
         except (Unsolved, DescriptionError, BrokenProgram) as problem:
             inner = with_inner_names(mechanism, further)
             met = {name for name in _met(mechanism, inner, problem) if further[name] < _ATTEMPTS}
-            if not met:
+            if not met or work.done > MOST_TERMS:  # where much was tried, a name was not the reason
                 said = in_given_names(str(problem), inner)
                 if said == str(problem):
                     raise

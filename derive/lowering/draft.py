@@ -13,6 +13,7 @@ from typing import TypeAlias
 import sympy as sp
 
 from derive.ir.graph import PRODUCT, Graph, Node, Value
+from derive.ir.primitives import Root
 from derive.ir.program import Iterate, Let, Program, Statement, expressions, reason_expressions
 
 _ONE = sp.Integer(1)
@@ -79,10 +80,12 @@ class Reader:
     """Reads programs into one graph."""
 
     graph: Graph = field(default_factory=Graph)
+    _roots: dict[sp.Basic, Value] = field(default_factory=dict)
+    """The roots of constants that have names: a program that reads the name reads the same value."""
 
     def draft(self, program: Program) -> Draft:
         """The draft of a program."""
-        reading = _Reading(self.graph)
+        reading = _Reading(self.graph, _bound=dict(self._roots))
         items = [item for order, s in enumerate(program.body) for item in reading.items(s, order)]
         outputs = tuple(reading.value(o.value) for o in program.outputs)
         return Draft(program, items, outputs, reading.names)
@@ -90,6 +93,8 @@ class Reader:
     def constant(self, let: Let) -> tuple[Node, Named]:
         """The node and the name of a value that is bound outside of all programs."""
         value = _Reading(self.graph).value(let.value)
+        if value.node.head is Root:
+            self._roots[let.name] = value
         return value.node, Named(let.name, value.sign, "", 0)
 
 

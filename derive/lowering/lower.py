@@ -38,6 +38,7 @@ def lowered(
     """
     reader = Reader()
     graph, constant = reader.graph, Constant(constants)
+    given = dict(reader.constant(let) for let in known)
     drafts = [reader.draft(p) for p in programs]
     signs, gathering = branches or {}, Gathering(graph, constant)
     for place, draft in enumerate(drafts):
@@ -49,7 +50,6 @@ def lowered(
     drafts = [_shorter(draft, gathering) for draft in drafts]
     if inverts:
         drafts = [changed(draft, Dividing(graph, _nodes(draft), constant)) for draft in drafts]
-    given = dict(reader.constant(let) for let in known)
     names, lets = hoisted(drafts, constant, constants, given)
     taken = {*constants, *(let.name.name for let in lets)}
     done: dict[str, Program] = {}

@@ -24,7 +24,8 @@ from derive.ir.program import Let, Output, Require, Statement, binds, rewritten
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.plate.legs import NORMAL, moments, names, rotation_of, spins
-from derive.solver.solve import Derivation, Unsolved, solve
+from derive.solver.solve import Derivation, solve
+from derive.solver.unsolved import Unsolved
 
 TWIST = real("twist")
 """The turn about the tool, from the commanded rotation to that of the platform."""

@@ -10,7 +10,7 @@ parallel_axes: a sum of angles about parallel axes, as one unknown
 positive_steps: two-root steps of which only one root belongs to the machine
 probe: the unknowns on which a sum of squares depends, found numerically
 residuals: the surplus equation of a trial, where one joint is known
-solve: the driver, and the error `Unsolved` with the equations that are left
+solve: the driver
 subproblems/: the rules
-unsolved: why no rule fits what is left, and what would help
+unsolved: the error `Unsolved`: why no rule fits what is left, and what would help
 """

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from derive.algebra.work import TooMuchWork, at_most, spend
 from derive.equations.positions import positions, positions_and_distance, positions_from_flange
 from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
 from derive.equations.rotations import rotations
@@ -42,7 +43,7 @@ from derive.solver.subproblems.pair import pair, scaled_pair
 from derive.solver.subproblems.polar import polar
 from derive.solver.subproblems.quadratic import quadratic
 from derive.solver.subproblems.spheres import spheres
-from derive.solver.unsolved import undetermined, unsolved
+from derive.solver.unsolved import Exhausted, Undetermined, Unsolved, undetermined, unsolved
 
 Rule = Callable[[Problem, tuple[Equation, ...]], Iterator[Binding]]
 RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quadratic, spheres)
@@ -84,13 +85,8 @@ TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (
     positions_from_flange,
 )
 Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
-
-
-class Unsolved(Exception):
-    """No subproblem fits what is left; the message tells the unknowns, the equations, and what would help."""
-
-    steps: tuple[Step, ...] = ()
-    """The steps that were found before."""
+MOST_TERMS = 100_000
+"""The work of one derivation, in terms (`derive.algebra.work`): some seconds."""
 
 
 @dataclass(frozen=True)
@@ -104,10 +100,6 @@ class Step:
     """Where the statements of the step begin and end among those of the derivation that are `plain`."""
     names: tuple[tuple[sp.Symbol, sp.Symbol], ...] = ()
     """The names in `found` that have another name in `recorded`, each with the other name."""
-
-
-class Undetermined(Unsolved):
-    """The equations do not hold all unknowns: no rule and no search finds what nothing determines."""
 
 
 @dataclass(frozen=True)
@@ -138,8 +130,17 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
 
     arguments: those of the sines and cosines in the original equations, from which sums of angles about parallel axes
     are read. resolve_angle: gives the statements that bind an angle with its whole turns, for equations in which it
-    stands outside sines and cosines. Raises `Unsolved` where no rule applies.
+    stands outside sines and cosines. Raises `Unsolved` where no rule applies, `Exhausted` where
+    rules meet expressions with too many terms.
     """
+    try:
+        with at_most(MOST_TERMS):
+            return _solved(problem, arguments, resolve_angle)
+    except TooMuchWork:
+        raise Exhausted(f"{unsolved(problem)}\n    (given up after {MOST_TERMS} terms)") from None
+
+
+def _solved(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve) -> Derivation:
     if (reason := undetermined(problem)) is not None:
         raise Undetermined(reason)
     record, is_trial = DerivationRecord(), problem.is_overdetermined
@@ -297,6 +298,7 @@ def _candidates(problem: Problem, equations: tuple[Equation, ...], wanted: sp.Sy
     """The steps that the rules find, all or those for a wanted unknown. A step that gives a cosine alone is computed
     only where there is no other.
     """
+    spend(sum(len(sp.Add.make_args(e.expression)) for e in equations))
     answers = {rule: tuple(rule(problem, equations)) for rule in _BETTER}
     found = _of(answers.values(), wanted)
     if all(b.cosine_alone for b in found):

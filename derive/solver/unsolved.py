@@ -7,6 +7,7 @@ derivatives of all equations show which unknowns can move while the commanded va
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -22,8 +23,25 @@ _STEP = 1e-5
 _NOTHING = 1e-6
 """A derivative, or a part of a motion, below this is rounding: columns and rows are scaled to one."""
 _ONE_KNOWN = ", or if one of these joints were known"
+_THREE_AXES = "it would help if the axes of three neighbouring joints met in one point or were parallel" + _ONE_KNOWN
+_TOOL_LINE = "it would help if the line of the tool, through its point, met the axis of the last joint" + _ONE_KNOWN
 _WRITTEN = 120
 """The largest number of letters of an equation in a message; of a longer one the number of terms is stated."""
+
+
+class Unsolved(Exception):
+    """No subproblem fits what is left; the message tells the unknowns, the equations, and what would help."""
+
+    steps: tuple[Any, ...] = ()
+    """The steps (`solve.Step`) that were found before."""
+
+
+class Exhausted(Unsolved):
+    """The work that is allowed was done, and the derivation was not finished."""
+
+
+class Undetermined(Unsolved):
+    """The equations do not hold all unknowns: no rule and no search finds what nothing determines."""
 
 
 def undetermined(problem: Problem) -> str | None:
@@ -51,9 +69,11 @@ def unsolved(problem: Problem) -> str:
     )
 
 
-def searched_in_vain(message: str) -> str:
-    """The message about a chain for which a scan along every joint was tried, too."""
-    return message.replace(_ONE_KNOWN, "; with any one of these joints known the others are not solved either", 1)
+def with_advice(message: str, advice: str) -> str:
+    """The message about a chain with what would help this machine, by the names and amounts of its axes."""
+    for general in (_THREE_AXES, _TOOL_LINE):
+        message = message.replace(general, advice or general, 1)
+    return message
 
 
 def _more(problem: Problem, unknowns: Sequence[sp.Symbol], free: int) -> str:
@@ -74,9 +94,9 @@ def _help(problem: Problem) -> str:
             "which is the offset of a tool"
         )
     if problem.turns and len(problem.columns) < 3:  # with a free twist only points on the tool's axis are known
-        return "it would help if the line of the tool, through its point, met the axis of the last joint" + _ONE_KNOWN
+        return _TOOL_LINE
     if problem.turns:
-        return "it would help if the axes of three neighbouring joints met in one point or were parallel" + _ONE_KNOWN
+        return _THREE_AXES
     return (
         "it would help if one equation had one of them alone, or if two equations were the coordinates of a point that "
         "one of them turns"

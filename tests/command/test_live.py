@@ -18,7 +18,7 @@ import softkin
 from derive import compile_mechanism
 from derive.description.catalogue import MECHANISMS, load
 from derive.description.mechanism import DescriptionError, branch
-from derive.solver.solve import Unsolved
+from derive.solver.unsolved import Unsolved
 from tests.command.files import RAIL, ROOT
 
 NAMES = {

@@ -11,7 +11,7 @@ from softkin import Frame, KinematicsError, Status
 from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning
 from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz
 from derive.kinematics.build import build
-from derive.solver.solve import Unsolved
+from derive.solver.unsolved import Unsolved
 from tests.catalogue.mounted.machines import BASE, matrices
 from tests.machines.made import Array, Made, made
 from tests.machines.task_machines import (

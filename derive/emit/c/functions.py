@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from derive.equations.limits import value_of
 from derive.equations.rotation_repair import rotation_program
 from derive.ir.passes import normalise
-from derive.ir.program import FindRoot, Output, Program, expressions, reason_expressions
+from derive.ir.program import FindRoot, Output, Program, expressions, reason_expressions, shared
 from derive.ir.symbols import COORDINATE_NAMES, PLACE, branch_sign, symbols_of
 from derive.kinematics.kinematics import Kinematics
 
@@ -80,7 +80,6 @@ def functions(kin: Kinematics) -> list[Function]:
     values, given_axes = tuple(axes.items()), "const double *axes"
     entries = [f"j{i}{k}" for i, _ in enumerate(kin.rows, 1) for k, _ in enumerate(joints, 1)]
     found = [
-        *shared(kin),
         Function("Position, rotation, and the signed margin of every branch.", kin.forward,
                  f"{given_axes}, softkin_frame *frame, double *margins", axes, placed, "forward"),
         Function("The axes of one branch on their turns, before any limit.", kin.branch,
@@ -91,7 +90,8 @@ def functions(kin: Kinematics) -> list[Function]:
         Function("The Jacobian by rows, per radian.", kin.jacobian, f"{given_axes}, double *rows", axes,
                  tuple(_places("rows", entries).items()), "jacobian"),
     ]  # fmt: skip
-    return [*found, *_further(kin, axes, frame | choice, turns | reference)]
+    found += _further(kin, axes, frame | choice, turns | reference)
+    return [*(_called(program, kin) for program in shared([one.program for one in found])), *found]
 
 
 def _further(
@@ -114,15 +114,12 @@ def _further(
                        tuple(axes.items()), "from_joints")  # fmt: skip
 
 
-def shared(kin: Kinematics) -> list[Function]:
-    """The functions of the programs that others call: argument and result are one array each."""
-    found = []
-    for program in kin.shared:
-        given = _places("given", arguments_of(program, kin))
-        results = _places("found", [o.name for o in program.outputs])
-        parameters = "const double *given, double *found"
-        found.append(Function(f"{program.summary}.", program, parameters, given, tuple(results.items())))
-    return found
+def _called(program: Program, kin: Kinematics) -> Function:
+    """The function of a program that others call: argument and result are one array each."""
+    given = _places("given", arguments_of(program, kin))
+    results = _places("found", [o.name for o in program.outputs])
+    parameters = "const double *given, double *found"
+    return Function(f"{program.summary}.", program, parameters, given, tuple(results.items()))
 
 
 def arguments_of(program: Program, kin: Kinematics) -> list[str]:

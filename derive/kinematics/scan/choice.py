@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from derive.algebra.work import TooMuchWork, at_most
 from derive.description.mechanism import Joint, Mechanism, Search, Turning, crossing
 from derive.equations.closures.commanded import closure_at
 from derive.equations.closures.fixed_names import fixed_lets
@@ -25,11 +26,15 @@ from derive.ir.symbols import SIDE, TRIED, cosine, names_in, sine
 from derive.kinematics.branches.derived import with_named_steps
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, solve_at, solve_pose
+from derive.kinematics.neighbours import fitting_task, what_misses
 from derive.kinematics.scan.guards import guards_of
 from derive.kinematics.scan.quartic import quartic_of
 from derive.kinematics.shared_names import refuse_shared_names
-from derive.solver.solve import Undetermined, Unsolved
-from derive.solver.unsolved import searched_in_vain
+from derive.solver.solve import MOST_TERMS
+from derive.solver.unsolved import Undetermined, Unsolved, with_advice
+
+_MOST_TERMS = 4 * MOST_TERMS
+"""The work of the trials along all joints."""
 
 
 @dataclass(frozen=True)
@@ -49,18 +54,33 @@ def with_search(mechanism: Mechanism) -> Mechanism:
     """The mechanism with the joint that is searched, if its closure has no closed form. Raises `Unsolved` where no
     joint would do.
     """
-    if mechanism.search is not None or not _may_be_searched(mechanism):
+    if mechanism.search is not None or mechanism.chain is None:
         return mechanism
     try:
         solve_pose(mechanism)
     except Undetermined:
         raise
     except Unsolved as problem:
-        found = min(_candidates(mechanism), key=lambda c: c.rank, default=None)  # the first of equals: deterministic
+        found = _best(mechanism) if _may_be_searched(mechanism) else None
         if found is None:
-            raise Unsolved(searched_in_vain(str(problem))) from None
+            refusal = type(problem)(with_advice(str(problem), _advice(mechanism)))
+            refusal.steps = problem.steps
+            raise refusal from None
         return _searched(mechanism, found)
     return mechanism
+
+
+def _best(mechanism: Mechanism) -> _Candidate | None:
+    """The best candidate, the first of equals; None where no joint would do."""
+    with at_most(_MOST_TERMS):
+        return min(_candidates(mechanism), key=lambda c: c.rank, default=None)
+
+
+def _advice(mechanism: Mechanism) -> str:
+    """What would help a machine whose joints are not solved."""
+    tried = "a search along one joint does not solve the others" if _may_be_searched(mechanism) else ""
+    is_whole = mechanism.task.turning is Turning.FULL
+    return "; ".join(filter(None, (what_misses(mechanism), "" if is_whole else fitting_task(mechanism), tried)))
 
 
 def _may_be_searched(mechanism: Mechanism) -> bool:
@@ -71,11 +91,11 @@ def _may_be_searched(mechanism: Mechanism) -> bool:
 
 def _candidates(mechanism: Mechanism) -> Iterator[_Candidate]:
     for joint in mechanism.solved_joints:
-        if not joint.is_angle or not _may_be_solved(mechanism, joint):
-            continue
         try:
+            if not joint.is_angle or not _may_be_solved(mechanism, joint):
+                continue
             trial = solve_at(mechanism, joint)
-        except Unsolved:
+        except (Unsolved, TooMuchWork):
             continue
         if len(trial.derivation.residuals) == 1 and guards_of(trial.derivation) is not None:
             yield _Candidate(joint, trial)

@@ -27,7 +27,7 @@ from derive.description.mechanism import (
 from derive.description.validate import validate
 from derive.geometry.frames import Rx, Rz, Tx, Ty, Tz, flip_x
 from derive.kinematics.build import build
-from derive.solver.solve import Unsolved
+from derive.solver.unsolved import Unsolved
 from tests.mechanisms import named
 from tests.unit.kinematics.inventions import A1, A2, A3, A4, ELBOW, L1, L2, L3, P1, P2, P3, invention, links
 from tests.unit.kinematics.inventions import planar_arm as arm

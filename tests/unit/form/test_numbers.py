@@ -21,7 +21,7 @@ from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz, denavit_hartenberg
 from derive.geometry.pose import pose_of
 from derive.kinematics.build import build
 from derive.mechanism import DEGREE, angle, length, linear, radians, rotary
-from derive.solver.solve import Unsolved
+from derive.solver.unsolved import Unsolved
 from tests.unit.kinematics.inventions import invention
 
 A1, A2, A3, A4, A5, A6 = (rotary(f"A{k}", "turn") for k in range(1, 7))

@@ -24,7 +24,7 @@ from derive.frames import denavit_hartenberg
 from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Txyz, Ty, Tz
 from derive.kinematics.build import build
 from derive.solver import eliminations, solve
-from derive.solver.solve import Unsolved
+from derive.solver.unsolved import Unsolved
 from tests.unit.kinematics.inventions import invention
 
 LENGTHS = tuple(length(f"l{k}", f"length {k}", nominal=100.0 + 17.0 * k) for k in range(14))
@@ -35,10 +35,16 @@ L = LENGTHS
 TWISTS = (pi / 3, pi / 4, pi / 6, pi / 3, pi / 4, pi / 6)
 
 _SHOULDER_AND_ARM = Rz(A1) * Tz(L[0]) * Ry(A2) * Tz(L[1]) * Ry(A3) * Txyz(L[3], 0, L[2])
-_HELP = "it would help if the axes of three neighbouring joints met in one point or were parallel"
-_LINE = "it would help if the line of the tool, through its point, met the axis of the last joint"
-_KNOWN = f"{_LINE}, or if one of these joints were known"
-_SEARCHED = f"{_HELP}; with any one of these joints known the others are not solved either"
+_NEAREST = (
+    "it would help if the axes of A1, A2, A3 met in one point, which they miss by 219, "
+    "or if the axes of A2, A3, A4 met in one point, which they miss by 236; "
+    "a search along one joint does not solve the others"
+)
+_BESIDE = (
+    "it would help if the axes of A3, A4, A5 met in one point, which they miss by 151, "
+    "or if the line of the tool, through its point, met the axis of A5, which it misses by 185; "
+    'with task=Task("xyz", Turning.NONE), held=(A4, A5) these joints are solved'
+)
 _TOO_MANY = (
     "one joint too many: the task commands 6 quantities (x, y, z, turn x, turn y, turn z), and 7 joints are to be "
     "solved for; name the one that is held at the reference: held="
@@ -67,12 +73,12 @@ def chain_symbols(chain: Chain) -> set[sp.Symbol]:
 REFUSED = {
     "six axes at any angles": (
         arm(denavit_hartenberg(*zip(JOINTS[:6], L[:6], L[6:12], TWISTS, strict=True)), JOINTS[:6]),
-        f"6 unknowns in 3 equations (x, y, z) and the commanded rotation; {_SEARCHED}; equations left:\n"
+        f"6 unknowns in 3 equations (x, y, z) and the commanded rotation; {_NEAREST}; equations left:\n"
         "    x: 109 terms in",
     ),
     "five axes with a tool beside the last": (
         arm(_SHOULDER_AND_ARM * Rx(A4) * Ty(L[4]) * Ry(A5) * Tx(L[5]), JOINTS[:5], Turning.DIRECTION),
-        f"5 unknowns in 3 equations (x, y, z) and the commanded direction; {_KNOWN}",
+        f"5 unknowns in 3 equations (x, y, z) and the commanded direction; {_BESIDE}",
     ),
     "seven axes": (
         arm(Rz(A1) * Ry(A2) * Rz(A3) * Tz(L[0]) * Ry(A4) * Rz(A5) * Tz(L[1]) * Ry(A6) * Rz(A7) * Tz(L[2]), JOINTS),

@@ -23,7 +23,8 @@ from derive.ir.program import Let, Output, Status
 from derive.ir.symbols import cosine, real, sine
 from derive.ir.verify import BrokenProgram
 from derive.solver.derivation_record import DerivationRecord
-from derive.solver.solve import Derivation, Unsolved, solve
+from derive.solver.solve import Derivation, solve
+from derive.solver.unsolved import Unsolved
 from tests.unit.solver.execution import at, distance, problem, reference
 
 A1, A2, A3, HEADING = (real(n) for n in ("a1", "a2", "a3", "heading"))

@@ -14,7 +14,8 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.algebra.normal_form import reduce_units, split_known
+from derive.algebra.normal_form import factored, reduce_units, split_known
+from derive.algebra.rings import may_be_square
 from derive.equations.problem import Equation, Problem
 from derive.ir.constants import ROUNDING
 from derive.ir.primitives import Select
@@ -79,13 +80,13 @@ def _of_pair(
 
 def _root_of(problem: Problem, square: sp.Expr) -> sp.Expr | None:
     """The root of the square of a product of known values; None where the expression is no such square."""
-    if problem.unknowns_of(square):
+    if problem.unknowns_of(square) or not may_be_square(square, problem.units):
         return None
     for known in problem.units:  # the normal form has 1 - cosine² for sine²
         parts = sp.Poly(square, cosine(known)) if cosine(known) in square.free_symbols else None
         if parts is not None and sp.expand(parts.coeff_monomial(1) + parts.coeff_monomial(cosine(known) ** 2)) == 0:
             square = sp.expand(parts.coeff_monomial(1)) * sine(known) ** 2
-    factors = [f.as_base_exp() for f in sp.Mul.make_args(sp.factor(square))]
+    factors = [f.as_base_exp() for f in sp.Mul.make_args(factored(square))]
     number = sp.sqrt(sp.Mul(*[base**exponent for base, exponent in factors if base.is_number]))
     named = [(base, exponent / 2) for base, exponent in factors if not base.is_number]
     is_square = number.is_rational and all(half.is_integer for _, half in named)

@@ -1,0 +1,113 @@
+"""The work of a derivation: counted before it is done, and the same whether or not results are kept."""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+
+from derive.algebra import rings
+from derive.algebra.normal_form import factored, reduce_units
+from derive.algebra.rings import common_factor, may_be_square
+from derive.algebra.work import TooMuchWork, at_most, counted, spend, terms_of_products
+from derive.ir.symbols import cosine, real, sine
+
+A, B, C = (real(name) for name in ("work_a", "work_b", "work_c"))
+Q = real("work_q")
+
+
+@pytest.mark.parametrize(
+    ("expression", "products"),
+    [(A, 1), (A + B, 2), ((A + B) * (B + C + 1), 6), ((A + B + C) ** 2, 6), (A * B**2, 1), ((A + B) ** 3 + C, 5)],
+)
+def test_products_of_an_expansion(expression: sp.Expr, products: int) -> None:
+    assert terms_of_products(expression) == products
+
+
+def test_a_result_that_is_kept_counts_as_the_first_time() -> None:
+    value = (A * sine(Q) + B) ** 4 - (B * sine(Q) + C) ** 3
+    counts = []
+    for _ in range(2):
+        with at_most(1e9) as work:
+            reduce_units(value, (Q,), ())
+        counts.append(work.done)
+    assert counts[0] == counts[1] > 10
+
+
+@pytest.mark.parametrize("is_kept", [False, True])
+def test_the_bound_holds_whether_or_not_the_result_is_kept(is_kept: bool) -> None:
+    value = (A + B * sine(Q) + 3 * is_kept) ** 5
+    if is_kept:
+        reduce_units(value, (Q,), ())
+    with pytest.raises(TooMuchWork), at_most(5):
+        reduce_units(value, (Q,), ())
+
+
+def test_what_is_given_up_counts_outside_too() -> None:
+    with at_most(100) as outer:
+        with pytest.raises(TooMuchWork), at_most(10):
+            spend(8)
+            spend(8)
+        assert outer.done == 8
+        with pytest.raises(TooMuchWork), at_most(1e9):
+            spend(93)
+
+
+def test_a_kept_function_within_another_counts_once() -> None:
+    @counted
+    def inner(number: int) -> int:
+        spend(number)
+        return number
+
+    @counted
+    def outer(number: int) -> int:
+        spend(1)
+        return inner(number)
+
+    for _ in range(2):
+        with at_most(1e9) as work:
+            assert outer(7) == 7
+        assert work.done == 8
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        (6 * A * B + 4 * A * C, 10 * A * B**2 - 2 * A),
+        (6 * A + 4 * B, 10 * A - 2 * C),
+        (A / 2 + B, A - C),
+        (A**2 - B**2, A * C + B * C),
+        (sp.Integer(0), 3 * A),
+        (A * sp.sqrt(2) + B * sp.sqrt(2), A**2 - B**2),
+        (sp.Integer(4), sp.Integer(6)),
+    ],
+)
+def test_the_common_factor_is_the_greatest_divisor(first: sp.Expr, second: sp.Expr) -> None:
+    assert sp.expand(common_factor(first, second) - sp.gcd(first, second)) == 0
+
+
+def test_polynomials_without_a_common_factor_are_told_apart_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two sums of thirty products of thirty symbols: their divisor takes minutes where it is searched for."""
+    many = [real(f"work_{k}") for k in range(30)]
+    first = sp.Add(*[many[k] * many[(k + 7) % 30] ** 2 for k in range(30)])
+    second = sp.Add(*[many[k] ** 2 * many[(3 * k + 5) % 30] for k in range(30)])
+    monkeypatch.setattr(rings.sp, "gcd", None)
+    assert common_factor(2 * first, 4 * second) == 2
+
+
+@pytest.mark.parametrize(
+    ("value", "may_be"),
+    [
+        ((A + B) ** 2, True),
+        (A**2 + B**2, False),
+        (A**2 * (1 - cosine(Q) ** 2), True),
+        (-((A + B) ** 2), False),
+        (4 * A**2 / 9, True),
+        (2 * A**2, False),
+    ],
+)
+def test_squares_are_seen_in_numbers(value: sp.Expr, may_be: bool) -> None:
+    assert may_be_square(sp.expand(value), (Q,)) is may_be
+
+
+def test_factors_are_kept_with_their_work() -> None:
+    assert factored(A**2 - B**2) == (A - B) * (A + B)
