@@ -9,10 +9,9 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
     double *SOFTKIN_RESTRICT misses) {
   const articulatedrobot_6dof_machine *k = machine;
-  const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3_2 = k->a2_minus_effective_q3_2,
-      a2_plus_effective_q3_2_2 = k->a2_plus_effective_q3_2_2,
-      a3_by_effective_q3_2_2 = k->a3_by_effective_q3_2_2, d1 = k->d1, d3 = k->d3,
-      d4_by_effective_q3_2_2 = k->d4_by_effective_q3_2_2, d6 = k->d6, effective_q3_2 = k->effective_q3_2,
+  const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3 = k->a2_minus_effective_q3,
+      a2_plus_effective_q3 = k->a2_plus_effective_q3, a3_by_effective_q3 = k->a3_by_effective_q3, d1 = k->d1,
+      d3 = k->d3, d4_by_effective_q3 = k->d4_by_effective_q3, d6 = k->d6, effective_q3 = k->effective_q3,
       machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
       mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
@@ -52,9 +51,9 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     /* distance that the remaining links must span */
     const double reach = softkin_lane_root(wrist_x_from_q1*wrist_x_from_q1 + wrist_z_from_q1*wrist_z_from_q1);
     /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-    const double one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach)*(a2_plus_effective_q3_2_2 - reach);
+    const double one_less_cos_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach);
     /* 1 + cosine, times the scale */
-    const double one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach);
+    const double one_plus_cos_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach);
     /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
     missed += sum_q3 > 0.0 ? 0.0 : 1.0;
@@ -70,8 +69,8 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     /* sine squared, times the squared scale */
     const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
     const double sin_swing_q3 = -2.0*softkin_lane_root(sine_square_q3)*sign_elbow/sum_q3;
-    const double arm_along_q2 = -effective_q3_2*sin_swing_q3;
-    const double arm_across_q2 = a2 + effective_q3_2*cos_swing_q3;
+    const double arm_along_q2 = -effective_q3*sin_swing_q3;
+    const double arm_across_q2 = a2 + effective_q3*cos_swing_q3;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
     const double across_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
@@ -86,8 +85,8 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     const double cos_q2 = along_q2/length_q2; /* at a singularity: the angle of the reference */
     const double sin_q2 = across_q2/length_q2;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3 = a3_by_effective_q3_2_2*cos_swing_q3 - d4_by_effective_q3_2_2*sin_swing_q3;
-    const double sin_q3 = a3_by_effective_q3_2_2*sin_swing_q3 + d4_by_effective_q3_2_2*cos_swing_q3;
+    const double cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3;
+    const double sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3;
     const double sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2;
     const double cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3;
     const double r33_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23;
@@ -138,10 +137,9 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const articulatedrobot_6dof_machine *k = machine;
-  const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3_2 = k->a2_minus_effective_q3_2,
-      a2_plus_effective_q3_2_2 = k->a2_plus_effective_q3_2_2,
-      a3_by_effective_q3_2_2 = k->a3_by_effective_q3_2_2, d1 = k->d1, d3 = k->d3,
-      d4_by_effective_q3_2_2 = k->d4_by_effective_q3_2_2, d6 = k->d6, effective_q3_2 = k->effective_q3_2,
+  const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3 = k->a2_minus_effective_q3,
+      a2_plus_effective_q3 = k->a2_plus_effective_q3, a3_by_effective_q3 = k->a3_by_effective_q3, d1 = k->d1,
+      d3 = k->d3, d4_by_effective_q3 = k->d4_by_effective_q3, d6 = k->d6, effective_q3 = k->effective_q3,
       machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
       mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
@@ -180,11 +178,11 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double reach_front = softkin_lane_root(wrist_z_from_q1_squared
         + wrist_x_from_q1_front*wrist_x_from_q1_front);
     /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-    const double one_less_cos_q3_front = (a2_plus_effective_q3_2_2 + reach_front)
-        *(a2_plus_effective_q3_2_2 - reach_front);
+    const double one_less_cos_q3_front = (a2_plus_effective_q3 + reach_front)
+        *(a2_plus_effective_q3 - reach_front);
     /* 1 + cosine, times the scale */
-    const double one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2)
-        *(a2_minus_effective_q3_2 + reach_front);
+    const double one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3)
+        *(a2_minus_effective_q3 + reach_front);
     /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
     missed += sum_q3_front > 0.0 ? 0.0 : 1.0;
@@ -194,11 +192,11 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double reach_back = softkin_lane_root(wrist_z_from_q1_squared
         + wrist_x_from_q1_back*wrist_x_from_q1_back);
     /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-    const double one_less_cos_q3_back = (a2_plus_effective_q3_2_2 + reach_back)
-        *(a2_plus_effective_q3_2_2 - reach_back);
+    const double one_less_cos_q3_back = (a2_plus_effective_q3 + reach_back)
+        *(a2_plus_effective_q3 - reach_back);
     /* 1 + cosine, times the scale */
-    const double one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2)
-        *(a2_minus_effective_q3_2 + reach_back);
+    const double one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3)
+        *(a2_minus_effective_q3 + reach_back);
     /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
     missed += sum_q3_back > 0.0 ? 0.0 : 1.0;
@@ -217,9 +215,9 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* sine squared, times the squared scale */
     const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
     const double sin_swing_q3_front_down = -2.0*softkin_lane_root(sine_square_q3_front)/sum_q3_front;
-    const double arm_along_q2_front_up = effective_q3_2*sin_swing_q3_front_down;
+    const double arm_along_q2_front_up = effective_q3*sin_swing_q3_front_down;
     const double product_in_along_q2_front_down = arm_along_q2_front_up*wrist_x_from_q1_front;
-    const double arm_across_q2_front = a2 + effective_q3_2*cos_swing_q3_front;
+    const double arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front;
     const double product_in_along_q2_front_down_2 = arm_across_q2_front*wrist_z_from_q1;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2_front_down = product_in_along_q2_front_down_2 - product_in_along_q2_front_down;
@@ -239,9 +237,9 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* sine squared, times the squared scale */
     const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
     const double sin_swing_q3_back_down = -2.0*softkin_lane_root(sine_square_q3_back)/sum_q3_back;
-    const double arm_along_q2_back_up = effective_q3_2*sin_swing_q3_back_down;
+    const double arm_along_q2_back_up = effective_q3*sin_swing_q3_back_down;
     const double product_in_along_q2_back_down = arm_along_q2_back_up*wrist_x_from_q1_back;
-    const double arm_across_q2_back = a2 + effective_q3_2*cos_swing_q3_back;
+    const double arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back;
     const double arm_across_q2_back_times_wrist_z_from_q1 = arm_across_q2_back*wrist_z_from_q1;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2_back_down = arm_across_q2_back_times_wrist_z_from_q1
@@ -272,12 +270,12 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* at a singularity: the angle of the reference */
     const double cos_q2_front_down = along_q2_front_down/length_q2_front_down;
     const double sin_q2_front_down = across_q2_front_down/length_q2_front_down;
-    const double product_in_cos_q3_front_down = d4_by_effective_q3_2_2*sin_swing_q3_front_down;
-    const double product_in_cos_q3_front_down_2 = a3_by_effective_q3_2_2*cos_swing_q3_front;
+    const double product_in_cos_q3_front_down = d4_by_effective_q3*sin_swing_q3_front_down;
+    const double product_in_cos_q3_front_down_2 = a3_by_effective_q3*cos_swing_q3_front;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_q3_front_down = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
-    const double product_in_sin_q3_front_down = d4_by_effective_q3_2_2*cos_swing_q3_front;
-    const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2_2*sin_swing_q3_front_down;
+    const double product_in_sin_q3_front_down = d4_by_effective_q3*cos_swing_q3_front;
+    const double product_in_sin_q3_front_down_2 = a3_by_effective_q3*sin_swing_q3_front_down;
     const double sin_q3_front_down = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
     const double sin_q23_front_down = cos_q2_front_down*sin_q3_front_down
         + cos_q3_front_down*sin_q2_front_down;
@@ -312,12 +310,12 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* at a singularity: the angle of the reference */
     const double cos_q2_back_down = along_q2_back_down/length_q2_back_down;
     const double sin_q2_back_down = across_q2_back_down/length_q2_back_down;
-    const double product_in_cos_q3_back_down = d4_by_effective_q3_2_2*sin_swing_q3_back_down;
-    const double product_in_cos_q3_back_down_2 = a3_by_effective_q3_2_2*cos_swing_q3_back;
+    const double product_in_cos_q3_back_down = d4_by_effective_q3*sin_swing_q3_back_down;
+    const double product_in_cos_q3_back_down_2 = a3_by_effective_q3*cos_swing_q3_back;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_q3_back_down = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
-    const double product_in_sin_q3_back_down = d4_by_effective_q3_2_2*cos_swing_q3_back;
-    const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2_2*sin_swing_q3_back_down;
+    const double product_in_sin_q3_back_down = d4_by_effective_q3*cos_swing_q3_back;
+    const double product_in_sin_q3_back_down_2 = a3_by_effective_q3*sin_swing_q3_back_down;
     const double sin_q3_back_down = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
     const double sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down;
     const double cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down;
@@ -359,15 +357,15 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double r12_from_q1_front = r12*cos_q1_front + r22*sin_q1_front;
     const double r32_from_q123_front_down = r32*cos_q23_front_down - r12_from_q1_front*sin_q23_front_down;
     /* cosine and sine of q6 from the r22 and r23 equations */
-    const double direction_x_q6_front_down_up = r23_from_q1_front*r32_from_q123_front_down
-        - r22_from_q1_front*r33_from_q123_front_down;
+    const double direction_x_q6_front_down_down = r22_from_q1_front*r33_from_q123_front_down
+        - r23_from_q1_front*r32_from_q123_front_down;
     const double r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front;
     const double r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front;
     const double r31_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down;
-    const double direction_y_q6_front_down_up = r23_from_q1_front*r31_from_q123_front_down
-        - r21_from_q1_front*r33_from_q123_front_down;
+    const double direction_y_q6_front_down_down = r21_from_q1_front*r33_from_q123_front_down
+        - r23_from_q1_front*r31_from_q123_front_down;
     const double axis_a6_front_down_down = offset_a6
-        - softkin_lane_angle(direction_y_q6_front_down_up, -direction_x_q6_front_down_up)*SOFTKIN_RADIAN;
+        + softkin_lane_angle(direction_y_q6_front_down_down, direction_x_q6_front_down_down)*SOFTKIN_RADIAN;
     const double axis_a4_front_down_up = 180.0 + axis_a4_front_down_down;
     const double axis_a5_front_down_up = offset_a5 - quotient_in_axis_a5_front_down_down;
     const double axis_a6_front_down_up = 180.0 + axis_a6_front_down_down;
@@ -383,13 +381,13 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double axis_a5_front_up_down = offset_a5 + quotient_in_axis_a5_front_up_down;
     const double r32_from_q123_front_up = r32*cos_q23_front_up - r12_from_q1_front*sin_q23_front_up;
     /* cosine and sine of q6 from the r22 and r23 equations */
-    const double direction_x_q6_front_up_down = r22_from_q1_front*r33_from_q123_front_up
-        - r23_from_q1_front*r32_from_q123_front_up;
+    const double direction_x_q6_front_up_up = r23_from_q1_front*r32_from_q123_front_up
+        - r22_from_q1_front*r33_from_q123_front_up;
     const double r31_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up;
-    const double direction_y_q6_front_up_down = r21_from_q1_front*r33_from_q123_front_up
-        - r23_from_q1_front*r31_from_q123_front_up;
+    const double direction_y_q6_front_up_up = r23_from_q1_front*r31_from_q123_front_up
+        - r21_from_q1_front*r33_from_q123_front_up;
     const double axis_a6_front_up_down = offset_a6
-        + softkin_lane_angle(direction_y_q6_front_up_down, direction_x_q6_front_up_down)*SOFTKIN_RADIAN;
+        - softkin_lane_angle(direction_y_q6_front_up_up, -direction_x_q6_front_up_up)*SOFTKIN_RADIAN;
     const double axis_a4_front_up_up = 180.0 + axis_a4_front_up_down;
     const double axis_a5_front_up_up = offset_a5 - quotient_in_axis_a5_front_up_down;
     const double axis_a6_front_up_up = 180.0 + axis_a6_front_up_down;

@@ -191,11 +191,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   const double closed_near_a6 = given_turn_a6 != 0
       ? 360.0*(given_turn_a6 > 0 ? given_turn_a6 - 1 : given_turn_a6) : closed_open_a6;
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double closed_one_less_cos_q3 = (k->a2_plus_effective_q3_2 + closed_reach)
-      *(k->a2_plus_effective_q3_2 - closed_reach);
+  const double closed_one_less_cos_q3 = (k->a2_plus_effective_q3 + closed_reach)
+      *(k->a2_plus_effective_q3 - closed_reach);
   /* 1 + cosine, times the scale */
-  const double closed_one_plus_cos_q3 = (closed_reach - k->a2_minus_effective_q3_2_2)
-      *(k->a2_minus_effective_q3_2_2 + closed_reach);
+  const double closed_one_plus_cos_q3 = (closed_reach - k->a2_minus_effective_q3)
+      *(k->a2_minus_effective_q3 + closed_reach);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3;
   const double closed_divisor_of_cos_q3 = closed_sum_q3 > 0.0 ? closed_sum_q3 : 1.0;
@@ -203,10 +203,10 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   const double closed_sine_square_q3 = closed_one_less_cos_q3*closed_one_plus_cos_q3;
   const double closed_sin_swing_q3 = -2.0*softkin_root(closed_sine_square_q3)*closed_sign_elbow
       /closed_divisor_of_cos_q3;
-  const double closed_arm_along_q2 = -closed_sin_swing_q3*k->effective_q3_2;
+  const double closed_arm_along_q2 = -closed_sin_swing_q3*k->effective_q3;
   const double closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3)
       /closed_divisor_of_cos_q3;
-  const double closed_arm_across_q2 = k->a2 + closed_cos_swing_q3*k->effective_q3_2;
+  const double closed_arm_across_q2 = k->a2 + closed_cos_swing_q3*k->effective_q3;
   /* rotation by q2 that takes the arm to its target point */
   const double closed_along_q2 = closed_arm_across_q2*closed_wrist_z_from_q1
       + closed_arm_along_q2*closed_wrist_x_from_q1;
@@ -214,10 +214,10 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       - closed_arm_across_q2*closed_wrist_x_from_q1;
   const double sum_in_closed_length_q2 = closed_across_q2*closed_across_q2 + closed_along_q2*closed_along_q2;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double closed_cos_q3 = k->a3_by_effective_q3_2*closed_cos_swing_q3
-      - closed_sin_swing_q3*k->d4_by_effective_q3_2;
-  const double closed_sin_q3 = k->a3_by_effective_q3_2*closed_sin_swing_q3
-      + closed_cos_swing_q3*k->d4_by_effective_q3_2;
+  const double closed_cos_q3 = k->a3_by_effective_q3*closed_cos_swing_q3
+      - closed_sin_swing_q3*k->d4_by_effective_q3;
+  const double closed_sin_q3 = k->a3_by_effective_q3*closed_sin_swing_q3
+      + closed_cos_swing_q3*k->d4_by_effective_q3;
   const double closed_axis_a3 = softkin_on_turn(k->offset_a3
       + softkin_angle_of(closed_sin_q3, closed_cos_q3)*SOFTKIN_RADIAN, closed_near_a3);
   /* steps of damped least squares on the closure, from one start after the other */
@@ -303,7 +303,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     beside_arm = branch_arm*closed_sign_arm < -1e-6;
     sin_q3 = sin(q3);
     cos_q3 = cos(q3);
-    branch_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2;
+    branch_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3;
     beside_elbow = branch_elbow*closed_sign_elbow < -1e-6;
     beside_hand = closed_sign_hand*sin_q5 < -1e-6;
     r33_at_q4 = cos_q23*cos_q4;
@@ -611,7 +611,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double branch_arm = k->one_by_machine_scale*(wrist_x*cos_q1 + wrist_y*sin_q1);
   const double sin_q3 = sin(q3);
   const double cos_q3 = cos(q3);
-  const double branch_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2_2;
+  const double branch_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3;
   frame->position[0] = x;
   frame->position[1] = y;
   frame->position[2] = z;
@@ -667,9 +667,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* distance that the remaining links must span */
   const double reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_z_from_q1*wrist_z_from_q1);
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3 = (k->a2_plus_effective_q3_2_2 + reach)*(k->a2_plus_effective_q3_2_2 - reach);
+  const double one_less_cos_q3 = (k->a2_plus_effective_q3 + reach)*(k->a2_plus_effective_q3 - reach);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3 = (reach - k->a2_minus_effective_q3_2)*(k->a2_minus_effective_q3_2 + reach);
+  const double one_plus_cos_q3 = (reach - k->a2_minus_effective_q3)*(k->a2_minus_effective_q3 + reach);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
   const double divisor_of_cos_q3 = sum_q3 > 0.0 ? sum_q3 : 1.0;
@@ -679,8 +679,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* q3: out of reach */
   if (!(lost_digits_23 || (fabs(cos_swing_q3) <= 1.0000000000005))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        (reach - k->a2_plus_effective_q3_2_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
-        - k->a2_plus_effective_q3_2_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
+        (reach - k->a2_plus_effective_q3 > fabs(k->a2_minus_effective_q3) - reach ? reach
+        - k->a2_plus_effective_q3 : fabs(k->a2_minus_effective_q3) - reach), 0);
   }
   double cos_q1, sin_q1;
   if (distance_q1 > k->machine_scale_times_free_angle) {
@@ -705,8 +705,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sin_swing_q3 = -2.0*softkin_root(sine_square_q3)*sign_elbow/divisor_of_cos_q3;
   double cos_q2, sin_q2;
   if (reach > k->machine_scale_times_free_angle) {
-    const double arm_along_q2 = -k->effective_q3_2*sin_swing_q3;
-    const double arm_across_q2 = k->a2 + k->effective_q3_2*cos_swing_q3;
+    const double arm_along_q2 = -k->effective_q3*sin_swing_q3;
+    const double arm_across_q2 = k->a2 + k->effective_q3*cos_swing_q3;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
     const double across_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
@@ -727,8 +727,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double axis_a2 = softkin_on_turn(k->offset_a2 + softkin_angle_of(sin_q2, cos_q2)*SOFTKIN_RADIAN,
       near_a2);
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3 = k->a3_by_effective_q3_2_2*cos_swing_q3 - k->d4_by_effective_q3_2_2*sin_swing_q3;
-  const double sin_q3 = k->a3_by_effective_q3_2_2*sin_swing_q3 + k->d4_by_effective_q3_2_2*cos_swing_q3;
+  const double cos_q3 = k->a3_by_effective_q3*cos_swing_q3 - k->d4_by_effective_q3*sin_swing_q3;
+  const double sin_q3 = k->a3_by_effective_q3*sin_swing_q3 + k->d4_by_effective_q3*cos_swing_q3;
   /* A3: without a commanded turn, the value nearest to this */
   const double open_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
   const double near_a3 = turn_a3 != 0 ? 360.0*(turn_a3 > 0 ? turn_a3 - 1 : turn_a3) : open_a3;
@@ -802,8 +802,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* q3: out of reach */
   if (!(met || (fabs(cos_swing_q3) <= 1.0000000000005))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        (reach - k->a2_plus_effective_q3_2_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
-        - k->a2_plus_effective_q3_2_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
+        (reach - k->a2_plus_effective_q3 > fabs(k->a2_minus_effective_q3) - reach ? reach
+        - k->a2_plus_effective_q3 : fabs(k->a2_minus_effective_q3) - reach), 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
   axes[1] = (met ? found_a2 : axis_a2);
@@ -1012,7 +1012,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double margin_wrist_on_axis_1 = k->one_by_machine_scale*(wrist_x*cos_q1 + wrist_y*sin_q1);
   const double sin_q3 = sin(q3);
   const double cos_q3 = cos(q3);
-  const double margin_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2_2;
+  const double margin_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3;
   margins[0] = margin_wrist_on_axis_1;
   margins[1] = margin_elbow;
   margins[2] = sin_q5;
@@ -1131,8 +1131,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       r31 = frame->rotation[2][0], r32 = frame->rotation[2][1], r33 = frame->rotation[2][2],
       ref_a1 = reference[0], ref_a2 = reference[1], ref_a3 = reference[2], ref_a4 = reference[3],
       ref_a5 = reference[4], ref_a6 = reference[5];
-  const double angle_of_a3_by_effective_q3_2_2 = softkin_angle_of(k->d4_by_effective_q3_2_2,
-      k->a3_by_effective_q3_2_2);
+  const double angle_in_angle_q3_front_down = softkin_angle_of(k->d4/k->effective_q3, k->a3/k->effective_q3);
+  const double a2_plus_effective_q3_2 = k->a2 + k->effective_q3;
+  const double a2_minus_effective_q3_2 = k->a2 - k->effective_q3;
   const double wrist_x = x - k->d6*r13; /* wrist centre: the last joints do not move this point */
   const double wrist_y = y - k->d6*r23;
   /* distance of the point from the axis of q1 */
@@ -1155,11 +1156,11 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double reach_front = softkin_root(wrist_z_from_q1_squared
       + wrist_x_from_q1_front*wrist_x_from_q1_front);
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_front = (k->a2_plus_effective_q3_2_2 + reach_front)
-      *(k->a2_plus_effective_q3_2_2 - reach_front);
+  const double one_less_cos_q3_front = (a2_plus_effective_q3_2 + reach_front)
+      *(a2_plus_effective_q3_2 - reach_front);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_front = (reach_front - k->a2_minus_effective_q3_2_2)
-      *(k->a2_minus_effective_q3_2_2 + reach_front);
+  const double one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2)
+      *(a2_minus_effective_q3_2 + reach_front);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
   const double divisor_of_cos_q3_front = sum_q3_front > 0.0 ? sum_q3_front : 1.0;
@@ -1175,11 +1176,11 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* distance that the remaining links must span */
   const double reach_back = softkin_root(wrist_z_from_q1_squared + wrist_x_from_q1_back*wrist_x_from_q1_back);
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_back = (k->a2_plus_effective_q3_2_2 + reach_back)
-      *(k->a2_plus_effective_q3_2_2 - reach_back);
+  const double one_less_cos_q3_back = (a2_plus_effective_q3_2 + reach_back)
+      *(a2_plus_effective_q3_2 - reach_back);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_back = (reach_back - k->a2_minus_effective_q3_2_2)
-      *(k->a2_minus_effective_q3_2_2 + reach_back);
+  const double one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2)
+      *(a2_minus_effective_q3_2 + reach_back);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
   const double divisor_of_cos_q3_back = sum_q3_back > 0.0 ? sum_q3_back : 1.0;
@@ -1219,8 +1220,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
   double angle_q2_front_down, angle_q2_front_up;
   if (reach_front > k->machine_scale_times_free_angle) {
-    const double arm_along_q2_front_down = k->effective_q3_2*sin_swing_q3_front_up;
-    const double arm_across_q2_front = k->a2 + k->effective_q3_2*cos_swing_q3_front;
+    const double arm_along_q2_front_down = k->effective_q3*sin_swing_q3_front_up;
+    const double arm_across_q2_front = k->a2 + k->effective_q3*cos_swing_q3_front;
     const double angle_of_arm_across_q2_front_down = softkin_angle_of(arm_along_q2_front_down,
         arm_across_q2_front);
     const double angle_of_wrist_z_from_q1_front = softkin_angle_of(wrist_x_from_q1_front, wrist_z_from_q1);
@@ -1233,7 +1234,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double axis_a2_front_down = k->offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
   const double angle_of_swing_q3_front_down = -softkin_angle_of(sin_swing_q3_front_up, cos_swing_q3_front);
-  const double angle_q3_front_down = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_front_down;
+  const double angle_q3_front_down = angle_in_angle_q3_front_down + angle_of_swing_q3_front_down;
   const double axis_a3_front_down = k->offset_a3 + angle_q3_front_down*SOFTKIN_RADIAN;
   const double r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front;
   const double angle_q23_front_down = angle_q2_front_down + angle_q3_front_down;
@@ -1331,7 +1332,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double axis_a5_front_down_up = k->offset_a5 - quotient_in_axis_a5_front_down_down;
   const double axis_a2_front_up = k->offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
-  const double angle_q3_front_up = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_front_down;
+  const double angle_q3_front_up = angle_in_angle_q3_front_down - angle_of_swing_q3_front_down;
   const double axis_a3_front_up = k->offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
   const double angle_q23_front_up = angle_q2_front_up + angle_q3_front_up;
   const double sin_q23_front_up = sin(angle_q23_front_up);
@@ -1430,8 +1431,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
   double angle_q2_back_down, angle_q2_back_up;
   if (reach_back > k->machine_scale_times_free_angle) {
-    const double arm_along_q2_back_down = k->effective_q3_2*sin_swing_q3_back_up;
-    const double arm_across_q2_back = k->a2 + k->effective_q3_2*cos_swing_q3_back;
+    const double arm_along_q2_back_down = k->effective_q3*sin_swing_q3_back_up;
+    const double arm_across_q2_back = k->a2 + k->effective_q3*cos_swing_q3_back;
     const double angle_of_arm_across_q2_back_down = softkin_angle_of(arm_along_q2_back_down,
         arm_across_q2_back);
     const double angle_of_wrist_z_from_q1_back = softkin_angle_of(wrist_x_from_q1_back, wrist_z_from_q1);
@@ -1444,7 +1445,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double axis_a2_back_down = k->offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
   const double angle_of_swing_q3_back_down = -softkin_angle_of(sin_swing_q3_back_up, cos_swing_q3_back);
-  const double angle_q3_back_down = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_back_down;
+  const double angle_q3_back_down = angle_in_angle_q3_front_down + angle_of_swing_q3_back_down;
   const double axis_a3_back_down = k->offset_a3 + angle_q3_back_down*SOFTKIN_RADIAN;
   const double r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back;
   const double angle_q23_back_down = angle_q2_back_down + angle_q3_back_down;
@@ -1542,7 +1543,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double axis_a5_back_down_up = k->offset_a5 - quotient_in_axis_a5_back_down_down;
   const double axis_a2_back_up = k->offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
-  const double angle_q3_back_up = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_back_down;
+  const double angle_q3_back_up = angle_in_angle_q3_front_down - angle_of_swing_q3_back_down;
   const double axis_a3_back_up = k->offset_a3 + angle_q3_back_up*SOFTKIN_RADIAN;
   const double angle_q23_back_up = angle_q2_back_up + angle_q3_back_up;
   const double sin_q23_back_up = sin(angle_q23_back_up);
@@ -1735,22 +1736,17 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* characteristic length of the machine */
   const double machine_scale = p->a1 + p->a2 + p->a3 + p->d4;
   /* effective length of the arm that q3 turns */
-  const double effective_q3_2 = sqrt(p->a3*p->a3 + p->d4*p->d4);
+  const double effective_q3 = sqrt(p->a3*p->a3 + p->d4*p->d4);
   /* rounding error of a squared length */
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
   const double product_in_lost_digits_23 = 0.01*machine_scale;
-  const double a2_minus_effective_q3_2 = p->a2 - effective_q3_2;
+  const double a2_minus_effective_q3 = p->a2 - effective_q3;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
-  const double one_by_effective_q3_2 = 1.0/effective_q3_2;
-  const double a2_plus_effective_q3_2 = p->a2 + effective_q3_2;
-  const double a2_minus_effective_q3_2_2 = p->a2 - effective_q3_2;
-  const double d4_by_effective_q3_2 = p->d4/effective_q3_2;
-  const double a3_by_effective_q3_2 = p->a3/effective_q3_2;
-  const double one_by_effective_q3_2_2 = 1.0/effective_q3_2;
-  const double a2_plus_effective_q3_2_2 = p->a2 + effective_q3_2;
-  const double d4_by_effective_q3_2_2 = p->d4/effective_q3_2;
-  const double a3_by_effective_q3_2_2 = p->a3/effective_q3_2;
+  const double one_by_effective_q3 = 1.0/effective_q3;
+  const double a2_plus_effective_q3 = p->a2 + effective_q3;
+  const double d4_by_effective_q3 = p->d4/effective_q3;
+  const double a3_by_effective_q3 = p->a3/effective_q3;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1789,21 +1785,16 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a5 = p->offset_a5;
   made.offset_a6 = p->offset_a6;
   made.machine_scale = machine_scale;
-  made.effective_q3_2 = effective_q3_2;
+  made.effective_q3 = effective_q3;
   made.rounding_q1 = rounding_q1;
   made.product_in_lost_digits_23 = product_in_lost_digits_23;
-  made.a2_minus_effective_q3_2 = a2_minus_effective_q3_2;
+  made.a2_minus_effective_q3 = a2_minus_effective_q3;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;
-  made.one_by_effective_q3_2 = one_by_effective_q3_2;
-  made.a2_plus_effective_q3_2 = a2_plus_effective_q3_2;
-  made.a2_minus_effective_q3_2_2 = a2_minus_effective_q3_2_2;
-  made.d4_by_effective_q3_2 = d4_by_effective_q3_2;
-  made.a3_by_effective_q3_2 = a3_by_effective_q3_2;
-  made.one_by_effective_q3_2_2 = one_by_effective_q3_2_2;
-  made.a2_plus_effective_q3_2_2 = a2_plus_effective_q3_2_2;
-  made.d4_by_effective_q3_2_2 = d4_by_effective_q3_2_2;
-  made.a3_by_effective_q3_2_2 = a3_by_effective_q3_2_2;
+  made.one_by_effective_q3 = one_by_effective_q3;
+  made.a2_plus_effective_q3 = a2_plus_effective_q3;
+  made.d4_by_effective_q3 = d4_by_effective_q3;
+  made.a3_by_effective_q3 = a3_by_effective_q3;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(articulatedrobot_6dof_machine *)machine = made;
   return SOFTKIN_OK;

@@ -93,11 +93,11 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
   const double cos_a1 = cos(a1);
   /* rod 1: centre about which it swings */
-  const double pivot_1_x = k->tcp_displacement_minus_displacement - k->inner_arm*cos_a1;
+  const double pivot_1_x = -k->displacement_minus_tcp_displacement - k->inner_arm*cos_a1;
   const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double cos_a2 = cos(a2);
   /* rod 2: centre about which it swings */
-  const double pivot_2_x = k->inner_arm*cos_a2 - k->tcp_displacement_minus_displacement;
+  const double pivot_2_x = k->displacement_minus_tcp_displacement + k->inner_arm*cos_a2;
   const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
   const double sin_a1 = sin(a1);
   const double pivot_1_y = -k->inner_arm*sin_a1;
@@ -126,10 +126,10 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double foot_y = 0.5*centre_1_to_2_y;
   const double y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal;
   /* rod 1: known part of its vector */
-  const double span_1_x = x - k->tcp_displacement_minus_displacement;
+  const double span_1_x = k->displacement_minus_tcp_displacement + x;
   const double branch_knee_1 = (span_1_x*sin_a1 - y*cos_a1)*k->one_by_outer_arm;
   /* rod 2: known part of its vector */
-  const double span_2_x = k->tcp_displacement_minus_displacement + x;
+  const double span_2_x = x - k->displacement_minus_tcp_displacement;
   const double branch_knee_2 = -k->one_by_outer_arm*(y*cos_a2 + span_2_x*sin_a2);
   frame->position[0] = x;
   frame->position[1] = y;
@@ -164,7 +164,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         fabs(z) - k->machine_scale_times_plane, 0);
   }
   /* rod 1: known part of its vector */
-  const double span_1_x = x - k->tcp_displacement_minus_displacement;
+  const double span_1_x = k->displacement_minus_tcp_displacement + x;
   const double y_squared = y*y;
   /* effective length of the arm that a1 turns */
   const double effective_a1 = softkin_root(y_squared + span_1_x*span_1_x);
@@ -189,7 +189,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         ? effective_a1 - k->inner_arm_plus_outer_arm : fabs(k->inner_arm_minus_outer_arm) - effective_a1), 0);
   }
   /* rod 2: known part of its vector */
-  const double span_2_x = k->tcp_displacement_minus_displacement + x;
+  const double span_2_x = x - k->displacement_minus_tcp_displacement;
   /* effective length of the arm that a2 turns */
   const double effective_a2 = softkin_root(y_squared + span_2_x*span_2_x);
   /* a2: its effective length is too short */
@@ -320,11 +320,11 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
   const double cos_a1 = cos(a1);
   /* rod 1: centre about which it swings */
-  const double pivot_1_x = k->tcp_displacement_minus_displacement - k->inner_arm*cos_a1;
+  const double pivot_1_x = -k->displacement_minus_tcp_displacement - k->inner_arm*cos_a1;
   const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double cos_a2 = cos(a2);
   /* rod 2: centre about which it swings */
-  const double pivot_2_x = k->inner_arm*cos_a2 - k->tcp_displacement_minus_displacement;
+  const double pivot_2_x = k->displacement_minus_tcp_displacement + k->inner_arm*cos_a2;
   const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
   const double sin_a1 = sin(a1);
   const double pivot_1_y = -k->inner_arm*sin_a1;
@@ -353,10 +353,10 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double foot_x = 0.5*centre_1_to_2_x; /* foot of the perpendicular, seen from centre 1 */
   const double x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal;
   /* rod 1: known part of its vector */
-  const double span_1_x = x - k->tcp_displacement_minus_displacement;
+  const double span_1_x = k->displacement_minus_tcp_displacement + x;
   const double margin_stretched_1 = (span_1_x*sin_a1 - y*cos_a1)*k->one_by_outer_arm;
   /* rod 2: known part of its vector */
-  const double span_2_x = k->tcp_displacement_minus_displacement + x;
+  const double span_2_x = x - k->displacement_minus_tcp_displacement;
   const double margin_stretched_2 = -k->one_by_outer_arm*(y*cos_a2 + span_2_x*sin_a2);
   const double rod_1_x = x - pivot_1_x;
   const double rod_1_y = y - pivot_1_y;
@@ -380,11 +380,11 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
   const double cos_a1 = cos(a1);
   /* rod 1: centre about which it swings */
-  const double pivot_1_x = k->tcp_displacement_minus_displacement - k->inner_arm*cos_a1;
+  const double pivot_1_x = -k->displacement_minus_tcp_displacement - k->inner_arm*cos_a1;
   const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double cos_a2 = cos(a2);
   /* rod 2: centre about which it swings */
-  const double pivot_2_x = k->inner_arm*cos_a2 - k->tcp_displacement_minus_displacement;
+  const double pivot_2_x = k->displacement_minus_tcp_displacement + k->inner_arm*cos_a2;
   const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
   const double sin_a1 = sin(a1);
   const double pivot_1_y = -k->inner_arm*sin_a1;
@@ -446,7 +446,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 4);
   }
   /* rod 1: known part of its vector */
-  const double span_1_x = x - k->tcp_displacement_minus_displacement;
+  const double span_1_x = k->displacement_minus_tcp_displacement + x;
   const double y_squared = y*y;
   /* effective length of the arm that a1 turns */
   const double effective_a1 = softkin_root(y_squared + span_1_x*span_1_x);
@@ -467,7 +467,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 4);
   }
   /* rod 2: known part of its vector */
-  const double span_2_x = k->tcp_displacement_minus_displacement + x;
+  const double span_2_x = x - k->displacement_minus_tcp_displacement;
   /* effective length of the arm that a2 turns */
   const double effective_a2 = softkin_root(y_squared + span_2_x*span_2_x);
   if (!(effective_a2 > k->inner_arm_times_shortest_link)) {
@@ -592,7 +592,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double inner_arm_times_shortest_link = 1e-9*p->inner_arm;
   const double inner_arm_minus_outer_arm = p->inner_arm - p->outer_arm;
   const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
-  const double tcp_displacement_minus_displacement = p->tcp_displacement - p->displacement;
+  const double displacement_minus_tcp_displacement = p->displacement - p->tcp_displacement;
   const double one_by_outer_arm = 1.0/p->outer_arm;
   const double inner_arm_plus_outer_arm = p->inner_arm + p->outer_arm;
   const double assembly_sign_by_outer_arm_squared = assembly_sign/(p->outer_arm*p->outer_arm);
@@ -619,7 +619,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.inner_arm_times_shortest_link = inner_arm_times_shortest_link;
   made.inner_arm_minus_outer_arm = inner_arm_minus_outer_arm;
   made.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle;
-  made.tcp_displacement_minus_displacement = tcp_displacement_minus_displacement;
+  made.displacement_minus_tcp_displacement = displacement_minus_tcp_displacement;
   made.one_by_outer_arm = one_by_outer_arm;
   made.inner_arm_plus_outer_arm = inner_arm_plus_outer_arm;
   made.assembly_sign_by_outer_arm_squared = assembly_sign_by_outer_arm_squared;

@@ -316,18 +316,19 @@ void delta_c_regular_all(const void *machine, const softkin_lanes *given,
         /effective_a3;
     const double pivot_3_z_outward = -arm_length*sin_a3_outward;
     const double rod_3_z_outward = z - pivot_3_z_outward;
-    const double product_in_type2_rods_coplanar_outward_outward_outward = (rod_2_x_outward*rod_3_z_outward
-        - rod_2_z_outward*rod_3_x_outward)*y;
+    const double product_in_type2_rods_coplanar_outward_outward_outward = (rod_2_z_outward*rod_3_x_outward
+        - rod_2_x_outward*rod_3_z_outward)*y;
     const double rod_2_y_outward = span_2_y - arm_length_times_root_of_3_times_half_2*cos_a2_outward;
     const double rod_3_y_outward = span_3_y + arm_length_times_root_of_3_times_half_2*cos_a3_outward;
     const double sum_in_type2_rods_coplanar_outward_outward_outward = rod_2_y_outward*rod_3_z_outward
         - rod_2_z_outward*rod_3_y_outward;
     const double sum_in_type2_rods_coplanar_outward_outward_outward_2 = rod_2_x_outward*rod_3_y_outward
         - rod_2_y_outward*rod_3_x_outward;
-    const double type2_rods_coplanar_outward_outward_outward = (rod_1_x_outward
-        *sum_in_type2_rods_coplanar_outward_outward_outward
-        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_outward_outward_2
-        - product_in_type2_rods_coplanar_outward_outward_outward)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_outward_outward_outward =
+        (product_in_type2_rods_coplanar_outward_outward_outward
+        + rod_1_x_outward*sum_in_type2_rods_coplanar_outward_outward_outward
+        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_outward_outward_2)
+        *quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_outward_outward_outward =
         type2_rods_coplanar_outward_outward_outward >= min_type2_margin ? 0 : 3;
@@ -346,17 +347,18 @@ void delta_c_regular_all(const void *machine, const softkin_lanes *given,
         /effective_a3;
     const double pivot_3_z_inward = -arm_length*sin_a3_inward;
     const double rod_3_z_inward = z - pivot_3_z_inward;
-    const double product_in_type2_rods_coplanar_outward_outward_inward = (rod_2_x_outward*rod_3_z_inward
-        - rod_2_z_outward*rod_3_x_inward)*y;
+    const double product_in_type2_rods_coplanar_outward_outward_inward = (rod_2_z_outward*rod_3_x_inward
+        - rod_2_x_outward*rod_3_z_inward)*y;
     const double rod_3_y_inward = span_3_y + arm_length_times_root_of_3_times_half_2*cos_a3_inward;
     const double sum_in_type2_rods_coplanar_outward_outward_inward = rod_2_y_outward*rod_3_z_inward
         - rod_2_z_outward*rod_3_y_inward;
     const double sum_in_type2_rods_coplanar_outward_outward_inward_2 = rod_2_x_outward*rod_3_y_inward
         - rod_2_y_outward*rod_3_x_inward;
-    const double type2_rods_coplanar_outward_outward_inward = (rod_1_x_outward
-        *sum_in_type2_rods_coplanar_outward_outward_inward
-        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_outward_inward_2
-        - product_in_type2_rods_coplanar_outward_outward_inward)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_outward_outward_inward =
+        (product_in_type2_rods_coplanar_outward_outward_inward
+        + rod_1_x_outward*sum_in_type2_rods_coplanar_outward_outward_inward
+        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_outward_inward_2)
+        *quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_outward_outward_inward =
         type2_rods_coplanar_outward_outward_inward >= min_type2_margin ? 0 : 3;
@@ -369,31 +371,32 @@ void delta_c_regular_all(const void *machine, const softkin_lanes *given,
         /effective_a2;
     const double pivot_2_z_inward = -arm_length*sin_a2_inward;
     const double rod_2_z_inward = z - pivot_2_z_inward;
-    const double product_in_type2_rods_coplanar_outward_inward_outward = (rod_2_x_inward*rod_3_z_outward
-        - rod_2_z_inward*rod_3_x_outward)*y;
+    const double product_in_type2_rods_coplanar_outward_inward_outward = (rod_2_z_inward*rod_3_x_outward
+        - rod_2_x_inward*rod_3_z_outward)*y;
     const double rod_2_y_inward = span_2_y - arm_length_times_root_of_3_times_half_2*cos_a2_inward;
     const double sum_in_type2_rods_coplanar_outward_inward_outward = rod_2_y_inward*rod_3_z_outward
         - rod_2_z_inward*rod_3_y_outward;
     const double sum_in_type2_rods_coplanar_outward_inward_outward_2 = rod_2_x_inward*rod_3_y_outward
         - rod_2_y_inward*rod_3_x_outward;
-    const double type2_rods_coplanar_outward_inward_outward = (rod_1_x_outward
-        *sum_in_type2_rods_coplanar_outward_inward_outward
-        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_inward_outward_2
-        - product_in_type2_rods_coplanar_outward_inward_outward)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_outward_inward_outward =
+        (product_in_type2_rods_coplanar_outward_inward_outward
+        + rod_1_x_outward*sum_in_type2_rods_coplanar_outward_inward_outward
+        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_inward_outward_2)
+        *quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_outward_inward_outward =
         type2_rods_coplanar_outward_inward_outward >= min_type2_margin ? 0 : 3;
     const double axis_a2_inward = offset_a2 + softkin_lane_angle(sin_a2_inward, cos_a2_inward)*SOFTKIN_RADIAN;
-    const double product_in_type2_rods_coplanar_outward_inward_inward = (rod_2_x_inward*rod_3_z_inward
-        - rod_2_z_inward*rod_3_x_inward)*y;
+    const double product_in_type2_rods_coplanar_outward_inward_inward = (rod_2_z_inward*rod_3_x_inward
+        - rod_2_x_inward*rod_3_z_inward)*y;
     const double sum_in_type2_rods_coplanar_outward_inward_inward = rod_2_y_inward*rod_3_z_inward
         - rod_2_z_inward*rod_3_y_inward;
     const double sum_in_type2_rods_coplanar_outward_inward_inward_2 = rod_2_x_inward*rod_3_y_inward
         - rod_2_y_inward*rod_3_x_inward;
-    const double type2_rods_coplanar_outward_inward_inward = (rod_1_x_outward
-        *sum_in_type2_rods_coplanar_outward_inward_inward
-        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_inward_inward_2
-        - product_in_type2_rods_coplanar_outward_inward_inward)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_outward_inward_inward =
+        (product_in_type2_rods_coplanar_outward_inward_inward
+        + rod_1_x_outward*sum_in_type2_rods_coplanar_outward_inward_inward
+        + rod_1_z_outward*sum_in_type2_rods_coplanar_outward_inward_inward_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_outward_inward_inward =
         type2_rods_coplanar_outward_inward_inward >= min_type2_margin ? 0 : 3;
@@ -403,32 +406,33 @@ void delta_c_regular_all(const void *machine, const softkin_lanes *given,
     const double sin_a1_inward = (sin_swing_a1_inward_times_span_1_x - cos_swing_a1_times_z)/effective_a1;
     const double pivot_1_z_inward = -arm_length*sin_a1_inward;
     const double rod_1_z_inward = z - pivot_1_z_inward;
-    const double type2_rods_coplanar_inward_outward_outward = (rod_1_x_inward
-        *sum_in_type2_rods_coplanar_outward_outward_outward
-        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_outward_outward_2
-        - product_in_type2_rods_coplanar_outward_outward_outward)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_inward_outward_outward =
+        (product_in_type2_rods_coplanar_outward_outward_outward
+        + rod_1_x_inward*sum_in_type2_rods_coplanar_outward_outward_outward
+        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_outward_outward_2)
+        *quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_inward_outward_outward =
         type2_rods_coplanar_inward_outward_outward >= min_type2_margin ? 0 : 3;
     const double axis_a1_inward = offset_a1 + softkin_lane_angle(sin_a1_inward, cos_a1_inward)*SOFTKIN_RADIAN;
-    const double type2_rods_coplanar_inward_outward_inward = (rod_1_x_inward
-        *sum_in_type2_rods_coplanar_outward_outward_inward
-        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_outward_inward_2
-        - product_in_type2_rods_coplanar_outward_outward_inward)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_inward_outward_inward =
+        (product_in_type2_rods_coplanar_outward_outward_inward
+        + rod_1_x_inward*sum_in_type2_rods_coplanar_outward_outward_inward
+        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_outward_inward_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_inward_outward_inward =
         type2_rods_coplanar_inward_outward_inward >= min_type2_margin ? 0 : 3;
-    const double type2_rods_coplanar_inward_inward_outward = (rod_1_x_inward
-        *sum_in_type2_rods_coplanar_outward_inward_outward
-        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_inward_outward_2
-        - product_in_type2_rods_coplanar_outward_inward_outward)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_inward_inward_outward =
+        (product_in_type2_rods_coplanar_outward_inward_outward
+        + rod_1_x_inward*sum_in_type2_rods_coplanar_outward_inward_outward
+        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_inward_outward_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_inward_inward_outward =
         type2_rods_coplanar_inward_inward_outward >= min_type2_margin ? 0 : 3;
-    const double type2_rods_coplanar_inward_inward_inward = (rod_1_x_inward
-        *sum_in_type2_rods_coplanar_outward_inward_inward
-        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_inward_inward_2
-        - product_in_type2_rods_coplanar_outward_inward_inward)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_inward_inward_inward =
+        (product_in_type2_rods_coplanar_outward_inward_inward
+        + rod_1_x_inward*sum_in_type2_rods_coplanar_outward_inward_inward
+        + rod_1_z_inward*sum_in_type2_rods_coplanar_outward_inward_inward_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_inward_inward_inward = type2_rods_coplanar_inward_inward_inward >= min_type2_margin
         ? 0 : 3;

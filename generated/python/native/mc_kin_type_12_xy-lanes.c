@@ -15,9 +15,9 @@ void mc_kin_type_12_xy_regular(const void *machine, const softkin_lanes *given,
       link_length_1_times_shortest_link = k->link_length_1_times_shortest_link,
       link_length_2 = k->link_length_2, link_length_2_by_link_length_3 = k->link_length_2_by_link_length_3,
       link_length_3_by_link_length_2 = k->link_length_3_by_link_length_2,
+      link_length_4_minus_link_length_5 = k->link_length_4_minus_link_length_5,
       link_length_4_plus_link_length_5 = k->link_length_4_plus_link_length_5,
       link_length_5 = k->link_length_5,
-      link_length_5_minus_link_length_4 = k->link_length_5_minus_link_length_4,
       link_length_5_times_shortest_link = k->link_length_5_times_shortest_link,
       machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
@@ -68,10 +68,10 @@ void mc_kin_type_12_xy_regular(const void *machine, const softkin_lanes *given,
     missed += effective_a2 > link_length_5_times_shortest_link ? 0.0 : 1.0;
     /* law of cosines for a2 (rod rear): 1 - cosine, times a scale */
     const double one_less_cos_a2 = (effective_a2 + link_length_4_plus_link_length_5)
-        *(effective_a2 + link_length_5_minus_link_length_4);
+        *(effective_a2 - link_length_4_minus_link_length_5);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2 = (link_length_4_plus_link_length_5 - effective_a2)
-        *(effective_a2 - link_length_5_minus_link_length_4);
+        *(effective_a2 + link_length_4_minus_link_length_5);
     /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
     missed += sum_a2 > 0.0 ? 0.0 : 1.0;
@@ -122,9 +122,9 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
       link_length_1_times_shortest_link = k->link_length_1_times_shortest_link,
       link_length_2 = k->link_length_2, link_length_2_by_link_length_3 = k->link_length_2_by_link_length_3,
       link_length_3_by_link_length_2 = k->link_length_3_by_link_length_2,
+      link_length_4_minus_link_length_5 = k->link_length_4_minus_link_length_5,
       link_length_4_plus_link_length_5 = k->link_length_4_plus_link_length_5,
       link_length_5 = k->link_length_5,
-      link_length_5_minus_link_length_4 = k->link_length_5_minus_link_length_4,
       link_length_5_times_shortest_link = k->link_length_5_times_shortest_link,
       machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
@@ -183,10 +183,10 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     missed += effective_a2_left > link_length_5_times_shortest_link ? 0.0 : 1.0;
     /* law of cosines for a2 (rod rear): 1 - cosine, times a scale */
     const double one_less_cos_a2_left = (effective_a2_left + link_length_4_plus_link_length_5)
-        *(effective_a2_left + link_length_5_minus_link_length_4);
+        *(effective_a2_left - link_length_4_minus_link_length_5);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2_left = (link_length_4_plus_link_length_5 - effective_a2_left)
-        *(effective_a2_left - link_length_5_minus_link_length_4);
+        *(effective_a2_left + link_length_4_minus_link_length_5);
     /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left;
     missed += sum_a2_left > 0.0 ? 0.0 : 1.0;
@@ -205,10 +205,10 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     missed += effective_a2_right > link_length_5_times_shortest_link ? 0.0 : 1.0;
     /* law of cosines for a2 (rod rear): 1 - cosine, times a scale */
     const double one_less_cos_a2_right = (effective_a2_right + link_length_4_plus_link_length_5)
-        *(effective_a2_right + link_length_5_minus_link_length_4);
+        *(effective_a2_right - link_length_4_minus_link_length_5);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_a2_right = (link_length_4_plus_link_length_5 - effective_a2_right)
-        *(effective_a2_right - link_length_5_minus_link_length_4);
+        *(effective_a2_right + link_length_4_minus_link_length_5);
     /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right;
     missed += sum_a2_right > 0.0 ? 0.0 : 1.0;

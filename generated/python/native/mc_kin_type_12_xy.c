@@ -256,10 +256,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   }
   /* law of cosines for a2 (rod rear): 1 - cosine, times a scale */
   const double one_less_cos_a2 = (effective_a2 + k->link_length_4_plus_link_length_5)
-      *(effective_a2 + k->link_length_5_minus_link_length_4);
+      *(effective_a2 - k->link_length_4_minus_link_length_5);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2 = (k->link_length_4_plus_link_length_5 - effective_a2)
-      *(effective_a2 - k->link_length_5_minus_link_length_4);
+      *(effective_a2 + k->link_length_4_minus_link_length_5);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
   const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
@@ -267,9 +267,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a2: out of reach */
   if (!(fabs(cos_swing_a2) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "u",
-        (effective_a2 - k->link_length_4_plus_link_length_5 > fabs(k->link_length_5_minus_link_length_4)
+        (effective_a2 - k->link_length_4_plus_link_length_5 > fabs(k->link_length_4_minus_link_length_5)
         - effective_a2 ? effective_a2 - k->link_length_4_plus_link_length_5
-        : fabs(k->link_length_5_minus_link_length_4) - effective_a2), 0);
+        : fabs(k->link_length_4_minus_link_length_5) - effective_a2), 0);
   }
   const double rod_1_x = x - centre_1_x;
   const double rod_1_y = y - centre_1_y;
@@ -639,10 +639,10 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       : 1.0;
   /* law of cosines for a2 (rod rear): 1 - cosine, times a scale */
   const double one_less_cos_a2_left = (divisor_a2_left + k->link_length_4_plus_link_length_5)
-      *(divisor_a2_left + k->link_length_5_minus_link_length_4);
+      *(divisor_a2_left - k->link_length_4_minus_link_length_5);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2_left = (k->link_length_4_plus_link_length_5 - divisor_a2_left)
-      *(divisor_a2_left - k->link_length_5_minus_link_length_4);
+      *(divisor_a2_left + k->link_length_4_minus_link_length_5);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left;
   const double divisor_of_cos_a2_left = sum_a2_left > 0.0 ? sum_a2_left : 1.0;
@@ -722,10 +722,10 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       ? effective_a2_right : 1.0;
   /* law of cosines for a2 (rod rear): 1 - cosine, times a scale */
   const double one_less_cos_a2_right = (divisor_a2_right + k->link_length_4_plus_link_length_5)
-      *(divisor_a2_right + k->link_length_5_minus_link_length_4);
+      *(divisor_a2_right - k->link_length_4_minus_link_length_5);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_a2_right = (k->link_length_4_plus_link_length_5 - divisor_a2_right)
-      *(divisor_a2_right - k->link_length_5_minus_link_length_4);
+      *(divisor_a2_right + k->link_length_4_minus_link_length_5);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right;
   const double divisor_of_cos_a2_right = sum_a2_right > 0.0 ? sum_a2_right : 1.0;
@@ -858,7 +858,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double link_length_1_times_shortest_link = 1e-9*p->link_length_1;
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double link_length_5_times_shortest_link = 1e-9*p->link_length_5;
-  const double link_length_5_minus_link_length_4 = p->link_length_5 - p->link_length_4;
+  const double link_length_4_minus_link_length_5 = p->link_length_4 - p->link_length_5;
   const double link_length_3_by_link_length_2 = p->link_length_3/p->link_length_2;
   const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
   const double link_length_2_by_link_length_3 = p->link_length_2/p->link_length_3;
@@ -903,7 +903,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.link_length_1_times_shortest_link = link_length_1_times_shortest_link;
   made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.link_length_5_times_shortest_link = link_length_5_times_shortest_link;
-  made.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4;
+  made.link_length_4_minus_link_length_5 = link_length_4_minus_link_length_5;
   made.link_length_3_by_link_length_2 = link_length_3_by_link_length_2;
   made.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle;
   made.link_length_2_by_link_length_3 = link_length_2_by_link_length_3;

@@ -80,7 +80,7 @@ typedef struct {
       link_length_2_squared_times_rounding, link_length_2_plus_radius_2, link_length_2_minus_radius_2,
       product_in_foot_fraction, machine_scale_times_plane, link_length_1_times_shortest_link,
       link_length_1_minus_link_length_2, link_length_5_times_shortest_link,
-      link_length_5_minus_link_length_4, link_length_3_by_link_length_2,
+      link_length_4_minus_link_length_5, link_length_3_by_link_length_2,
       machine_scale_squared_times_free_angle, link_length_2_by_link_length_3, one_by_link_length_2,
       product_in_branch_w, quotient_in_branch_w, sum_in_pivot_rear_x, link_length_1_plus_link_length_2,
       link_length_4_plus_link_length_5, quotient_in_type2_arms_aligned, quotient_in_margin_arms_aligned,

@@ -10,13 +10,13 @@ void p2c_type1_regular(const void *machine, const softkin_lanes *given,
     double *SOFTKIN_RESTRICT misses) {
   const p2c_type1_machine *k = machine;
   const double assembly_sign_by_outer_arm_squared = k->assembly_sign_by_outer_arm_squared,
-      inner_arm = k->inner_arm, inner_arm_minus_outer_arm = k->inner_arm_minus_outer_arm,
+      displacement_minus_tcp_displacement = k->displacement_minus_tcp_displacement, inner_arm = k->inner_arm,
+      inner_arm_minus_outer_arm = k->inner_arm_minus_outer_arm,
       inner_arm_plus_outer_arm = k->inner_arm_plus_outer_arm,
       inner_arm_times_shortest_link = k->inner_arm_times_shortest_link,
       machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
-      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
-      tcp_displacement_minus_displacement = k->tcp_displacement_minus_displacement;
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         sigma_knee_1 = given->signs[0][lane], sigma_knee_2 = given->signs[1][lane],
@@ -25,7 +25,7 @@ void p2c_type1_regular(const void *machine, const softkin_lanes *given,
     /* z: a planar machine has none */
     missed += fabs(z) <= machine_scale_times_plane ? 0.0 : 1.0;
     /* rod 1: known part of its vector */
-    const double span_1_x = x - tcp_displacement_minus_displacement;
+    const double span_1_x = displacement_minus_tcp_displacement + x;
     const double y_squared = y*y;
     /* effective length of the arm that a1 turns */
     const double effective_a1 = softkin_lane_root(y_squared + span_1_x*span_1_x);
@@ -44,7 +44,7 @@ void p2c_type1_regular(const void *machine, const softkin_lanes *given,
     /* a1: out of reach */
     missed += fabs(cos_swing_a1) <= 1.0000000000005 ? 0.0 : 1.0;
     /* rod 2: known part of its vector */
-    const double span_2_x = tcp_displacement_minus_displacement + x;
+    const double span_2_x = x - displacement_minus_tcp_displacement;
     /* effective length of the arm that a2 turns */
     const double effective_a2 = softkin_lane_root(y_squared + span_2_x*span_2_x);
     /* a2: its effective length is too short */
@@ -100,13 +100,13 @@ void p2c_type1_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const p2c_type1_machine *k = machine;
   const double assembly_sign_by_outer_arm_squared = k->assembly_sign_by_outer_arm_squared,
-      inner_arm = k->inner_arm, inner_arm_minus_outer_arm = k->inner_arm_minus_outer_arm,
+      displacement_minus_tcp_displacement = k->displacement_minus_tcp_displacement, inner_arm = k->inner_arm,
+      inner_arm_minus_outer_arm = k->inner_arm_minus_outer_arm,
       inner_arm_plus_outer_arm = k->inner_arm_plus_outer_arm,
       inner_arm_times_shortest_link = k->inner_arm_times_shortest_link,
       machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
-      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
-      tcp_displacement_minus_displacement = k->tcp_displacement_minus_displacement;
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane];
@@ -114,7 +114,7 @@ void p2c_type1_regular_all(const void *machine, const softkin_lanes *given,
     /* z: a planar machine has none */
     missed += fabs(z) <= machine_scale_times_plane ? 0.0 : 1.0;
     /* rod 1: known part of its vector */
-    const double span_1_x = x - tcp_displacement_minus_displacement;
+    const double span_1_x = displacement_minus_tcp_displacement + x;
     const double y_squared = y*y;
     /* effective length of the arm that a1 turns */
     const double effective_a1 = softkin_lane_root(y_squared + span_1_x*span_1_x);
@@ -133,7 +133,7 @@ void p2c_type1_regular_all(const void *machine, const softkin_lanes *given,
     /* a1: out of reach */
     missed += fabs(cos_swing_a1) <= 1.0000000000005 ? 0.0 : 1.0;
     /* rod 2: known part of its vector */
-    const double span_2_x = tcp_displacement_minus_displacement + x;
+    const double span_2_x = x - displacement_minus_tcp_displacement;
     /* effective length of the arm that a2 turns */
     const double effective_a2 = softkin_lane_root(y_squared + span_2_x*span_2_x);
     /* a2: its effective length is too short */

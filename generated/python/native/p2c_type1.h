@@ -74,7 +74,7 @@ typedef struct {
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, inner_arm, offset_a1, offset_a2,
       min_type2_margin, assembly_sign, product_in_normal_divisor, twice_outer_arm,
       outer_arm_squared_times_rounding, machine_scale_times_plane, inner_arm_times_shortest_link,
-      inner_arm_minus_outer_arm, machine_scale_squared_times_free_angle, tcp_displacement_minus_displacement,
+      inner_arm_minus_outer_arm, machine_scale_squared_times_free_angle, displacement_minus_tcp_displacement,
       one_by_outer_arm, inner_arm_plus_outer_arm, assembly_sign_by_outer_arm_squared,
       one_by_outer_arm_squared, twice_inner_arm, sum_in_slope_1_by_x;
   bool single_a1, single_a2;

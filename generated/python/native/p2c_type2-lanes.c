@@ -24,7 +24,7 @@ void p2c_type2_regular(const void *machine, const softkin_lanes *given,
     double missed = misses[lane];
     /* z: a planar machine has none */
     missed += fabs(z) <= machine_scale_times_plane ? 0.0 : 1.0;
-    const double span_1_x = x - sum_in_pivot_1_x; /* rod 1: known part of its vector */
+    const double span_1_x = sum_in_pivot_1_x + x; /* rod 1: known part of its vector */
     const double y_squared = y*y;
     /* effective length of the arm that a1 turns */
     const double effective_a1 = softkin_lane_root(y_squared + span_1_x*span_1_x);
@@ -42,7 +42,7 @@ void p2c_type2_regular(const void *machine, const softkin_lanes *given,
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
     /* a1: out of reach */
     missed += fabs(cos_swing_a1) <= 1.0000000000005 ? 0.0 : 1.0;
-    const double span_2_x = sum_in_pivot_1_x + x; /* rod 2: known part of its vector */
+    const double span_2_x = x - sum_in_pivot_1_x; /* rod 2: known part of its vector */
     /* effective length of the arm that a2 turns */
     const double effective_a2 = softkin_lane_root(y_squared + span_2_x*span_2_x);
     /* a2: its effective length is too short */
@@ -111,7 +111,7 @@ void p2c_type2_regular_all(const void *machine, const softkin_lanes *given,
     double missed = misses[lane];
     /* z: a planar machine has none */
     missed += fabs(z) <= machine_scale_times_plane ? 0.0 : 1.0;
-    const double span_1_x = x - sum_in_pivot_1_x; /* rod 1: known part of its vector */
+    const double span_1_x = sum_in_pivot_1_x + x; /* rod 1: known part of its vector */
     const double y_squared = y*y;
     /* effective length of the arm that a1 turns */
     const double effective_a1 = softkin_lane_root(y_squared + span_1_x*span_1_x);
@@ -129,7 +129,7 @@ void p2c_type2_regular_all(const void *machine, const softkin_lanes *given,
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
     /* a1: out of reach */
     missed += fabs(cos_swing_a1) <= 1.0000000000005 ? 0.0 : 1.0;
-    const double span_2_x = sum_in_pivot_1_x + x; /* rod 2: known part of its vector */
+    const double span_2_x = x - sum_in_pivot_1_x; /* rod 2: known part of its vector */
     /* effective length of the arm that a2 turns */
     const double effective_a2 = softkin_lane_root(y_squared + span_2_x*span_2_x);
     /* a2: its effective length is too short */

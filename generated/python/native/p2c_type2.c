@@ -94,11 +94,11 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
   const double cos_a1 = cos(a1);
   /* rod 1: centre about which it swings */
-  const double pivot_1_x = k->sum_in_pivot_1_x + k->inner_arm*cos_a1;
+  const double pivot_1_x = k->inner_arm*cos_a1 - k->sum_in_pivot_1_x;
   const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double cos_a2 = cos(a2);
   /* rod 2: centre about which it swings */
-  const double pivot_2_x = k->inner_arm*cos_a2 - k->sum_in_pivot_1_x;
+  const double pivot_2_x = k->sum_in_pivot_1_x + k->inner_arm*cos_a2;
   const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
   const double sin_a1 = sin(a1);
   const double pivot_1_y = k->inner_arm*sin_a1;
@@ -126,9 +126,9 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal;
   const double foot_y = 0.5*centre_1_to_2_y;
   const double y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal;
-  const double span_1_x = x - k->sum_in_pivot_1_x; /* rod 1: known part of its vector */
+  const double span_1_x = k->sum_in_pivot_1_x + x; /* rod 1: known part of its vector */
   const double branch_knee_1 = k->one_by_outer_arm*(y*cos_a1 - span_1_x*sin_a1);
-  const double span_2_x = k->sum_in_pivot_1_x + x; /* rod 2: known part of its vector */
+  const double span_2_x = x - k->sum_in_pivot_1_x; /* rod 2: known part of its vector */
   const double branch_knee_2 = (span_2_x*sin_a2 - y*cos_a2)*k->one_by_outer_arm;
   frame->position[0] = x;
   frame->position[1] = y;
@@ -162,7 +162,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "z: a planar machine has none", "u",
         fabs(z) - k->machine_scale_times_plane, 0);
   }
-  const double span_1_x = x - k->sum_in_pivot_1_x; /* rod 1: known part of its vector */
+  const double span_1_x = k->sum_in_pivot_1_x + x; /* rod 1: known part of its vector */
   const double y_squared = y*y;
   /* effective length of the arm that a1 turns */
   const double effective_a1 = softkin_root(y_squared + span_1_x*span_1_x);
@@ -186,7 +186,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         (effective_a1 - k->inner_arm_plus_outer_arm > fabs(k->inner_arm_minus_outer_arm) - effective_a1
         ? effective_a1 - k->inner_arm_plus_outer_arm : fabs(k->inner_arm_minus_outer_arm) - effective_a1), 0);
   }
-  const double span_2_x = k->sum_in_pivot_1_x + x; /* rod 2: known part of its vector */
+  const double span_2_x = x - k->sum_in_pivot_1_x; /* rod 2: known part of its vector */
   /* effective length of the arm that a2 turns */
   const double effective_a2 = softkin_root(y_squared + span_2_x*span_2_x);
   /* a2: its effective length is too short */
@@ -317,11 +317,11 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
   const double cos_a1 = cos(a1);
   /* rod 1: centre about which it swings */
-  const double pivot_1_x = k->sum_in_pivot_1_x + k->inner_arm*cos_a1;
+  const double pivot_1_x = k->inner_arm*cos_a1 - k->sum_in_pivot_1_x;
   const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double cos_a2 = cos(a2);
   /* rod 2: centre about which it swings */
-  const double pivot_2_x = k->inner_arm*cos_a2 - k->sum_in_pivot_1_x;
+  const double pivot_2_x = k->sum_in_pivot_1_x + k->inner_arm*cos_a2;
   const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
   const double sin_a1 = sin(a1);
   const double pivot_1_y = k->inner_arm*sin_a1;
@@ -349,9 +349,9 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal;
   const double foot_x = 0.5*centre_1_to_2_x; /* foot of the perpendicular, seen from centre 1 */
   const double x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal;
-  const double span_1_x = x - k->sum_in_pivot_1_x; /* rod 1: known part of its vector */
+  const double span_1_x = k->sum_in_pivot_1_x + x; /* rod 1: known part of its vector */
   const double margin_stretched_1 = k->one_by_outer_arm*(y*cos_a1 - span_1_x*sin_a1);
-  const double span_2_x = k->sum_in_pivot_1_x + x; /* rod 2: known part of its vector */
+  const double span_2_x = x - k->sum_in_pivot_1_x; /* rod 2: known part of its vector */
   const double margin_stretched_2 = (span_2_x*sin_a2 - y*cos_a2)*k->one_by_outer_arm;
   const double rod_1_x = x - pivot_1_x;
   const double rod_1_y = y - pivot_1_y;
@@ -375,11 +375,11 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
   const double cos_a1 = cos(a1);
   /* rod 1: centre about which it swings */
-  const double pivot_1_x = k->sum_in_pivot_1_x + k->inner_arm*cos_a1;
+  const double pivot_1_x = k->inner_arm*cos_a1 - k->sum_in_pivot_1_x;
   const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
   const double cos_a2 = cos(a2);
   /* rod 2: centre about which it swings */
-  const double pivot_2_x = k->inner_arm*cos_a2 - k->sum_in_pivot_1_x;
+  const double pivot_2_x = k->sum_in_pivot_1_x + k->inner_arm*cos_a2;
   const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
   const double sin_a1 = sin(a1);
   const double pivot_1_y = k->inner_arm*sin_a1;
@@ -440,7 +440,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(fabs(z) <= k->machine_scale_times_plane)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 4);
   }
-  const double span_1_x = x - k->sum_in_pivot_1_x; /* rod 1: known part of its vector */
+  const double span_1_x = k->sum_in_pivot_1_x + x; /* rod 1: known part of its vector */
   const double y_squared = y*y;
   /* effective length of the arm that a1 turns */
   const double effective_a1 = softkin_root(y_squared + span_1_x*span_1_x);
@@ -460,7 +460,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(fabs(cos_swing_a1) <= 1.0000000000005)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 4);
   }
-  const double span_2_x = k->sum_in_pivot_1_x + x; /* rod 2: known part of its vector */
+  const double span_2_x = x - k->sum_in_pivot_1_x; /* rod 2: known part of its vector */
   /* effective length of the arm that a2 turns */
   const double effective_a2 = softkin_root(y_squared + span_2_x*span_2_x);
   if (!(effective_a2 > k->inner_arm_times_shortest_link)) {
@@ -585,7 +585,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double inner_arm_times_shortest_link = 1e-9*p->inner_arm;
   const double inner_arm_minus_outer_arm = p->inner_arm - p->outer_arm;
   const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
-  const double sum_in_pivot_1_x = 0.5*p->tcp_link_distance - p->displacement;
+  const double sum_in_pivot_1_x = p->displacement - 0.5*p->tcp_link_distance;
   const double one_by_outer_arm = 1.0/p->outer_arm;
   const double inner_arm_plus_outer_arm = p->inner_arm + p->outer_arm;
   const double assembly_sign_by_outer_arm_squared = assembly_sign/(p->outer_arm*p->outer_arm);

@@ -10,14 +10,14 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     double *SOFTKIN_RESTRICT misses) {
   const pos_rrr_machine *k = machine;
   const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3_2 = k->a2_minus_effective_q3_2,
-      a2_plus_effective_q3_2_2 = k->a2_plus_effective_q3_2_2,
-      a3_by_effective_q3_2_2 = k->a3_by_effective_q3_2_2, d1 = k->d1, d3 = k->d3,
-      d4_by_effective_q3_2_2 = k->d4_by_effective_q3_2_2, effective_q3_2 = k->effective_q3_2,
-      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
-      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
-      offset_a3 = k->offset_a3, product_in_lost_digits_19 = k->product_in_lost_digits_19,
-      rounding_q1 = k->rounding_q1, single_a1 = k->single_a1 ? 1.0 : 0.0,
-      single_a2 = k->single_a2 ? 1.0 : 0.0, single_a3 = k->single_a3 ? 1.0 : 0.0;
+      a2_plus_effective_q3_2 = k->a2_plus_effective_q3_2, a3_by_effective_q3_2 = k->a3_by_effective_q3_2,
+      d1 = k->d1, d3 = k->d3, d4_by_effective_q3_2 = k->d4_by_effective_q3_2,
+      effective_q3_2 = k->effective_q3_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, offset_a1 = k->offset_a1,
+      offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
+      product_in_lost_digits_19 = k->product_in_lost_digits_19, rounding_q1 = k->rounding_q1,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         sigma_arm = given->signs[0][lane], sigma_elbow = given->signs[1][lane],
@@ -41,7 +41,7 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     /* distance that the remaining links must span */
     const double reach = softkin_lane_root(wrist_x_from_q1*wrist_x_from_q1 + wrist_z_from_q1*wrist_z_from_q1);
     /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-    const double one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach)*(a2_plus_effective_q3_2_2 - reach);
+    const double one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach);
     /* 1 + cosine, times the scale */
     const double one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach);
     /* sum of both, twice the scale: cosine² + sine² is then 1 */
@@ -71,8 +71,8 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     const double direction_y_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
     const double axis_a2 = offset_a2 + softkin_lane_angle(direction_y_q2, direction_x_q2)*SOFTKIN_RADIAN;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3 = a3_by_effective_q3_2_2*cos_swing_q3 - d4_by_effective_q3_2_2*sin_swing_q3;
-    const double sin_q3 = a3_by_effective_q3_2_2*sin_swing_q3 + d4_by_effective_q3_2_2*cos_swing_q3;
+    const double cos_q3 = a3_by_effective_q3_2*cos_swing_q3 - d4_by_effective_q3_2*sin_swing_q3;
+    const double sin_q3 = a3_by_effective_q3_2*sin_swing_q3 + d4_by_effective_q3_2*cos_swing_q3;
     const double axis_a3 = offset_a3 + softkin_lane_angle(sin_q3, cos_q3)*SOFTKIN_RADIAN;
     near[0][lane] = single_a1 > 0.0 ? mid_a1 : ref_a1;
     near[1][lane] = single_a2 > 0.0 ? mid_a2 : ref_a2;
@@ -89,17 +89,16 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const pos_rrr_machine *k = machine;
-  const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3_2_2 = k->a2_minus_effective_q3_2_2,
-      a2_plus_effective_q3_2_2 = k->a2_plus_effective_q3_2_2,
-      a3_by_effective_q3_2_2 = k->a3_by_effective_q3_2_2, d1 = k->d1, d3 = k->d3,
-      d4_by_effective_q3_2_2 = k->d4_by_effective_q3_2_2, effective_q3_2 = k->effective_q3_2,
-      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
-      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
-      offset_a3 = k->offset_a3, product_in_lost_digits_19 = k->product_in_lost_digits_19,
-      rounding_q1 = k->rounding_q1, single_a1 = k->single_a1 ? 1.0 : 0.0,
-      single_a2 = k->single_a2 ? 1.0 : 0.0, single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double angle_of_a3_by_effective_q3_2_2 = softkin_lane_angle(d4_by_effective_q3_2_2,
-      a3_by_effective_q3_2_2);
+  const double a1 = k->a1, a2 = k->a2, a3 = k->a3, d1 = k->d1, d3 = k->d3, d4 = k->d4,
+      effective_q3_2 = k->effective_q3_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, offset_a1 = k->offset_a1,
+      offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
+      product_in_lost_digits_19 = k->product_in_lost_digits_19, rounding_q1 = k->rounding_q1,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0;
+  const double angle_in_angle_q3_front_down = softkin_lane_angle(d4/effective_q3_2, a3/effective_q3_2);
+  const double a2_plus_effective_q3_2_2 = a2 + effective_q3_2;
+  const double a2_minus_effective_q3_2_2 = a2 - effective_q3_2;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane],
@@ -181,11 +180,11 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double axis_a2_front_down = offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
     const double angle_of_swing_q3_front_down = -softkin_lane_angle(sin_swing_q3_front_up,
         cos_swing_q3_front);
-    const double angle_q3_front_down = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_front_down;
+    const double angle_q3_front_down = angle_in_angle_q3_front_down + angle_of_swing_q3_front_down;
     const double axis_a3_front_down = offset_a3 + angle_q3_front_down*SOFTKIN_RADIAN;
     const double angle_q2_front_up = -angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
     const double axis_a2_front_up = offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
-    const double angle_q3_front_up = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_front_down;
+    const double angle_q3_front_up = angle_in_angle_q3_front_down - angle_of_swing_q3_front_down;
     const double axis_a3_front_up = offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
     /* q3: out of reach */
     const double refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3;
@@ -204,11 +203,11 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double angle_q2_back_down = angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
     const double axis_a2_back_down = offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
     const double angle_of_swing_q3_back_down = -softkin_lane_angle(sin_swing_q3_back_up, cos_swing_q3_back);
-    const double angle_q3_back_down = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_back_down;
+    const double angle_q3_back_down = angle_in_angle_q3_front_down + angle_of_swing_q3_back_down;
     const double axis_a3_back_down = offset_a3 + angle_q3_back_down*SOFTKIN_RADIAN;
     const double angle_q2_back_up = -angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
     const double axis_a2_back_up = offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
-    const double angle_q3_back_up = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_back_down;
+    const double angle_q3_back_up = angle_in_angle_q3_front_down - angle_of_swing_q3_back_down;
     const double axis_a3_back_up = offset_a3 + angle_q3_back_up*SOFTKIN_RADIAN;
     near[0][lane] = single_a1 > 0.0 ? mid_a1 : ref_a1;
     near[1][lane] = single_a2 > 0.0 ? mid_a2 : ref_a2;

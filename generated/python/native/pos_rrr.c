@@ -130,8 +130,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   const double closed_one_less_cos_q3 = (k->a2_plus_effective_q3_2 + closed_reach)
       *(k->a2_plus_effective_q3_2 - closed_reach);
   /* 1 + cosine, times the scale */
-  const double closed_one_plus_cos_q3 = (closed_reach - k->a2_minus_effective_q3_2_2)
-      *(k->a2_minus_effective_q3_2_2 + closed_reach);
+  const double closed_one_plus_cos_q3 = (closed_reach - k->a2_minus_effective_q3_2)
+      *(k->a2_minus_effective_q3_2 + closed_reach);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3;
   const double closed_divisor_of_cos_q3 = closed_sum_q3 > 0.0 ? closed_sum_q3 : 1.0;
@@ -293,224 +293,6 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   return SOFTKIN_OK;
 }
 
-/* The axes that meet a point, found by steps on the closure, and whether they do. */
-static softkin_status find_meet_point(const void *machine, const double *given, double *found,
-    softkin_refusal *why) {
-  const pos_rrr_machine *k = machine;
-  const double given_point_x = given[0], given_point_y = given[1], given_point_z = given[2],
-      given_ref_a1 = given[3], given_ref_a2 = given[4], given_ref_a3 = given[5], goal_x = given[11],
-      goal_y = given[12], goal_z = given[13], start_a1 = given[14], start_a2 = given[15],
-      start_a3 = given[16];
-  const int given_sigma_arm = (int)given[6], given_sigma_elbow = (int)given[7],
-      given_turn_a1 = (int)given[8], given_turn_a2 = (int)given[9], given_turn_a3 = (int)given[10];
-  const double closed_sign_arm = given_sigma_arm; /* arm: +1 front, -1 back */
-  const double closed_sign_elbow = given_sigma_elbow; /* elbow: +1 down, -1 up */
-  /* distance of the point from the axis of q1 */
-  const double closed_distance_q1 = sqrt(goal_x*goal_x + goal_y*goal_y);
-  /* A1: without a commanded turn, the value nearest to this */
-  const double closed_open_a1 = k->single_a1 ? k->mid_a1 : given_ref_a1;
-  const double closed_near_a1 = given_turn_a1 != 0
-      ? 360.0*(given_turn_a1 > 0 ? given_turn_a1 - 1 : given_turn_a1) : closed_open_a1;
-  /* coordinate of the point that the remaining links must reach */
-  const double closed_wrist_z_from_q1 = goal_z - k->d1;
-  /* A2: without a commanded turn, the value nearest to this */
-  const double closed_open_a2 = k->single_a2 ? k->mid_a2 : given_ref_a2;
-  const double closed_near_a2 = given_turn_a2 != 0
-      ? 360.0*(given_turn_a2 > 0 ? given_turn_a2 - 1 : given_turn_a2) : closed_open_a2;
-  /* A3: without a commanded turn, the value nearest to this */
-  const double closed_open_a3 = k->single_a3 ? k->mid_a3 : given_ref_a3;
-  const double closed_near_a3 = given_turn_a3 != 0
-      ? 360.0*(given_turn_a3 > 0 ? given_turn_a3 - 1 : given_turn_a3) : closed_open_a3;
-  /* commanded point, in the frame of the last moving joint */
-  const double tool_x = k->d4 + given_point_z;
-  /* commanded point, in the frame of the last moving joint */
-  const double tool_z = k->a3 + given_point_x;
-  /* commanded point, in the frame of the last moving joint */
-  const double closed_tool_y = -k->d3 - given_point_y;
-  /* Pythagoras: square of the distance ahead of the axis */
-  const double closed_ahead_squared_q1 = (closed_distance_q1 + closed_tool_y)
-      *(closed_distance_q1 - closed_tool_y);
-  /* how far ahead of the axis the point is; negative: behind it */
-  const double closed_ahead_q1 = softkin_root(closed_ahead_squared_q1)*closed_sign_arm;
-  /* coordinate of the point that the remaining links must reach */
-  const double closed_wrist_x_from_q1 = closed_ahead_q1 - k->a1;
-  /* distance that the remaining links must span */
-  const double closed_reach = sqrt(closed_wrist_x_from_q1*closed_wrist_x_from_q1
-      + closed_wrist_z_from_q1*closed_wrist_z_from_q1);
-  /* effective length of the arm that q3 turns */
-  const double closed_effective_q3 = sqrt(tool_x*tool_x + tool_z*tool_z);
-  const double closed_divisor_q3 = closed_effective_q3 > k->a2_times_shortest_link ? closed_effective_q3
-      : 1.0;
-  const double a2_minus_closed_reach = k->a2 - closed_reach;
-  const double a2_plus_closed_reach = k->a2 + closed_reach;
-  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double closed_one_less_cos_q3 = (a2_minus_closed_reach + closed_divisor_q3)
-      *(a2_plus_closed_reach + closed_divisor_q3);
-  /* 1 + cosine, times the scale */
-  const double closed_one_plus_cos_q3 = (closed_divisor_q3 - a2_plus_closed_reach)
-      *(a2_minus_closed_reach - closed_divisor_q3);
-  /* sum of both, twice the scale: cosine² + sine² is then 1 */
-  const double closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3;
-  const double closed_divisor_of_cos_q3 = closed_sum_q3 > 0.0 ? closed_sum_q3 : 1.0;
-  const double closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3)
-      /closed_divisor_of_cos_q3;
-  /* sine squared, times the squared scale */
-  const double closed_sine_square_q3 = closed_one_less_cos_q3*closed_one_plus_cos_q3;
-  const double closed_sin_swing_q3 = -2.0*softkin_root(closed_sine_square_q3)*closed_sign_elbow
-      /closed_divisor_of_cos_q3;
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double closed_cos_q3 = (closed_cos_swing_q3*tool_z - closed_sin_swing_q3*tool_x)/closed_divisor_q3;
-  const double closed_sin_q3 = (closed_cos_swing_q3*tool_x + closed_sin_swing_q3*tool_z)/closed_divisor_q3;
-  const double closed_arm_along_q2 = closed_cos_q3*tool_x - closed_sin_q3*tool_z;
-  const double closed_arm_across_q2 = k->a2 + closed_cos_q3*tool_z + closed_sin_q3*tool_x;
-  const double closed_axis_a3 = softkin_on_turn(k->offset_a3
-      + softkin_angle_of(closed_sin_q3, closed_cos_q3)*SOFTKIN_RADIAN, closed_near_a3);
-  /* steps of damped least squares on the closure, from one start after the other */
-  double tried_a1 = start_a1;
-  double tried_a2 = start_a2;
-  double tried_a3 = start_a3;
-  int passes_left = 40;
-  int attempt = 0;
-  double error_before = 9.0;
-  double q1, sin_q1, cos_q1, q2, q3, q2_plus_q3, cos_q23, r11_at_q23, sin_q23, r13_at_q23, x_at_q2, sin_q2,
-      r13_at_q2, x_at_q3, flange_x, x, r21_at_q23, r23_at_q23, y_at_q2, r23_at_q2, y_at_q3, flange_y, y,
-      branch_arm, sin_q3, cos_q3, branch_elbow, error_1, error_2, cos_q2, z_at_q3, flange_z, z, error_3,
-      error, free_angle, free_turn, closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1,
-      closed_cos_q1, closed_sin_q1, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1,
-      cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, product_in_damping, damping,
-      product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, product_1_2, rate_3_2, rate_3_3,
-      product_1_3, product_2_2, product_2_3, product_3_3, multiplier_1, multiplier_2, multiplier_3, step_a1,
-      step_a2, step_a3, step_length, shrinking, closed_reference_a2, closed_direction_x_q2,
-      closed_direction_y_q2, closed_axis_a2, shared_quotient;
-  int next_attempt;
-  bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, mirrors;
-  for (int pass = 0;; pass += 1) {
-    if (pass == 164) {
-      return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
-    }
-    q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    sin_q1 = sin(q1);
-    cos_q1 = cos(q1);
-    q2 = (tried_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    q3 = (tried_a3 - k->offset_a3)*SOFTKIN_DEGREE;
-    q2_plus_q3 = q2 + q3;
-    cos_q23 = cos(q2_plus_q3);
-    r11_at_q23 = cos_q1*cos_q23;
-    sin_q23 = sin(q2_plus_q3);
-    r13_at_q23 = -cos_q1*sin_q23;
-    x_at_q2 = k->a1*cos_q1;
-    sin_q2 = sin(q2);
-    r13_at_q2 = -cos_q1*sin_q2;
-    x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
-    flange_x = x_at_q3 + k->a3*r13_at_q23 + k->d3*sin_q1 + k->d4*r11_at_q23;
-    x = flange_x + given_point_x*r13_at_q23 + given_point_y*sin_q1 + given_point_z*r11_at_q23;
-    r21_at_q23 = cos_q23*sin_q1;
-    r23_at_q23 = -sin_q1*sin_q23;
-    y_at_q2 = k->a1*sin_q1;
-    r23_at_q2 = -sin_q1*sin_q2;
-    y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
-    flange_y = y_at_q3 + k->a3*r23_at_q23 + k->d4*r21_at_q23 - k->d3*cos_q1;
-    y = flange_y + given_point_x*r23_at_q23 + given_point_z*r21_at_q23 - given_point_y*cos_q1;
-    branch_arm = k->one_by_machine_scale*(x*cos_q1 + y*sin_q1);
-    beside_arm = branch_arm*closed_sign_arm < -1e-6;
-    sin_q3 = sin(q3);
-    cos_q3 = cos(q3);
-    branch_elbow = k->one_by_machine_scale*(tool_x*cos_q3 - tool_z*sin_q3);
-    beside_elbow = branch_elbow*closed_sign_elbow < -1e-6;
-    error_1 = (goal_x - x)*k->one_by_machine_scale;
-    error_2 = (goal_y - y)*k->one_by_machine_scale;
-    cos_q2 = cos(q2);
-    z_at_q3 = k->d1 + k->a2*cos_q2;
-    flange_z = z_at_q3 + k->a3*cos_q23 + k->d4*sin_q23;
-    z = flange_z + given_point_x*cos_q23 + given_point_z*sin_q23;
-    error_3 = (goal_z - z)*k->one_by_machine_scale;
-    /* error of the pose, in characteristic lengths and radians */
-    error = sqrt(error_1*error_1 + error_2*error_2 + error_3*error_3);
-    another = passes_left <= 0;
-    /* the error is rounding, and steps make it no smaller */
-    pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
-    pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow);
-    next_attempt = attempt + (another ? 1 : 0);
-    mirrors = pose_is_close && (beside_arm || beside_elbow);
-    free_angle = next_attempt > 0 ? 1e-6 : 1e-11;
-    free_turn = -137.5*(next_attempt > 1 ? 1 - next_attempt : 0);
-    closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
-    free_angle_times_machine_scale = free_angle*k->machine_scale;
-    closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
-        ? closed_distance_q1*closed_distance_q1 : 1.0;
-    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    closed_cos_q1 = closed_distance_q1 > free_angle_times_machine_scale
-        ? (closed_ahead_q1*goal_x + closed_tool_y*goal_y)/closed_divisor_q1 : cos(closed_reference_a1);
-    closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
-        ? (closed_ahead_q1*goal_y - closed_tool_y*goal_x)/closed_divisor_q1 : sin(closed_reference_a1);
-    closed_axis_a1 = softkin_on_turn(k->offset_a1
-        + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
-    rate_1_1 = -k->one_by_machine_scale*y;
-    rate_2_1 = k->one_by_machine_scale*x;
-    z_minus_d1 = z - k->d1;
-    cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
-    rate_1_2 = -z_minus_d1*cos_q1_times_one_by_machine_scale;
-    z_minus_z_at_q3 = z - z_at_q3;
-    rate_1_3 = -z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
-    product_in_damping = 0.001*error;
-    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
-    product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3;
-    sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
-    rate_2_2 = -z_minus_d1*sin_q1_times_one_by_machine_scale;
-    rate_2_3 = -z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
-    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3;
-    rate_3_2 = -k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
-    rate_3_3 = -k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
-    product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3;
-    product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3;
-    product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3;
-    product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3;
-    double system[3][4] = {{product_1_1, product_1_2, product_1_3, error_1},
-        {product_1_2, product_2_2, product_2_3, error_2}, {product_1_3, product_2_3, product_3_3, error_3}};
-    softkin_solve(&system[0][0], 3, 1);
-    multiplier_1 = system[0][3];
-    multiplier_2 = system[1][3];
-    multiplier_3 = system[2][3];
-    step_a1 = multiplier_1*rate_1_1 + multiplier_2*rate_2_1;
-    step_a2 = multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2;
-    step_a3 = multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
-    step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3);
-    shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
-    closed_reference_a2 = SOFTKIN_DEGREE*(free_turn + given_ref_a2 - k->offset_a2);
-    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    closed_direction_x_q2 = closed_reach > free_angle_times_machine_scale
-        ? closed_arm_across_q2*closed_wrist_z_from_q1 + closed_arm_along_q2*closed_wrist_x_from_q1
-        : cos(closed_reference_a2);
-    closed_direction_y_q2 = closed_reach > free_angle_times_machine_scale
-        ? closed_arm_along_q2*closed_wrist_z_from_q1 - closed_arm_across_q2*closed_wrist_x_from_q1
-        : sin(closed_reference_a2);
-    closed_axis_a2 = softkin_on_turn(k->offset_a2
-        + softkin_angle_of(closed_direction_y_q2, closed_direction_x_q2)*SOFTKIN_RADIAN, closed_near_a2);
-    shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (pose_is_met || (another && (next_attempt >= 4))) {
-      break;
-    }
-    tried_a1 = (another ? closed_axis_a1
-        : (mirrors ? (beside_arm ? 2.0*closed_axis_a1 - tried_a1 : tried_a1) : tried_a1
-        + shared_quotient*step_a1));
-    tried_a2 = (another ? closed_axis_a2 : (mirrors ? tried_a2 : tried_a2 + shared_quotient*step_a2));
-    tried_a3 = (another ? closed_axis_a3
-        : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
-        + shared_quotient*step_a3));
-    passes_left = (another ? 40 : passes_left - 1);
-    attempt = next_attempt;
-    error_before = (another || mirrors ? 9.0 : error);
-  }
-  const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
-  const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);
-  const double chosen_a3 = softkin_on_turn(tried_a3, closed_near_a3);
-  found[0] = pose_is_met;
-  found[1] = chosen_a1;
-  found[2] = chosen_a2;
-  found[3] = chosen_a3;
-  return SOFTKIN_OK;
-}
-
 /* Position, rotation, and the signed margin of every branch. */
 static softkin_status find_forward(const void *machine, const double *axes, softkin_frame *frame,
     double *margins, softkin_refusal *why) {
@@ -546,7 +328,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double branch_arm = k->one_by_machine_scale*(x*cos_q1 + y*sin_q1);
   const double sin_q3 = sin(q3);
   const double cos_q3 = cos(q3);
-  const double branch_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2_2;
+  const double branch_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2;
   frame->position[0] = x;
   frame->position[1] = y;
   frame->position[2] = z;
@@ -593,7 +375,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* distance that the remaining links must span */
   const double reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_z_from_q1*wrist_z_from_q1);
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3 = (k->a2_plus_effective_q3_2_2 + reach)*(k->a2_plus_effective_q3_2_2 - reach);
+  const double one_less_cos_q3 = (k->a2_plus_effective_q3_2 + reach)*(k->a2_plus_effective_q3_2 - reach);
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3 = (reach - k->a2_minus_effective_q3_2)*(k->a2_minus_effective_q3_2 + reach);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
@@ -605,8 +387,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* q3: out of reach */
   if (!(lost_digits_19 || (fabs(cos_swing_q3) <= 1.0000000000005))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        (reach - k->a2_plus_effective_q3_2_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
-        - k->a2_plus_effective_q3_2_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
+        (reach - k->a2_plus_effective_q3_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
+        - k->a2_plus_effective_q3_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
   }
   double cos_q1, sin_q1;
   if (distance_q1 > k->machine_scale_times_free_angle) {
@@ -649,8 +431,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double axis_a2 = softkin_on_turn(k->offset_a2
       + softkin_angle_of(direction_y_q2, direction_x_q2)*SOFTKIN_RADIAN, near_a2);
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3 = k->a3_by_effective_q3_2_2*cos_swing_q3 - k->d4_by_effective_q3_2_2*sin_swing_q3;
-  const double sin_q3 = k->a3_by_effective_q3_2_2*sin_swing_q3 + k->d4_by_effective_q3_2_2*cos_swing_q3;
+  const double cos_q3 = k->a3_by_effective_q3_2*cos_swing_q3 - k->d4_by_effective_q3_2*sin_swing_q3;
+  const double sin_q3 = k->a3_by_effective_q3_2*sin_swing_q3 + k->d4_by_effective_q3_2*cos_swing_q3;
   /* A3: without a commanded turn, the value nearest to this */
   const double open_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
   const double near_a3 = turn_a3 != 0 ? 360.0*(turn_a3 > 0 ? turn_a3 - 1 : turn_a3) : open_a3;
@@ -672,8 +454,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* q3: out of reach */
   if (!(met || (fabs(cos_swing_q3) <= 1.0000000000005))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        (reach - k->a2_plus_effective_q3_2_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
-        - k->a2_plus_effective_q3_2_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
+        (reach - k->a2_plus_effective_q3_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
+        - k->a2_plus_effective_q3_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
   axes[1] = (met ? found_a2 : axis_a2);
@@ -789,7 +571,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double margin_point_on_axis_1 = k->one_by_machine_scale*(x*cos_q1 + y*sin_q1);
   const double sin_q3 = sin(q3);
   const double cos_q3 = cos(q3);
-  const double margin_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2_2;
+  const double margin_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2;
   margins[0] = margin_point_on_axis_1;
   margins[1] = margin_elbow;
   return SOFTKIN_OK;
@@ -848,8 +630,10 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const pos_rrr_machine *k = machine;
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2], ref_a1 = reference[0],
       ref_a2 = reference[1], ref_a3 = reference[2];
-  const double angle_of_a3_by_effective_q3_2_2 = softkin_angle_of(k->d4_by_effective_q3_2_2,
-      k->a3_by_effective_q3_2_2);
+  const double angle_in_angle_q3_front_down = softkin_angle_of(k->d4/k->effective_q3_2,
+      k->a3/k->effective_q3_2);
+  const double a2_plus_effective_q3_2_2 = k->a2 + k->effective_q3_2;
+  const double a2_minus_effective_q3_2_2 = k->a2 - k->effective_q3_2;
   const double distance_q1 = sqrt(x*x + y*y); /* distance of the point from the axis of q1 */
   /* Pythagoras: square of the distance ahead of the axis */
   const double ahead_squared_q1 = (distance_q1 - k->d3)*(k->d3 + distance_q1);
@@ -868,11 +652,11 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double reach_front = softkin_root(wrist_z_from_q1_squared
       + wrist_x_from_q1_front*wrist_x_from_q1_front);
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_front = (k->a2_plus_effective_q3_2_2 + reach_front)
-      *(k->a2_plus_effective_q3_2_2 - reach_front);
+  const double one_less_cos_q3_front = (a2_plus_effective_q3_2_2 + reach_front)
+      *(a2_plus_effective_q3_2_2 - reach_front);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_front = (reach_front - k->a2_minus_effective_q3_2_2)
-      *(k->a2_minus_effective_q3_2_2 + reach_front);
+  const double one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2_2)
+      *(a2_minus_effective_q3_2_2 + reach_front);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
   const double divisor_of_cos_q3_front = sum_q3_front > 0.0 ? sum_q3_front : 1.0;
@@ -888,11 +672,11 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* distance that the remaining links must span */
   const double reach_back = softkin_root(wrist_z_from_q1_squared + wrist_x_from_q1_back*wrist_x_from_q1_back);
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_back = (k->a2_plus_effective_q3_2_2 + reach_back)
-      *(k->a2_plus_effective_q3_2_2 - reach_back);
+  const double one_less_cos_q3_back = (a2_plus_effective_q3_2_2 + reach_back)
+      *(a2_plus_effective_q3_2_2 - reach_back);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_back = (reach_back - k->a2_minus_effective_q3_2_2)
-      *(k->a2_minus_effective_q3_2_2 + reach_back);
+  const double one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2_2)
+      *(a2_minus_effective_q3_2_2 + reach_back);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
   const double divisor_of_cos_q3_back = sum_q3_back > 0.0 ? sum_q3_back : 1.0;
@@ -946,10 +730,10 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double axis_a2_front_down = k->offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
   const double angle_of_swing_q3_front_down = -softkin_angle_of(sin_swing_q3_front_up, cos_swing_q3_front);
-  const double angle_q3_front_down = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_front_down;
+  const double angle_q3_front_down = angle_in_angle_q3_front_down + angle_of_swing_q3_front_down;
   const double axis_a3_front_down = k->offset_a3 + angle_q3_front_down*SOFTKIN_RADIAN;
   const double axis_a2_front_up = k->offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
-  const double angle_q3_front_up = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_front_down;
+  const double angle_q3_front_up = angle_in_angle_q3_front_down - angle_of_swing_q3_front_down;
   const double axis_a3_front_up = k->offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
   const int refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3; /* q3: out of reach */
   const double axis_a1_back = k->offset_a1 + softkin_angle_of(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
@@ -972,10 +756,10 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double axis_a2_back_down = k->offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
   const double angle_of_swing_q3_back_down = -softkin_angle_of(sin_swing_q3_back_up, cos_swing_q3_back);
-  const double angle_q3_back_down = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_back_down;
+  const double angle_q3_back_down = angle_in_angle_q3_front_down + angle_of_swing_q3_back_down;
   const double axis_a3_back_down = k->offset_a3 + angle_q3_back_down*SOFTKIN_RADIAN;
   const double axis_a2_back_up = k->offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
-  const double angle_q3_back_up = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_back_down;
+  const double angle_q3_back_up = angle_in_angle_q3_front_down - angle_of_swing_q3_back_down;
   const double axis_a3_back_up = k->offset_a3 + angle_q3_back_up*SOFTKIN_RADIAN;
   const double near_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
   const double near_a2 = k->single_a2 ? k->mid_a2 : ref_a2;
@@ -1024,20 +808,14 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double effective_q3_2 = sqrt(p->a3*p->a3 + p->d4*p->d4);
   /* rounding error of a squared length */
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
-  const double a2_times_shortest_link = 1e-9*p->a2;
   const double product_in_lost_digits_19 = 0.01*machine_scale;
   const double a2_minus_effective_q3_2 = p->a2 - effective_q3_2;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double one_by_effective_q3_2 = 1.0/effective_q3_2;
   const double a2_plus_effective_q3_2 = p->a2 + effective_q3_2;
-  const double a2_minus_effective_q3_2_2 = p->a2 - effective_q3_2;
   const double d4_by_effective_q3_2 = p->d4/effective_q3_2;
   const double a3_by_effective_q3_2 = p->a3/effective_q3_2;
-  const double one_by_effective_q3_2_2 = 1.0/effective_q3_2;
-  const double a2_plus_effective_q3_2_2 = p->a2 + effective_q3_2;
-  const double d4_by_effective_q3_2_2 = p->d4/effective_q3_2;
-  const double a3_by_effective_q3_2_2 = p->a3/effective_q3_2;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1062,20 +840,14 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.machine_scale = machine_scale;
   made.effective_q3_2 = effective_q3_2;
   made.rounding_q1 = rounding_q1;
-  made.a2_times_shortest_link = a2_times_shortest_link;
   made.product_in_lost_digits_19 = product_in_lost_digits_19;
   made.a2_minus_effective_q3_2 = a2_minus_effective_q3_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;
   made.one_by_effective_q3_2 = one_by_effective_q3_2;
   made.a2_plus_effective_q3_2 = a2_plus_effective_q3_2;
-  made.a2_minus_effective_q3_2_2 = a2_minus_effective_q3_2_2;
   made.d4_by_effective_q3_2 = d4_by_effective_q3_2;
   made.a3_by_effective_q3_2 = a3_by_effective_q3_2;
-  made.one_by_effective_q3_2_2 = one_by_effective_q3_2_2;
-  made.a2_plus_effective_q3_2_2 = a2_plus_effective_q3_2_2;
-  made.d4_by_effective_q3_2_2 = d4_by_effective_q3_2_2;
-  made.a3_by_effective_q3_2_2 = a3_by_effective_q3_2_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(pos_rrr_machine *)machine = made;
   return SOFTKIN_OK;

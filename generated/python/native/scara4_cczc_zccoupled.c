@@ -488,10 +488,10 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   /* characteristic length of the machine */
   const double machine_scale = p->link_length_1 + p->link_length_2;
+  const double shared_sum = p->gear_coupling*SOFTKIN_RADIAN - p->pitch_zc/360.0*SOFTKIN_RADIAN;
   const double shared_value = (p->flange_down != 0.0) ? -1.0 : 1.0;
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
-  const double shared_sum = p->gear_coupling*SOFTKIN_RADIAN - p->pitch_zc/360.0*SOFTKIN_RADIAN;
   const double quotient_in_z = (p->gear_coupling - p->pitch_zc/360.0)*SOFTKIN_RADIAN;
   const double quotient_in_cos_a2 = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);
@@ -517,10 +517,10 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a3 = p->offset_a3;
   made.offset_a4 = p->offset_a4;
   made.machine_scale = machine_scale;
+  made.shared_sum = shared_sum;
   made.shared_value = shared_value;
   made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
-  made.shared_sum = shared_sum;
   made.quotient_in_z = quotient_in_z;
   made.quotient_in_cos_a2 = quotient_in_cos_a2;
   made.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2;

@@ -189,18 +189,17 @@ void tripod_linear_regular_all(const void *machine, const softkin_lanes *given,
     const double rod_3_x_below = span_2_x - a3_below*half_sin_rail_angle;
     const double pivot_3_z_below = -a3_below*cos_rail_angle;
     const double rod_3_z_below = z - pivot_3_z_below;
-    const double product_in_type2_rods_coplanar_below_below_below = (rod_2_x_below*rod_3_z_below
-        - rod_2_z_below*rod_3_x_below)*y;
+    const double product_in_type2_rods_coplanar_below_below_below = (rod_2_z_below*rod_3_x_below
+        - rod_2_x_below*rod_3_z_below)*y;
     const double rod_2_y_below = span_2_y + a2_below*product_in_middle_a2;
     const double rod_3_y_below = span_3_y - a3_below*product_in_middle_a2;
     const double sum_in_type2_rods_coplanar_below_below_below = rod_2_y_below*rod_3_z_below
         - rod_2_z_below*rod_3_y_below;
     const double sum_in_type2_rods_coplanar_below_below_below_2 = rod_2_x_below*rod_3_y_below
         - rod_2_y_below*rod_3_x_below;
-    const double type2_rods_coplanar_below_below_below = (rod_1_x_below
-        *sum_in_type2_rods_coplanar_below_below_below
-        + rod_1_z_below*sum_in_type2_rods_coplanar_below_below_below_2
-        - product_in_type2_rods_coplanar_below_below_below)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_below_below_below = (product_in_type2_rods_coplanar_below_below_below
+        + rod_1_x_below*sum_in_type2_rods_coplanar_below_below_below
+        + rod_1_z_below*sum_in_type2_rods_coplanar_below_below_below_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_below_below_below = type2_rods_coplanar_below_below_below >= min_type2_margin ? 0
         : 3;
@@ -211,17 +210,16 @@ void tripod_linear_regular_all(const void *machine, const softkin_lanes *given,
     const double rod_3_x_above = span_2_x - a3_above*half_sin_rail_angle;
     const double pivot_3_z_above = -a3_above*cos_rail_angle;
     const double rod_3_z_above = z - pivot_3_z_above;
-    const double product_in_type2_rods_coplanar_below_below_above = (rod_2_x_below*rod_3_z_above
-        - rod_2_z_below*rod_3_x_above)*y;
+    const double product_in_type2_rods_coplanar_below_below_above = (rod_2_z_below*rod_3_x_above
+        - rod_2_x_below*rod_3_z_above)*y;
     const double rod_3_y_above = span_3_y - a3_above*product_in_middle_a2;
     const double sum_in_type2_rods_coplanar_below_below_above = rod_2_y_below*rod_3_z_above
         - rod_2_z_below*rod_3_y_above;
     const double sum_in_type2_rods_coplanar_below_below_above_2 = rod_2_x_below*rod_3_y_above
         - rod_2_y_below*rod_3_x_above;
-    const double type2_rods_coplanar_below_below_above = (rod_1_x_below
-        *sum_in_type2_rods_coplanar_below_below_above
-        + rod_1_z_below*sum_in_type2_rods_coplanar_below_below_above_2
-        - product_in_type2_rods_coplanar_below_below_above)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_below_below_above = (product_in_type2_rods_coplanar_below_below_above
+        + rod_1_x_below*sum_in_type2_rods_coplanar_below_below_above
+        + rod_1_z_below*sum_in_type2_rods_coplanar_below_below_above_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_below_below_above = type2_rods_coplanar_below_below_above >= min_type2_margin ? 0
         : 3;
@@ -230,31 +228,29 @@ void tripod_linear_regular_all(const void *machine, const softkin_lanes *given,
     const double rod_2_x_above = span_2_x - a2_above*half_sin_rail_angle;
     const double pivot_2_z_above = -a2_above*cos_rail_angle;
     const double rod_2_z_above = z - pivot_2_z_above;
-    const double product_in_type2_rods_coplanar_below_above_below = (rod_2_x_above*rod_3_z_below
-        - rod_2_z_above*rod_3_x_below)*y;
+    const double product_in_type2_rods_coplanar_below_above_below = (rod_2_z_above*rod_3_x_below
+        - rod_2_x_above*rod_3_z_below)*y;
     const double rod_2_y_above = span_2_y + a2_above*product_in_middle_a2;
     const double sum_in_type2_rods_coplanar_below_above_below = rod_2_y_above*rod_3_z_below
         - rod_2_z_above*rod_3_y_below;
     const double sum_in_type2_rods_coplanar_below_above_below_2 = rod_2_x_above*rod_3_y_below
         - rod_2_y_above*rod_3_x_below;
-    const double type2_rods_coplanar_below_above_below = (rod_1_x_below
-        *sum_in_type2_rods_coplanar_below_above_below
-        + rod_1_z_below*sum_in_type2_rods_coplanar_below_above_below_2
-        - product_in_type2_rods_coplanar_below_above_below)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_below_above_below = (product_in_type2_rods_coplanar_below_above_below
+        + rod_1_x_below*sum_in_type2_rods_coplanar_below_above_below
+        + rod_1_z_below*sum_in_type2_rods_coplanar_below_above_below_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_below_above_below = type2_rods_coplanar_below_above_below >= min_type2_margin ? 0
         : 3;
     const double axis_a2_above = a2_above + offset_a2;
-    const double product_in_type2_rods_coplanar_below_above_above = (rod_2_x_above*rod_3_z_above
-        - rod_2_z_above*rod_3_x_above)*y;
+    const double product_in_type2_rods_coplanar_below_above_above = (rod_2_z_above*rod_3_x_above
+        - rod_2_x_above*rod_3_z_above)*y;
     const double sum_in_type2_rods_coplanar_below_above_above = rod_2_y_above*rod_3_z_above
         - rod_2_z_above*rod_3_y_above;
     const double sum_in_type2_rods_coplanar_below_above_above_2 = rod_2_x_above*rod_3_y_above
         - rod_2_y_above*rod_3_x_above;
-    const double type2_rods_coplanar_below_above_above = (rod_1_x_below
-        *sum_in_type2_rods_coplanar_below_above_above
-        + rod_1_z_below*sum_in_type2_rods_coplanar_below_above_above_2
-        - product_in_type2_rods_coplanar_below_above_above)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_below_above_above = (product_in_type2_rods_coplanar_below_above_above
+        + rod_1_x_below*sum_in_type2_rods_coplanar_below_above_above
+        + rod_1_z_below*sum_in_type2_rods_coplanar_below_above_above_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_below_above_above = type2_rods_coplanar_below_above_above >= min_type2_margin ? 0
         : 3;
@@ -262,32 +258,28 @@ void tripod_linear_regular_all(const void *machine, const softkin_lanes *given,
     const double rod_1_x_above = span_1_x + a1_above*sin_rail_angle;
     const double pivot_1_z_above = -a1_above*cos_rail_angle;
     const double rod_1_z_above = z - pivot_1_z_above;
-    const double type2_rods_coplanar_above_below_below = (rod_1_x_above
-        *sum_in_type2_rods_coplanar_below_below_below
-        + rod_1_z_above*sum_in_type2_rods_coplanar_below_below_below_2
-        - product_in_type2_rods_coplanar_below_below_below)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_above_below_below = (product_in_type2_rods_coplanar_below_below_below
+        + rod_1_x_above*sum_in_type2_rods_coplanar_below_below_below
+        + rod_1_z_above*sum_in_type2_rods_coplanar_below_below_below_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_above_below_below = type2_rods_coplanar_above_below_below >= min_type2_margin ? 0
         : 3;
     const double axis_a1_above = a1_above + offset_a1;
-    const double type2_rods_coplanar_above_below_above = (rod_1_x_above
-        *sum_in_type2_rods_coplanar_below_below_above
-        + rod_1_z_above*sum_in_type2_rods_coplanar_below_below_above_2
-        - product_in_type2_rods_coplanar_below_below_above)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_above_below_above = (product_in_type2_rods_coplanar_below_below_above
+        + rod_1_x_above*sum_in_type2_rods_coplanar_below_below_above
+        + rod_1_z_above*sum_in_type2_rods_coplanar_below_below_above_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_above_below_above = type2_rods_coplanar_above_below_above >= min_type2_margin ? 0
         : 3;
-    const double type2_rods_coplanar_above_above_below = (rod_1_x_above
-        *sum_in_type2_rods_coplanar_below_above_below
-        + rod_1_z_above*sum_in_type2_rods_coplanar_below_above_below_2
-        - product_in_type2_rods_coplanar_below_above_below)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_above_above_below = (product_in_type2_rods_coplanar_below_above_below
+        + rod_1_x_above*sum_in_type2_rods_coplanar_below_above_below
+        + rod_1_z_above*sum_in_type2_rods_coplanar_below_above_below_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_above_above_below = type2_rods_coplanar_above_above_below >= min_type2_margin ? 0
         : 3;
-    const double type2_rods_coplanar_above_above_above = (rod_1_x_above
-        *sum_in_type2_rods_coplanar_below_above_above
-        + rod_1_z_above*sum_in_type2_rods_coplanar_below_above_above_2
-        - product_in_type2_rods_coplanar_below_above_above)*quotient_in_type2_rods_coplanar;
+    const double type2_rods_coplanar_above_above_above = (product_in_type2_rods_coplanar_below_above_above
+        + rod_1_x_above*sum_in_type2_rods_coplanar_below_above_above
+        + rod_1_z_above*sum_in_type2_rods_coplanar_below_above_above_2)*quotient_in_type2_rods_coplanar;
     /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
     const double refusal_above_above_above = type2_rods_coplanar_above_above_above >= min_type2_margin ? 0
         : 3;

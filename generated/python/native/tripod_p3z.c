@@ -227,9 +227,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sign_carriage_3 = sigma_carriage_3; /* carriage_3: +1 above, -1 below */
   const double a3 = z + softkin_root(radicand_a3)*sign_carriage_3;
   const double rod_3_z = z - a3;
-  const double type2_rods_coplanar = -k->quotient_in_type2_rods_coplanar
-      *((rod_2_z*rod_3_y - rod_2_y*rod_3_z)*rod_1_x + rod_1_y*(rod_2_x*rod_3_z - rod_2_z*rod_3_x)
-      + (rod_2_y*rod_3_x - rod_2_x*rod_3_y)*rod_1_z);
+  const double type2_rods_coplanar = k->quotient_in_type2_rods_coplanar
+      *(rod_1_x*(rod_2_y*rod_3_z - rod_2_z*rod_3_y) + (rod_2_z*rod_3_x - rod_2_x*rod_3_z)*rod_1_y
+      + rod_1_z*(rod_2_x*rod_3_y - rod_2_y*rod_3_x));
   /* rods_coplanar: in the other assembly mode, or too close to a type 2 singularity */
   if (!(type2_rods_coplanar >= k->min_type2_margin)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE,

@@ -9,10 +9,10 @@ void tripod_rotary_regular(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
     double *SOFTKIN_RESTRICT misses) {
   const tripod_rotary_machine *k = machine;
-  const double arm_length_1 = k->arm_length_1,
+  const double arm_1_radius_minus_fixed_length_1 = k->arm_1_radius_minus_fixed_length_1,
+      arm_length_1 = k->arm_length_1,
       arm_length_1_times_root_of_3_times_half = k->arm_length_1_times_root_of_3_times_half,
       arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link,
-      fixed_length_1_minus_arm_1_radius = k->fixed_length_1_minus_arm_1_radius,
       fixed_length_2 = k->fixed_length_2, half_arm_length_1 = k->half_arm_length_1,
       half_by_arm_length_2 = k->half_by_arm_length_2, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       mid_a3 = k->mid_a3, min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1,
@@ -31,16 +31,16 @@ void tripod_rotary_regular(const void *machine, const softkin_lanes *given,
         sigma_knee_3 = given->signs[2][lane], ref_a1 = given->reference[0][lane],
         ref_a2 = given->reference[1][lane], ref_a3 = given->reference[2][lane];
     double missed = misses[lane];
-    const double span_1_x = x - fixed_length_1_minus_arm_1_radius; /* rod 1: known part of its vector */
+    const double span_1_x = arm_1_radius_minus_fixed_length_1 + x; /* rod 1: known part of its vector */
     const double span_1_z = z - fixed_length_2;
     /* effective length of the arm that a1 turns */
     const double effective_a1 = softkin_lane_root(span_1_x*span_1_x + span_1_z*span_1_z);
     /* a1: its effective length is too short */
     missed += effective_a1 > arm_length_1_times_shortest_link ? 0.0 : 1.0;
-    const double sum_in_scaled_cosine_a1 = (fixed_length_2 - span_1_z)*z - product_in_scaled_cosine_a1;
+    const double sum_in_scaled_cosine_a1 = product_in_scaled_cosine_a1 + (fixed_length_2 - span_1_z)*z;
     /* cosine, times the scale, without cancellation */
     const double scaled_cosine_a1 = sum_in_scaled_cosine_a1
-        + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y;
+        - (arm_1_radius_minus_fixed_length_1 + span_1_x)*x - y*y;
     const double twice_arm_length_1_times_effective_a1 = effective_a1*twice_arm_length_1;
     /* law of cosines for a1 (rod 1): 1 - cosine, times a scale */
     const double one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1;
@@ -154,20 +154,19 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const tripod_rotary_machine *k = machine;
-  const double arm_1_radius = k->arm_1_radius, arm_length_1 = k->arm_length_1,
-      arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link, arm_length_2 = k->arm_length_2,
-      fixed_length_1 = k->fixed_length_1,
-      fixed_length_1_minus_arm_1_radius = k->fixed_length_1_minus_arm_1_radius,
-      fixed_length_2 = k->fixed_length_2, half_arm_length_1 = k->half_arm_length_1,
-      half_by_arm_length_2 = k->half_by_arm_length_2, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
-      mid_a3 = k->mid_a3, min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1,
-      offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, one_by_arm_length_2 = k->one_by_arm_length_2,
-      product_in_divisor_a2 = k->product_in_divisor_a2,
+  const double arm_1_radius = k->arm_1_radius,
+      arm_1_radius_minus_fixed_length_1 = k->arm_1_radius_minus_fixed_length_1,
+      arm_length_1 = k->arm_length_1, arm_length_1_times_shortest_link = k->arm_length_1_times_shortest_link,
+      arm_length_2 = k->arm_length_2, fixed_length_1 = k->fixed_length_1, fixed_length_2 = k->fixed_length_2,
+      half_arm_length_1 = k->half_arm_length_1, half_by_arm_length_2 = k->half_by_arm_length_2,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, min_type2_margin = k->min_type2_margin,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
+      one_by_arm_length_2 = k->one_by_arm_length_2, product_in_divisor_a2 = k->product_in_divisor_a2,
       quotient_in_type2_rods_coplanar = k->quotient_in_type2_rods_coplanar, root_of_3 = k->root_of_3,
       sin_max_angle_ball_joint = k->sin_max_angle_ball_joint, single_a1 = k->single_a1 ? 1.0 : 0.0,
       single_a2 = k->single_a2 ? 1.0 : 0.0, single_a3 = k->single_a3 ? 1.0 : 0.0,
       sum_in_pivot_2_x = k->sum_in_pivot_2_x, twice_arm_length_1 = k->twice_arm_length_1;
-  const double product_in_scaled_cosine_a1_2 = -2.0*arm_length_1*fixed_length_1_minus_arm_1_radius;
+  const double product_in_scaled_cosine_a1_2 = 2.0*arm_1_radius_minus_fixed_length_1*arm_length_1;
   const double sum_in_span_2_y = 0.5*arm_1_radius*root_of_3 - 0.5*fixed_length_1*root_of_3;
   const double arm_length_1_times_root_of_3_times_half_2 = 0.5*arm_length_1*root_of_3;
   const double root_of_3_times_half_by_arm_length_2_2 = 0.5*root_of_3/arm_length_2;
@@ -176,7 +175,7 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane],
         ref_a3 = given->reference[2][lane];
     double missed = misses[lane];
-    const double span_1_x = x - fixed_length_1_minus_arm_1_radius; /* rod 1: known part of its vector */
+    const double span_1_x = arm_1_radius_minus_fixed_length_1 + x; /* rod 1: known part of its vector */
     const double span_1_z = z - fixed_length_2;
     /* effective length of the arm that a1 turns */
     const double effective_a1 = softkin_lane_root(span_1_x*span_1_x + span_1_z*span_1_z);
@@ -185,7 +184,7 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     const double sum_in_scaled_cosine_a1 = product_in_scaled_cosine_a1_2 + (fixed_length_2 - span_1_z)*z;
     /* cosine, times the scale, without cancellation */
     const double scaled_cosine_a1 = sum_in_scaled_cosine_a1
-        + (fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y;
+        - (arm_1_radius_minus_fixed_length_1 + span_1_x)*x - y*y;
     const double twice_arm_length_1_times_effective_a1 = effective_a1*twice_arm_length_1;
     /* law of cosines for a1 (rod 1): 1 - cosine, times a scale */
     const double one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1;
@@ -206,9 +205,9 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     const double effective_a2 = softkin_lane_root(across_a2_squared + along_a2*along_a2);
     /* a2: its effective length is too short */
     missed += effective_a2 > product_in_divisor_a2 ? 0.0 : 1.0;
-    const double sum_in_scaled_cosine_a2 = (span_2_x - sum_in_pivot_2_x)*x - sum_in_scaled_cosine_a1;
+    const double sum_in_scaled_cosine_a2 = sum_in_scaled_cosine_a1 + (sum_in_pivot_2_x - span_2_x)*x;
     /* cosine, times the scale, without cancellation */
-    const double scaled_cosine_a2 = sum_in_scaled_cosine_a2 + (span_2_y + sum_in_span_2_y)*y;
+    const double scaled_cosine_a2 = (span_2_y + sum_in_span_2_y)*y - sum_in_scaled_cosine_a2;
     const double arm_length_1_times_effective_a2 = arm_length_1*effective_a2;
     /* law of cosines for a2 (rod 2): 1 - cosine, times a scale */
     const double one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2;
@@ -227,7 +226,7 @@ void tripod_rotary_regular_all(const void *machine, const softkin_lanes *given,
     /* a3: its effective length is too short */
     missed += effective_a3 > product_in_divisor_a2 ? 0.0 : 1.0;
     /* cosine, times the scale, without cancellation */
-    const double scaled_cosine_a3 = sum_in_scaled_cosine_a2 + (span_3_y - sum_in_span_2_y)*y;
+    const double scaled_cosine_a3 = (span_3_y - sum_in_span_2_y)*y - sum_in_scaled_cosine_a2;
     const double arm_length_1_times_effective_a3 = arm_length_1*effective_a3;
     /* law of cosines for a3 (rod 3): 1 - cosine, times a scale */
     const double one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3;

@@ -131,7 +131,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y;
   const double cos_a1 = cos(a1);
   /* rod 1: centre about which it swings */
-  const double pivot_1_x = k->fixed_length_1_minus_arm_1_radius - k->arm_length_1*cos_a1;
+  const double pivot_1_x = -k->arm_1_radius_minus_fixed_length_1 - k->arm_length_1*cos_a1;
   /* rod 2: centre about which it swings */
   const double pivot_2_x = k->sum_in_pivot_2_x + k->half_arm_length_1*cos_a2;
   const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
@@ -176,7 +176,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double y = foot_y + height_by_normal*normal_y;
   const double z = foot_z + pivot_1_z + height_by_normal*normal_z;
   /* rod 1: known part of its vector */
-  const double span_1_x = x - k->fixed_length_1_minus_arm_1_radius;
+  const double span_1_x = k->arm_1_radius_minus_fixed_length_1 + x;
   const double span_1_z = z - k->fixed_length_2;
   const double branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)*k->one_by_arm_length_2;
   const double span_2_x = x - k->sum_in_pivot_2_x; /* rod 2: known part of its vector */
@@ -216,7 +216,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
   /* rod 1: known part of its vector */
-  const double span_1_x = x - k->fixed_length_1_minus_arm_1_radius;
+  const double span_1_x = k->arm_1_radius_minus_fixed_length_1 + x;
   const double span_1_z = z - k->fixed_length_2;
   /* effective length of the arm that a1 turns */
   const double effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z);
@@ -224,10 +224,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!(effective_a1 > k->arm_length_1_times_shortest_link)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: its effective length is too short", "", 0.0, 0);
   }
-  const double sum_in_scaled_cosine_a1 = (k->fixed_length_2 - span_1_z)*z - k->product_in_scaled_cosine_a1;
+  const double sum_in_scaled_cosine_a1 = k->product_in_scaled_cosine_a1 + (k->fixed_length_2 - span_1_z)*z;
   /* cosine, times the scale, without cancellation */
   const double scaled_cosine_a1 = sum_in_scaled_cosine_a1
-      + (k->fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y;
+      - (k->arm_1_radius_minus_fixed_length_1 + span_1_x)*x - y*y;
   const double twice_arm_length_1_times_effective_a1 = effective_a1*k->twice_arm_length_1;
   /* law of cosines for a1 (rod 1): 1 - cosine, times a scale */
   const double one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1;
@@ -513,7 +513,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y;
   const double cos_a1 = cos(a1);
   /* rod 1: centre about which it swings */
-  const double pivot_1_x = k->fixed_length_1_minus_arm_1_radius - k->arm_length_1*cos_a1;
+  const double pivot_1_x = -k->arm_1_radius_minus_fixed_length_1 - k->arm_length_1*cos_a1;
   /* rod 2: centre about which it swings */
   const double pivot_2_x = k->sum_in_pivot_2_x + k->half_arm_length_1*cos_a2;
   const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
@@ -556,7 +556,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double height_by_normal = softkin_root(height_square*one_by_normal_square)*k->assembly_sign;
   const double x = foot_x + pivot_1_x + height_by_normal*normal_x;
   /* rod 1: known part of its vector */
-  const double span_1_x = x - k->fixed_length_1_minus_arm_1_radius;
+  const double span_1_x = k->arm_1_radius_minus_fixed_length_1 + x;
   const double z = foot_z + pivot_1_z + height_by_normal*normal_z;
   const double span_1_z = z - k->fixed_length_2;
   const double margin_stretched_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)*k->one_by_arm_length_2;
@@ -616,7 +616,7 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y;
   const double cos_a1 = cos(a1);
   /* rod 1: centre about which it swings */
-  const double pivot_1_x = k->fixed_length_1_minus_arm_1_radius - k->arm_length_1*cos_a1;
+  const double pivot_1_x = -k->arm_1_radius_minus_fixed_length_1 - k->arm_length_1*cos_a1;
   /* rod 2: centre about which it swings */
   const double pivot_2_x = k->sum_in_pivot_2_x + k->half_arm_length_1*cos_a2;
   const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
@@ -677,9 +677,9 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y;
   const double slope_3_by_z = twice_z_minus_fixed_length_2 + k->twice_arm_length_1*sin_a3;
   const double sum_in_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y;
-  const double sum_in_slope_2_by_x = k->fixed_length_1_minus_arm_1_radius + twice_x;
-  const double slope_2_by_x = sum_in_slope_2_by_x - arm_length_1_times_cos_a2;
-  const double slope_3_by_x = sum_in_slope_2_by_x - arm_length_1_times_cos_a3;
+  const double sum_in_slope_2_by_x = k->arm_1_radius_minus_fixed_length_1 - twice_x;
+  const double slope_2_by_x = -arm_length_1_times_cos_a2 - sum_in_slope_2_by_x;
+  const double slope_3_by_x = -arm_length_1_times_cos_a3 - sum_in_slope_2_by_x;
   const double sum_in_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z;
   const double sum_in_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x;
   /* determinant dPhi/dx: zero in a type 2 singularity */
@@ -720,12 +720,12 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const tripod_rotary_machine *k = machine;
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2], ref_a1 = reference[0],
       ref_a2 = reference[1], ref_a3 = reference[2];
-  const double product_in_scaled_cosine_a1_2 = -2.0*k->arm_length_1*k->fixed_length_1_minus_arm_1_radius;
+  const double product_in_scaled_cosine_a1_2 = 2.0*k->arm_1_radius_minus_fixed_length_1*k->arm_length_1;
   const double sum_in_span_2_y = 0.5*k->arm_1_radius*k->root_of_3 - 0.5*k->fixed_length_1*k->root_of_3;
   const double arm_length_1_times_root_of_3_times_half_2 = 0.5*k->arm_length_1*k->root_of_3;
   const double root_of_3_times_half_by_arm_length_2_2 = 0.5*k->root_of_3/k->arm_length_2;
   /* rod 1: known part of its vector */
-  const double span_1_x = x - k->fixed_length_1_minus_arm_1_radius;
+  const double span_1_x = k->arm_1_radius_minus_fixed_length_1 + x;
   const double span_1_z = z - k->fixed_length_2;
   /* effective length of the arm that a1 turns */
   const double effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z);
@@ -735,7 +735,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sum_in_scaled_cosine_a1 = product_in_scaled_cosine_a1_2 + (k->fixed_length_2 - span_1_z)*z;
   /* cosine, times the scale, without cancellation */
   const double scaled_cosine_a1 = sum_in_scaled_cosine_a1
-      + (k->fixed_length_1_minus_arm_1_radius - span_1_x)*x - y*y;
+      - (k->arm_1_radius_minus_fixed_length_1 + span_1_x)*x - y*y;
   const double twice_arm_length_1_times_effective_a1 = effective_a1*k->twice_arm_length_1;
   /* law of cosines for a1 (rod 1): 1 - cosine, times a scale */
   const double one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1;
@@ -758,9 +758,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(effective_a2 > k->product_in_divisor_a2)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
   }
-  const double sum_in_scaled_cosine_a2 = (span_2_x - k->sum_in_pivot_2_x)*x - sum_in_scaled_cosine_a1;
+  const double sum_in_scaled_cosine_a2 = sum_in_scaled_cosine_a1 + (k->sum_in_pivot_2_x - span_2_x)*x;
   /* cosine, times the scale, without cancellation */
-  const double scaled_cosine_a2 = sum_in_scaled_cosine_a2 + (span_2_y + sum_in_span_2_y)*y;
+  const double scaled_cosine_a2 = (span_2_y + sum_in_span_2_y)*y - sum_in_scaled_cosine_a2;
   const double arm_length_1_times_effective_a2 = k->arm_length_1*effective_a2;
   /* law of cosines for a2 (rod 2): 1 - cosine, times a scale */
   const double one_less_cos_a2 = arm_length_1_times_effective_a2 - scaled_cosine_a2;
@@ -781,7 +781,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
   }
   /* cosine, times the scale, without cancellation */
-  const double scaled_cosine_a3 = sum_in_scaled_cosine_a2 + (span_3_y - sum_in_span_2_y)*y;
+  const double scaled_cosine_a3 = (span_3_y - sum_in_span_2_y)*y - sum_in_scaled_cosine_a2;
   const double arm_length_1_times_effective_a3 = k->arm_length_1*effective_a3;
   /* law of cosines for a3 (rod 3): 1 - cosine, times a scale */
   const double one_less_cos_a3 = arm_length_1_times_effective_a3 - scaled_cosine_a3;
@@ -1046,8 +1046,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double arm_length_2_squared = p->arm_length_2*p->arm_length_2;
   const double arm_length_2_squared_times_rounding = 1e-12*p->arm_length_2*p->arm_length_2;
   const double arm_length_1_times_shortest_link = 1e-9*p->arm_length_1;
-  const double fixed_length_1_minus_arm_1_radius = fixed_length_1 - p->arm_1_radius;
-  const double product_in_scaled_cosine_a1 = 2.0*p->arm_length_1*fixed_length_1_minus_arm_1_radius;
+  const double arm_1_radius_minus_fixed_length_1 = p->arm_1_radius - fixed_length_1;
+  const double product_in_scaled_cosine_a1 = 2.0*arm_1_radius_minus_fixed_length_1*p->arm_length_1;
   const double product_in_divisor_a2 = 5e-10*p->arm_length_1;
   const double product_in_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale;
   const double arm_length_1_times_root_of_3_times_half = 0.5*p->arm_length_1*root_of_3;
@@ -1091,7 +1091,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.arm_length_2_squared = arm_length_2_squared;
   made.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding;
   made.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link;
-  made.fixed_length_1_minus_arm_1_radius = fixed_length_1_minus_arm_1_radius;
+  made.arm_1_radius_minus_fixed_length_1 = arm_1_radius_minus_fixed_length_1;
   made.product_in_scaled_cosine_a1 = product_in_scaled_cosine_a1;
   made.product_in_divisor_a2 = product_in_divisor_a2;
   made.product_in_determinant_divisor = product_in_determinant_divisor;

@@ -88,7 +88,7 @@ typedef struct {
       arm_length_1, arm_length_2, arm_1_radius, offset_a1, offset_a2, offset_a3, min_type2_margin,
       fixed_length_1, fixed_length_2, assembly_sign, sin_max_angle_ball_joint, root_of_3,
       product_in_normal_divisor, arm_length_2_squared, arm_length_2_squared_times_rounding,
-      arm_length_1_times_shortest_link, fixed_length_1_minus_arm_1_radius, product_in_scaled_cosine_a1,
+      arm_length_1_times_shortest_link, arm_1_radius_minus_fixed_length_1, product_in_scaled_cosine_a1,
       product_in_divisor_a2, product_in_determinant_divisor, arm_length_1_times_root_of_3_times_half,
       sum_in_pivot_2_y, half_arm_length_1, sum_in_pivot_2_x, one_by_arm_length_2, half_by_arm_length_2,
       twice_arm_length_1, quotient_in_type2_rods_coplanar, root_of_3_times_half_by_arm_length_2,

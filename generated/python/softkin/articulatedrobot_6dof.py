@@ -77,33 +77,25 @@ class Constants:
         self.lowest_a5, self.highest_a5, self.single_a5, self.mid_a5 = machine._window("a5")
         self.lowest_a6, self.highest_a6, self.single_a6, self.mid_a6 = machine._window("a6")
         machine_scale = a1 + a2 + a3 + d4  # characteristic length of the machine
-        effective_q3_2 = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
+        effective_q3 = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
         rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
         product_in_lost_digits_23 = 0.01 * machine_scale
-        a2_minus_effective_q3_2 = a2 - effective_q3_2
+        a2_minus_effective_q3 = a2 - effective_q3
         machine_scale_times_free_angle = 1e-11 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
-        one_by_effective_q3_2 = 1.0 / effective_q3_2
-        a2_plus_effective_q3_2 = a2 + effective_q3_2
-        a2_minus_effective_q3_2_2 = a2 - effective_q3_2
-        d4_by_effective_q3_2 = d4 / effective_q3_2
-        a3_by_effective_q3_2 = a3 / effective_q3_2
-        one_by_effective_q3_2_2 = 1.0 / effective_q3_2
-        a2_plus_effective_q3_2_2 = a2 + effective_q3_2
-        d4_by_effective_q3_2_2 = d4 / effective_q3_2
-        a3_by_effective_q3_2_2 = a3 / effective_q3_2
+        one_by_effective_q3 = 1.0 / effective_q3
+        a2_plus_effective_q3 = a2 + effective_q3
+        d4_by_effective_q3 = d4 / effective_q3
+        a3_by_effective_q3 = a3 / effective_q3
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.d6 = d1, a1, a2, d3, a3, d4, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.offset_a5, self.offset_a6, self.machine_scale = offset_a5, offset_a6, machine_scale
-        self.effective_q3_2, self.rounding_q1 = effective_q3_2, rounding_q1
-        self.product_in_lost_digits_23 = product_in_lost_digits_23
-        self.a2_minus_effective_q3_2 = a2_minus_effective_q3_2
+        self.effective_q3, self.rounding_q1 = effective_q3, rounding_q1
+        self.product_in_lost_digits_23, self.a2_minus_effective_q3 = product_in_lost_digits_23, a2_minus_effective_q3
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.one_by_machine_scale, self.one_by_effective_q3_2 = one_by_machine_scale, one_by_effective_q3_2
-        self.a2_plus_effective_q3_2, self.a2_minus_effective_q3_2_2 = a2_plus_effective_q3_2, a2_minus_effective_q3_2_2
-        self.d4_by_effective_q3_2, self.a3_by_effective_q3_2 = d4_by_effective_q3_2, a3_by_effective_q3_2
-        self.one_by_effective_q3_2_2, self.a2_plus_effective_q3_2_2 = one_by_effective_q3_2_2, a2_plus_effective_q3_2_2
-        self.d4_by_effective_q3_2_2, self.a3_by_effective_q3_2_2 = d4_by_effective_q3_2_2, a3_by_effective_q3_2_2
+        self.one_by_machine_scale, self.one_by_effective_q3 = one_by_machine_scale, one_by_effective_q3
+        self.a2_plus_effective_q3, self.d4_by_effective_q3 = a2_plus_effective_q3, d4_by_effective_q3
+        self.a3_by_effective_q3 = a3_by_effective_q3
 
 
 class ArticulatedRobot6DOF(Mechanism):
@@ -115,7 +107,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof 17afc6c91d16093e"
+    KEY = "articulatedrobot_6dof 00ac8bb971e069c0"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -314,15 +306,15 @@ class ArticulatedRobot6DOF(Mechanism):
             start_a6,
         ) = given
         k = self._constants
-        a1, a2, a2_minus_effective_q3_2_2 = k.a1, k.a2, k.a2_minus_effective_q3_2_2
-        a2_plus_effective_q3_2, a3, a3_by_effective_q3_2 = k.a2_plus_effective_q3_2, k.a3, k.a3_by_effective_q3_2
-        d1, d3, d4, d4_by_effective_q3_2, d6 = k.d1, k.d3, k.d4, k.d4_by_effective_q3_2, k.d6
-        effective_q3_2, machine_scale, mid_a1, mid_a2 = k.effective_q3_2, k.machine_scale, k.mid_a1, k.mid_a2
-        mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
-        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, one_by_effective_q3_2 = k.offset_a6, k.one_by_effective_q3_2
-        one_by_machine_scale, single_a1, single_a2 = k.one_by_machine_scale, k.single_a1, k.single_a2
-        single_a3, single_a4, single_a5, single_a6 = k.single_a3, k.single_a4, k.single_a5, k.single_a6
+        a1, a2, a2_minus_effective_q3 = k.a1, k.a2, k.a2_minus_effective_q3
+        a2_plus_effective_q3, a3, a3_by_effective_q3, d1 = k.a2_plus_effective_q3, k.a3, k.a3_by_effective_q3, k.d1
+        d3, d4, d4_by_effective_q3, d6, effective_q3 = k.d3, k.d4, k.d4_by_effective_q3, k.d6, k.effective_q3
+        machine_scale, mid_a1, mid_a2, mid_a3, mid_a4 = k.machine_scale, k.mid_a1, k.mid_a2, k.mid_a3, k.mid_a4
+        mid_a5, mid_a6, offset_a1, offset_a2, offset_a3 = k.mid_a5, k.mid_a6, k.offset_a1, k.offset_a2, k.offset_a3
+        offset_a4, offset_a5, offset_a6 = k.offset_a4, k.offset_a5, k.offset_a6
+        one_by_effective_q3, one_by_machine_scale = k.one_by_effective_q3, k.one_by_machine_scale
+        single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
+        single_a5, single_a6 = k.single_a5, k.single_a6
         closed_wrist_x = goal_x - d6 * goal_r13  # wrist centre: the last joints do not move this point
         closed_wrist_y = goal_y - d6 * goal_r23
         # distance of the point from the axis of q1
@@ -381,9 +373,9 @@ class ArticulatedRobot6DOF(Mechanism):
             else closed_open_a6
         )
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        closed_one_less_cos_q3 = (a2_plus_effective_q3_2 + closed_reach) * (a2_plus_effective_q3_2 - closed_reach)
+        closed_one_less_cos_q3 = (a2_plus_effective_q3 + closed_reach) * (a2_plus_effective_q3 - closed_reach)
         # 1 + cosine, times the scale
-        closed_one_plus_cos_q3 = (closed_reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + closed_reach)
+        closed_one_plus_cos_q3 = (closed_reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + closed_reach)
         # sum of both, twice the scale: cosine² + sine² is then 1
         closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
         closed_divisor_of_cos_q3 = closed_sum_q3 if closed_sum_q3 > 0.0 else 1.0
@@ -395,16 +387,16 @@ class ArticulatedRobot6DOF(Mechanism):
             * given_sigma_elbow
             / closed_divisor_of_cos_q3
         )
-        closed_arm_along_q2 = -closed_sin_swing_q3 * effective_q3_2
+        closed_arm_along_q2 = -closed_sin_swing_q3 * effective_q3
         closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
-        closed_arm_across_q2 = a2 + closed_cos_swing_q3 * effective_q3_2
+        closed_arm_across_q2 = a2 + closed_cos_swing_q3 * effective_q3
         # rotation by q2 that takes the arm to its target point
         closed_along_q2 = closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
         closed_across_q2 = closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
         sum_in_closed_length_q2 = closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        closed_cos_q3 = a3_by_effective_q3_2 * closed_cos_swing_q3 - closed_sin_swing_q3 * d4_by_effective_q3_2
-        closed_sin_q3 = a3_by_effective_q3_2 * closed_sin_swing_q3 + closed_cos_swing_q3 * d4_by_effective_q3_2
+        closed_cos_q3 = a3_by_effective_q3 * closed_cos_swing_q3 - closed_sin_swing_q3 * d4_by_effective_q3
+        closed_sin_q3 = a3_by_effective_q3 * closed_sin_swing_q3 + closed_cos_swing_q3 * d4_by_effective_q3
         closed_axis_a3 = offset_a3 + arctan2(closed_sin_q3, closed_cos_q3 + 0.0) * RADIAN
         if not -180.000000001 <= closed_axis_a3 - closed_near_a3 < 179.999999999:
             closed_axis_a3 = nearest_period(closed_axis_a3, closed_near_a3)
@@ -464,7 +456,7 @@ class ArticulatedRobot6DOF(Mechanism):
             beside_arm = given_sigma_arm * branch_arm < -1e-6
             sin_q3 = sin(q3)
             cos_q3 = cos(q3)
-            branch_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2
+            branch_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3
             beside_elbow = given_sigma_elbow * branch_elbow < -1e-6
             beside_hand = given_sigma_hand * sin_q5 < -1e-6
             r33_at_q4 = cos_q23 * cos_q4
@@ -862,7 +854,7 @@ class ArticulatedRobot6DOF(Mechanism):
         k = self._constants
         a1, a2, a3, d1, d3, d4, d6, offset_a1 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.d6, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, one_by_effective_q3_2_2 = k.offset_a6, k.one_by_effective_q3_2_2
+        offset_a6, one_by_effective_q3 = k.offset_a6, k.one_by_effective_q3
         one_by_machine_scale = k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
@@ -930,7 +922,7 @@ class ArticulatedRobot6DOF(Mechanism):
         branch_arm = one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2_2
+        branch_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3
         return (
             (x, y, z),
             (
@@ -1004,15 +996,15 @@ class ArticulatedRobot6DOF(Mechanism):
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
-        a1, a2, a2_minus_effective_q3_2 = k.a1, k.a2, k.a2_minus_effective_q3_2
-        a2_plus_effective_q3_2_2, a3_by_effective_q3_2_2 = k.a2_plus_effective_q3_2_2, k.a3_by_effective_q3_2_2
-        d1, d3, d4_by_effective_q3_2_2, d6 = k.d1, k.d3, k.d4_by_effective_q3_2_2, k.d6
-        effective_q3_2, machine_scale_times_free_angle = k.effective_q3_2, k.machine_scale_times_free_angle
-        mid_a1, mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a1, k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
-        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
-        offset_a5, offset_a6, product_in_lost_digits_23 = k.offset_a5, k.offset_a6, k.product_in_lost_digits_23
-        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-        single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
+        a1, a2, a2_minus_effective_q3 = k.a1, k.a2, k.a2_minus_effective_q3
+        a2_plus_effective_q3, a3_by_effective_q3, d1, d3 = k.a2_plus_effective_q3, k.a3_by_effective_q3, k.d1, k.d3
+        d4_by_effective_q3, d6, effective_q3 = k.d4_by_effective_q3, k.d6, k.effective_q3
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        offset_a6, product_in_lost_digits_23, rounding_q1 = k.offset_a6, k.product_in_lost_digits_23, k.rounding_q1
+        single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
+        single_a5, single_a6 = k.single_a5, k.single_a6
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
@@ -1033,9 +1025,9 @@ class ArticulatedRobot6DOF(Mechanism):
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
+        one_less_cos_q3 = (a2_plus_effective_q3 + reach) * (a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3) * (a2_minus_effective_q3 + reach)
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
@@ -1043,7 +1035,7 @@ class ArticulatedRobot6DOF(Mechanism):
         lost_digits_23 = (not within_23) and (abs(ahead_q1) <= product_in_lost_digits_23)
         # q3: out of reach
         if not (lost_digits_23 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
-            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2_2)
+            missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
@@ -1062,8 +1054,8 @@ class ArticulatedRobot6DOF(Mechanism):
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         # at a singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = -effective_q3_2 * sin_swing_q3
-            arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
+            arm_along_q2 = -effective_q3 * sin_swing_q3
+            arm_across_q2 = a2 + effective_q3 * cos_swing_q3
             # rotation by q2 that takes the arm to its target point
             along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
             across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
@@ -1083,8 +1075,8 @@ class ArticulatedRobot6DOF(Mechanism):
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = a3_by_effective_q3_2_2 * cos_swing_q3 - d4_by_effective_q3_2_2 * sin_swing_q3
-        sin_q3 = a3_by_effective_q3_2_2 * sin_swing_q3 + d4_by_effective_q3_2_2 * cos_swing_q3
+        cos_q3 = a3_by_effective_q3 * cos_swing_q3 - d4_by_effective_q3 * sin_swing_q3
+        sin_q3 = a3_by_effective_q3 * sin_swing_q3 + d4_by_effective_q3 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
@@ -1178,7 +1170,7 @@ class ArticulatedRobot6DOF(Mechanism):
             met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         # q3: out of reach
         if not (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
-            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2_2)
+            missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         return (
             (found_a1 if met else axis_a1),
@@ -1216,7 +1208,7 @@ class ArticulatedRobot6DOF(Mechanism):
         k = self._constants
         a1, a2, a3, d3, d4, d6, offset_a1, offset_a2 = k.a1, k.a2, k.a3, k.d3, k.d4, k.d6, k.offset_a1, k.offset_a2
         offset_a3, offset_a4, offset_a5 = k.offset_a3, k.offset_a4, k.offset_a5
-        one_by_effective_q3_2_2, one_by_machine_scale = k.one_by_effective_q3_2_2, k.one_by_machine_scale
+        one_by_effective_q3, one_by_machine_scale = k.one_by_effective_q3, k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
         q5 = DEGREE * (axis_a5 - offset_a5)
@@ -1261,7 +1253,7 @@ class ArticulatedRobot6DOF(Mechanism):
         margin_wrist_on_axis_1 = one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        margin_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2_2
+        margin_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3
         return (margin_wrist_on_axis_1, margin_elbow, sin_q5)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:

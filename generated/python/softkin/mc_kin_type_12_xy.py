@@ -107,7 +107,7 @@ class Constants:
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         link_length_5_times_shortest_link = 1e-9 * link_length_5
-        link_length_5_minus_link_length_4 = link_length_5 - link_length_4
+        link_length_4_minus_link_length_5 = link_length_4 - link_length_5
         link_length_3_by_link_length_2 = link_length_3 / link_length_2
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
         link_length_2_by_link_length_3 = link_length_2 / link_length_3
@@ -137,7 +137,7 @@ class Constants:
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.link_length_5_times_shortest_link = link_length_5_times_shortest_link
-        self.link_length_5_minus_link_length_4 = link_length_5_minus_link_length_4
+        self.link_length_4_minus_link_length_5 = link_length_4_minus_link_length_5
         self.link_length_3_by_link_length_2 = link_length_3_by_link_length_2
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
         self.link_length_2_by_link_length_3 = link_length_2_by_link_length_3
@@ -161,7 +161,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
-    KEY = "mc_kin_type_12_xy 70795130f4609dbe"
+    KEY = "mc_kin_type_12_xy cb1fe55fee77a0a7"
     AXES = (
         Axis(
             name="A1",
@@ -381,8 +381,8 @@ class KinType12XY(OffsetKinematics):
         link_length_1_times_shortest_link, link_length_2 = k.link_length_1_times_shortest_link, k.link_length_2
         link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
+        link_length_4_minus_link_length_5 = k.link_length_4_minus_link_length_5
         link_length_4_plus_link_length_5, link_length_5 = k.link_length_4_plus_link_length_5, k.link_length_5
-        link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
@@ -448,11 +448,11 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         # law of cosines for a2 (rod rear): 1 - cosine, times a scale
         one_less_cos_a2 = (effective_a2 + link_length_4_plus_link_length_5) * (
-            effective_a2 + link_length_5_minus_link_length_4
+            effective_a2 - link_length_4_minus_link_length_5
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_4_plus_link_length_5 - effective_a2) * (
-            effective_a2 - link_length_5_minus_link_length_4
+            effective_a2 + link_length_4_minus_link_length_5
         )
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -460,7 +460,7 @@ class KinType12XY(OffsetKinematics):
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = max(
-                abs(link_length_5_minus_link_length_4) - effective_a2, effective_a2 - link_length_4_plus_link_length_5
+                abs(link_length_4_minus_link_length_5) - effective_a2, effective_a2 - link_length_4_plus_link_length_5
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         rod_1_x = x - centre_1_x
@@ -731,8 +731,8 @@ class KinType12XY(OffsetKinematics):
         link_length_1_times_shortest_link, link_length_2 = k.link_length_1_times_shortest_link, k.link_length_2
         link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
         link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
+        link_length_4_minus_link_length_5 = k.link_length_4_minus_link_length_5
         link_length_4_plus_link_length_5, link_length_5 = k.link_length_4_plus_link_length_5, k.link_length_5
-        link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
@@ -800,11 +800,11 @@ class KinType12XY(OffsetKinematics):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         # law of cosines for a2 (rod rear): 1 - cosine, times a scale
         one_less_cos_a2 = (effective_a2 + link_length_4_plus_link_length_5) * (
-            effective_a2 + link_length_5_minus_link_length_4
+            effective_a2 - link_length_4_minus_link_length_5
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_4_plus_link_length_5 - effective_a2) * (
-            effective_a2 - link_length_5_minus_link_length_4
+            effective_a2 + link_length_4_minus_link_length_5
         )
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -812,7 +812,7 @@ class KinType12XY(OffsetKinematics):
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = max(
-                abs(link_length_5_minus_link_length_4) - effective_a2, effective_a2 - link_length_4_plus_link_length_5
+                abs(link_length_4_minus_link_length_5) - effective_a2, effective_a2 - link_length_4_plus_link_length_5
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         rod_1_x = flange_x - centre_1_x

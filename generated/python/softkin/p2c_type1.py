@@ -75,7 +75,7 @@ class Constants:
         inner_arm_times_shortest_link = 1e-9 * inner_arm
         inner_arm_minus_outer_arm = inner_arm - outer_arm
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
-        tcp_displacement_minus_displacement = tcp_displacement - displacement
+        displacement_minus_tcp_displacement = displacement - tcp_displacement
         one_by_outer_arm = 1.0 / outer_arm
         inner_arm_plus_outer_arm = inner_arm + outer_arm
         assembly_sign_by_outer_arm_squared = assembly_sign / (outer_arm * outer_arm)
@@ -90,7 +90,7 @@ class Constants:
         self.inner_arm_times_shortest_link = inner_arm_times_shortest_link
         self.inner_arm_minus_outer_arm = inner_arm_minus_outer_arm
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
-        self.tcp_displacement_minus_displacement = tcp_displacement_minus_displacement
+        self.displacement_minus_tcp_displacement = displacement_minus_tcp_displacement
         self.one_by_outer_arm, self.inner_arm_plus_outer_arm = one_by_outer_arm, inner_arm_plus_outer_arm
         self.assembly_sign_by_outer_arm_squared = assembly_sign_by_outer_arm_squared
         self.one_by_outer_arm_squared, self.twice_inner_arm = one_by_outer_arm_squared, twice_inner_arm
@@ -106,7 +106,7 @@ class P2CType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type1"
-    KEY = "p2c_type1 1bc2cf430b6a7039"
+    KEY = "p2c_type1 c5c86d2ea3c14667"
     AXES = (
         Axis(
             name="A1",
@@ -227,19 +227,19 @@ class P2CType1(OffsetKinematics):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
-        one_by_outer_arm, outer_arm_squared_times_rounding = k.one_by_outer_arm, k.outer_arm_squared_times_rounding
-        product_in_normal_divisor = k.product_in_normal_divisor
-        tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
+        assembly_sign, displacement_minus_tcp_displacement = k.assembly_sign, k.displacement_minus_tcp_displacement
+        inner_arm, offset_a1, offset_a2, one_by_outer_arm = k.inner_arm, k.offset_a1, k.offset_a2, k.one_by_outer_arm
+        outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
+        product_in_normal_divisor, twice_outer_arm = k.product_in_normal_divisor, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = -inner_arm * sin_a1
@@ -270,9 +270,9 @@ class P2CType1(OffsetKinematics):
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         foot_y = 0.5 * centre_1_to_2_y
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
-        span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
+        span_1_x = displacement_minus_tcp_displacement + x  # rod 1: known part of its vector
         branch_knee_1 = (span_1_x * sin_a1 - y * cos_a1) * one_by_outer_arm
-        span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
+        span_2_x = x - displacement_minus_tcp_displacement  # rod 2: known part of its vector
         branch_knee_2 = -one_by_outer_arm * (y * cos_a2 + span_2_x * sin_a2)
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_knee_1, branch_knee_2))
 
@@ -293,19 +293,20 @@ class P2CType1(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
-        assembly_sign_by_outer_arm_squared, inner_arm = k.assembly_sign_by_outer_arm_squared, k.inner_arm
+        assembly_sign_by_outer_arm_squared = k.assembly_sign_by_outer_arm_squared
+        displacement_minus_tcp_displacement, inner_arm = k.displacement_minus_tcp_displacement, k.inner_arm
         inner_arm_minus_outer_arm, inner_arm_plus_outer_arm = k.inner_arm_minus_outer_arm, k.inner_arm_plus_outer_arm
         inner_arm_times_shortest_link = k.inner_arm_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
-        single_a2, tcp_displacement_minus_displacement = k.single_a2, k.tcp_displacement_minus_displacement
+        single_a2 = k.single_a2
         if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
+        span_1_x = displacement_minus_tcp_displacement + x  # rod 1: known part of its vector
         y_squared = y * y
         effective_a1 = root(y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
@@ -322,7 +323,7 @@ class P2CType1(OffsetKinematics):
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = max(abs(inner_arm_minus_outer_arm) - effective_a1, effective_a1 - inner_arm_plus_outer_arm)
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
+        span_2_x = x - displacement_minus_tcp_displacement  # rod 2: known part of its vector
         effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -390,20 +391,20 @@ class P2CType1(OffsetKinematics):
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
-        one_by_outer_arm, one_by_outer_arm_squared = k.one_by_outer_arm, k.one_by_outer_arm_squared
+        assembly_sign, displacement_minus_tcp_displacement = k.assembly_sign, k.displacement_minus_tcp_displacement
+        inner_arm, offset_a1, offset_a2, one_by_outer_arm = k.inner_arm, k.offset_a1, k.offset_a2, k.one_by_outer_arm
+        one_by_outer_arm_squared = k.one_by_outer_arm_squared
         outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
-        product_in_normal_divisor = k.product_in_normal_divisor
-        tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
+        product_in_normal_divisor, twice_outer_arm = k.product_in_normal_divisor, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = -inner_arm * sin_a1
@@ -434,9 +435,9 @@ class P2CType1(OffsetKinematics):
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
-        span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
+        span_1_x = displacement_minus_tcp_displacement + x  # rod 1: known part of its vector
         margin_stretched_1 = (span_1_x * sin_a1 - y * cos_a1) * one_by_outer_arm
-        span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
+        span_2_x = x - displacement_minus_tcp_displacement  # rod 2: known part of its vector
         margin_stretched_2 = -one_by_outer_arm * (y * cos_a2 + span_2_x * sin_a2)
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
@@ -449,21 +450,21 @@ class P2CType1(OffsetKinematics):
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        assembly_sign, inner_arm = k.assembly_sign, k.inner_arm
-        machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
-        offset_a2, outer_arm_squared_times_rounding = k.offset_a2, k.outer_arm_squared_times_rounding
+        assembly_sign, displacement_minus_tcp_displacement = k.assembly_sign, k.displacement_minus_tcp_displacement
+        inner_arm, machine_scale_squared_times_free_angle = k.inner_arm, k.machine_scale_squared_times_free_angle
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
         product_in_normal_divisor, sum_in_slope_1_by_x = k.product_in_normal_divisor, k.sum_in_slope_1_by_x
-        tcp_displacement_minus_displacement, twice_inner_arm = k.tcp_displacement_minus_displacement, k.twice_inner_arm
-        twice_outer_arm = k.twice_outer_arm
+        twice_inner_arm, twice_outer_arm = k.twice_inner_arm, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = -inner_arm * sin_a1
@@ -528,12 +529,13 @@ class P2CType1(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
-        assembly_sign_by_outer_arm_squared, inner_arm = k.assembly_sign_by_outer_arm_squared, k.inner_arm
+        assembly_sign_by_outer_arm_squared = k.assembly_sign_by_outer_arm_squared
+        displacement_minus_tcp_displacement, inner_arm = k.displacement_minus_tcp_displacement, k.inner_arm
         inner_arm_minus_outer_arm, inner_arm_plus_outer_arm = k.inner_arm_minus_outer_arm, k.inner_arm_plus_outer_arm
         inner_arm_times_shortest_link = k.inner_arm_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
-        single_a2, tcp_displacement_minus_displacement = k.single_a2, k.tcp_displacement_minus_displacement
+        single_a2 = k.single_a2
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         # z: a planar machine has none
@@ -541,7 +543,7 @@ class P2CType1(OffsetKinematics):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_x = x - point_x  # position of the flange: the point less its offset
-        span_1_x = flange_x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
+        span_1_x = displacement_minus_tcp_displacement + flange_x  # rod 1: known part of its vector
         flange_y = y - point_y  # position of the flange: the point less its offset
         flange_y_squared = flange_y * flange_y
         effective_a1 = root(flange_y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
@@ -559,7 +561,7 @@ class P2CType1(OffsetKinematics):
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = max(abs(inner_arm_minus_outer_arm) - effective_a1, effective_a1 - inner_arm_plus_outer_arm)
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = flange_x + tcp_displacement_minus_displacement  # rod 2: known part of its vector
+        span_2_x = flange_x - displacement_minus_tcp_displacement  # rod 2: known part of its vector
         effective_a2 = root(flange_y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -616,19 +618,19 @@ class P2CType1(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
         k = self._constants
-        assembly_sign, inner_arm, offset_a1, offset_a2 = k.assembly_sign, k.inner_arm, k.offset_a1, k.offset_a2
-        one_by_outer_arm, outer_arm_squared_times_rounding = k.one_by_outer_arm, k.outer_arm_squared_times_rounding
-        product_in_normal_divisor = k.product_in_normal_divisor
-        tcp_displacement_minus_displacement, twice_outer_arm = k.tcp_displacement_minus_displacement, k.twice_outer_arm
+        assembly_sign, displacement_minus_tcp_displacement = k.assembly_sign, k.displacement_minus_tcp_displacement
+        inner_arm, offset_a1, offset_a2, one_by_outer_arm = k.inner_arm, k.offset_a1, k.offset_a2, k.one_by_outer_arm
+        outer_arm_squared_times_rounding = k.outer_arm_squared_times_rounding
+        product_in_normal_divisor, twice_outer_arm = k.product_in_normal_divisor, k.twice_outer_arm
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = tcp_displacement_minus_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - tcp_displacement_minus_displacement  # rod 2: centre about which it swings
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = -inner_arm * sin_a1
@@ -659,9 +661,9 @@ class P2CType1(OffsetKinematics):
         flange_y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
         flange_x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
-        span_1_x = flange_x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
+        span_1_x = displacement_minus_tcp_displacement + flange_x  # rod 1: known part of its vector
         branch_knee_1 = (span_1_x * sin_a1 - flange_y * cos_a1) * one_by_outer_arm
-        span_2_x = flange_x + tcp_displacement_minus_displacement  # rod 2: known part of its vector
+        span_2_x = flange_x - displacement_minus_tcp_displacement  # rod 2: known part of its vector
         branch_knee_2 = -one_by_outer_arm * (flange_y * cos_a2 + span_2_x * sin_a2)
         return (branch_knee_1, branch_knee_2)
 

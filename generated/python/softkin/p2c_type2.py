@@ -79,7 +79,7 @@ class Constants:
         inner_arm_times_shortest_link = 1e-9 * inner_arm
         inner_arm_minus_outer_arm = inner_arm - outer_arm
         machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
-        sum_in_pivot_1_x = 0.5 * tcp_link_distance - displacement
+        sum_in_pivot_1_x = displacement - 0.5 * tcp_link_distance
         one_by_outer_arm = 1.0 / outer_arm
         inner_arm_plus_outer_arm = inner_arm + outer_arm
         assembly_sign_by_outer_arm_squared = assembly_sign / (outer_arm * outer_arm)
@@ -110,7 +110,7 @@ class P2CType2(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type2"
-    KEY = "p2c_type2 3a9cc98f906868fe"
+    KEY = "p2c_type2 cd7cac2da0ddbac7"
     AXES = (
         Axis(
             name="A1",
@@ -240,10 +240,10 @@ class P2CType2(OffsetKinematics):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = inner_arm * cos_a1 - sum_in_pivot_1_x  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_1_x + inner_arm * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -274,9 +274,9 @@ class P2CType2(OffsetKinematics):
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         foot_y = 0.5 * centre_1_to_2_y
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
-        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = sum_in_pivot_1_x + x  # rod 1: known part of its vector
         branch_knee_1 = one_by_outer_arm * (y * cos_a1 - span_1_x * sin_a1)
-        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = x - sum_in_pivot_1_x  # rod 2: known part of its vector
         branch_knee_2 = (span_2_x * sin_a2 - y * cos_a2) * one_by_outer_arm
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_knee_1, branch_knee_2))
 
@@ -309,7 +309,7 @@ class P2CType2(OffsetKinematics):
         if not (abs(z) <= machine_scale_times_plane):
             missing = abs(z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
-        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = sum_in_pivot_1_x + x  # rod 1: known part of its vector
         y_squared = y * y
         effective_a1 = root(y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
@@ -326,7 +326,7 @@ class P2CType2(OffsetKinematics):
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = max(abs(inner_arm_minus_outer_arm) - effective_a1, effective_a1 - inner_arm_plus_outer_arm)
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = x - sum_in_pivot_1_x  # rod 2: known part of its vector
         effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -404,10 +404,10 @@ class P2CType2(OffsetKinematics):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = inner_arm * cos_a1 - sum_in_pivot_1_x  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_1_x + inner_arm * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -438,9 +438,9 @@ class P2CType2(OffsetKinematics):
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
-        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = sum_in_pivot_1_x + x  # rod 1: known part of its vector
         margin_stretched_1 = one_by_outer_arm * (y * cos_a1 - span_1_x * sin_a1)
-        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = x - sum_in_pivot_1_x  # rod 2: known part of its vector
         margin_stretched_2 = (span_2_x * sin_a2 - y * cos_a2) * one_by_outer_arm
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
@@ -464,10 +464,10 @@ class P2CType2(OffsetKinematics):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = inner_arm * cos_a1 - sum_in_pivot_1_x  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_1_x + inner_arm * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -545,7 +545,7 @@ class P2CType2(OffsetKinematics):
             missing = abs(point_z - z) - machine_scale_times_plane
             return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
         flange_x = x - point_x  # position of the flange: the point less its offset
-        span_1_x = flange_x - sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = flange_x + sum_in_pivot_1_x  # rod 1: known part of its vector
         flange_y = y - point_y  # position of the flange: the point less its offset
         flange_y_squared = flange_y * flange_y
         effective_a1 = root(flange_y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
@@ -563,7 +563,7 @@ class P2CType2(OffsetKinematics):
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = max(abs(inner_arm_minus_outer_arm) - effective_a1, effective_a1 - inner_arm_plus_outer_arm)
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-        span_2_x = flange_x + sum_in_pivot_1_x  # rod 2: known part of its vector
+        span_2_x = flange_x - sum_in_pivot_1_x  # rod 2: known part of its vector
         effective_a2 = root(flange_y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -629,10 +629,10 @@ class P2CType2(OffsetKinematics):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = sum_in_pivot_1_x + inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = inner_arm * cos_a1 - sum_in_pivot_1_x  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = inner_arm * cos_a2 - sum_in_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = sum_in_pivot_1_x + inner_arm * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = inner_arm * sin_a1
@@ -663,9 +663,9 @@ class P2CType2(OffsetKinematics):
         flange_y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
         flange_x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
-        span_1_x = flange_x - sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = flange_x + sum_in_pivot_1_x  # rod 1: known part of its vector
         branch_knee_1 = one_by_outer_arm * (flange_y * cos_a1 - span_1_x * sin_a1)
-        span_2_x = flange_x + sum_in_pivot_1_x  # rod 2: known part of its vector
+        span_2_x = flange_x - sum_in_pivot_1_x  # rod 2: known part of its vector
         branch_knee_2 = (span_2_x * sin_a2 - flange_y * cos_a2) * one_by_outer_arm
         return (branch_knee_1, branch_knee_2)
 

@@ -107,7 +107,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer"
-    KEY = "palletizer b030afe8d9260c9e"
+    KEY = "palletizer 88be3b3fb2835c80"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),

@@ -74,13 +74,8 @@ class Constants:
         one_by_machine_scale = 1.0 / machine_scale
         one_by_effective_q3_2 = 1.0 / effective_q3_2
         a2_plus_effective_q3_2 = a2 + effective_q3_2
-        a2_minus_effective_q3_2_2 = a2 - effective_q3_2
         d4_by_effective_q3_2 = d4 / effective_q3_2
         a3_by_effective_q3_2 = a3 / effective_q3_2
-        one_by_effective_q3_2_2 = 1.0 / effective_q3_2
-        a2_plus_effective_q3_2_2 = a2 + effective_q3_2
-        d4_by_effective_q3_2_2 = d4 / effective_q3_2
-        a3_by_effective_q3_2_2 = a3 / effective_q3_2
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.offset_a1 = d1, a1, a2, d3, a3, d4, offset_a1
         self.offset_a2, self.offset_a3, self.machine_scale = offset_a2, offset_a3, machine_scale
         self.effective_q3_2, self.rounding_q1 = effective_q3_2, rounding_q1
@@ -88,10 +83,8 @@ class Constants:
         self.a2_minus_effective_q3_2 = a2_minus_effective_q3_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.one_by_machine_scale, self.one_by_effective_q3_2 = one_by_machine_scale, one_by_effective_q3_2
-        self.a2_plus_effective_q3_2, self.a2_minus_effective_q3_2_2 = a2_plus_effective_q3_2, a2_minus_effective_q3_2_2
-        self.d4_by_effective_q3_2, self.a3_by_effective_q3_2 = d4_by_effective_q3_2, a3_by_effective_q3_2
-        self.one_by_effective_q3_2_2, self.a2_plus_effective_q3_2_2 = one_by_effective_q3_2_2, a2_plus_effective_q3_2_2
-        self.d4_by_effective_q3_2_2, self.a3_by_effective_q3_2_2 = d4_by_effective_q3_2_2, a3_by_effective_q3_2_2
+        self.a2_plus_effective_q3_2, self.d4_by_effective_q3_2 = a2_plus_effective_q3_2, d4_by_effective_q3_2
+        self.a3_by_effective_q3_2 = a3_by_effective_q3_2
 
 
 class PosRRR(OffsetKinematics):
@@ -103,7 +96,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr dbd5bad17b9dbf34"
+    KEY = "pos_rrr 31f2b898d5b25964"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -236,7 +229,7 @@ class PosRRR(OffsetKinematics):
             start_a3,
         ) = given
         k = self._constants
-        a1, a2, a2_minus_effective_q3_2_2 = k.a1, k.a2, k.a2_minus_effective_q3_2_2
+        a1, a2, a2_minus_effective_q3_2 = k.a1, k.a2, k.a2_minus_effective_q3_2
         a2_plus_effective_q3_2, a3, a3_by_effective_q3_2 = k.a2_plus_effective_q3_2, k.a3, k.a3_by_effective_q3_2
         d1, d3, d4, d4_by_effective_q3_2, effective_q3_2 = k.d1, k.d3, k.d4, k.d4_by_effective_q3_2, k.effective_q3_2
         machine_scale, mid_a1, mid_a2, mid_a3, offset_a1 = k.machine_scale, k.mid_a1, k.mid_a2, k.mid_a3, k.offset_a1
@@ -278,7 +271,7 @@ class PosRRR(OffsetKinematics):
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
         closed_one_less_cos_q3 = (a2_plus_effective_q3_2 + closed_reach) * (a2_plus_effective_q3_2 - closed_reach)
         # 1 + cosine, times the scale
-        closed_one_plus_cos_q3 = (closed_reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + closed_reach)
+        closed_one_plus_cos_q3 = (closed_reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + closed_reach)
         # sum of both, twice the scale: cosine² + sine² is then 1
         closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
         closed_divisor_of_cos_q3 = closed_sum_q3 if closed_sum_q3 > 0.0 else 1.0
@@ -704,7 +697,7 @@ class PosRRR(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         a1, a2, a3, d1, d3, d4, offset_a1, offset_a2 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.offset_a1, k.offset_a2
-        offset_a3, one_by_effective_q3_2_2 = k.offset_a3, k.one_by_effective_q3_2_2
+        offset_a3, one_by_effective_q3_2 = k.offset_a3, k.one_by_effective_q3_2
         one_by_machine_scale = k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
@@ -735,7 +728,7 @@ class PosRRR(OffsetKinematics):
         branch_arm = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2_2
+        branch_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2
         return (
             (x, y, z),
             ((r13_at_q23, sin_q1, r11_at_q23), (r23_at_q23, -cos_q1, r21_at_q23), (cos_q23, 0.0, sin_q23)),
@@ -773,8 +766,8 @@ class PosRRR(OffsetKinematics):
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
         a1, a2, a2_minus_effective_q3_2 = k.a1, k.a2, k.a2_minus_effective_q3_2
-        a2_plus_effective_q3_2_2, a3_by_effective_q3_2_2 = k.a2_plus_effective_q3_2_2, k.a3_by_effective_q3_2_2
-        d1, d3, d4_by_effective_q3_2_2, effective_q3_2 = k.d1, k.d3, k.d4_by_effective_q3_2_2, k.effective_q3_2
+        a2_plus_effective_q3_2, a3_by_effective_q3_2, d1 = k.a2_plus_effective_q3_2, k.a3_by_effective_q3_2, k.d1
+        d3, d4_by_effective_q3_2, effective_q3_2 = k.d3, k.d4_by_effective_q3_2, k.effective_q3_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
         product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
@@ -796,7 +789,7 @@ class PosRRR(OffsetKinematics):
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
@@ -806,7 +799,7 @@ class PosRRR(OffsetKinematics):
         lost_digits_19 = (not within_19) and (abs(ahead_q1) <= product_in_lost_digits_19)
         # q3: out of reach
         if not (lost_digits_19 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
-            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2_2)
+            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
@@ -840,8 +833,8 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = a3_by_effective_q3_2_2 * cos_swing_q3 - d4_by_effective_q3_2_2 * sin_swing_q3
-        sin_q3 = a3_by_effective_q3_2_2 * sin_swing_q3 + d4_by_effective_q3_2_2 * cos_swing_q3
+        cos_q3 = a3_by_effective_q3_2 * cos_swing_q3 - d4_by_effective_q3_2 * sin_swing_q3
+        sin_q3 = a3_by_effective_q3_2 * sin_swing_q3 + d4_by_effective_q3_2 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
@@ -874,7 +867,7 @@ class PosRRR(OffsetKinematics):
             met, found_a1, found_a2, found_a3 = (False, 0.0, 0.0, 0.0)
         # q3: out of reach
         if not (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
-            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2_2)
+            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 
@@ -897,7 +890,7 @@ class PosRRR(OffsetKinematics):
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
         a1, a2, a3, d3, d4, offset_a1, offset_a2 = k.a1, k.a2, k.a3, k.d3, k.d4, k.offset_a1, k.offset_a2
-        offset_a3, one_by_effective_q3_2_2 = k.offset_a3, k.one_by_effective_q3_2_2
+        offset_a3, one_by_effective_q3_2 = k.offset_a3, k.one_by_effective_q3_2
         one_by_machine_scale = k.one_by_machine_scale
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
@@ -925,7 +918,7 @@ class PosRRR(OffsetKinematics):
         margin_point_on_axis_1 = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        margin_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2_2
+        margin_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2
         return (margin_point_on_axis_1, margin_elbow)
 
     def _twist(self, axes: Reals) -> Matrix | Status:

@@ -77,10 +77,10 @@ class Constants:
             "a4", (-720.0, 720.0) if abs(gear_coupling * RADIAN - pitch_zc / 360.0 * RADIAN) > 0.0 else None
         )
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
+        shared_sum = gear_coupling * RADIAN - pitch_zc / 360.0 * RADIAN
         shared_value = -1.0 if flange_down else 1.0
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
-        shared_sum = gear_coupling * RADIAN - pitch_zc / 360.0 * RADIAN
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         quotient_in_z = (gear_coupling - pitch_zc / 360.0) * RADIAN
         quotient_in_cos_a2 = 0.25 / (link_length_1 * link_length_2)
@@ -88,9 +88,9 @@ class Constants:
         one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.flange_down = link_length_1, link_length_2, flange_down
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.machine_scale, self.shared_value = machine_scale, shared_value
+        self.machine_scale, self.shared_sum, self.shared_value = machine_scale, shared_sum, shared_value
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
-        self.machine_scale_times_free_angle, self.shared_sum = machine_scale_times_free_angle, shared_sum
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_times_shortest_link, self.quotient_in_z = link_length_1_times_shortest_link, quotient_in_z
         self.quotient_in_cos_a2 = quotient_in_cos_a2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
@@ -106,7 +106,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_CCZC_ZCcoupled"
-    KEY = "scara4_cczc_zccoupled be07f4ffcb40ef73"
+    KEY = "scara4_cczc_zccoupled 7c1f41fc869a9a08"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

@@ -215,7 +215,7 @@ class TripodP3Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_P3Z"
-    KEY = "tripod_p3z f8c566bddb374601"
+    KEY = "tripod_p3z 09df8c88a455d89c"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along Z, up", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along Z, up", multi_turn=False),
@@ -470,10 +470,10 @@ class TripodP3Z(OffsetKinematics):
         rod_3_y = y - pivot_3_y
         a3 = z + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0) * sigma_carriage_3
         rod_3_z = z - a3
-        type2_rods_coplanar = -quotient_in_type2_rods_coplanar * (
-            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
-            + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
-            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
+            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * rod_1_y
+            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
         )
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):

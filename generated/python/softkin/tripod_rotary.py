@@ -97,8 +97,8 @@ class Constants:
         arm_length_2_squared = arm_length_2 * arm_length_2
         arm_length_2_squared_times_rounding = 1e-12 * arm_length_2 * arm_length_2
         arm_length_1_times_shortest_link = 1e-9 * arm_length_1
-        fixed_length_1_minus_arm_1_radius = fixed_length_1 - arm_1_radius
-        product_in_scaled_cosine_a1 = 2.0 * arm_length_1 * fixed_length_1_minus_arm_1_radius
+        arm_1_radius_minus_fixed_length_1 = arm_1_radius - fixed_length_1
+        product_in_scaled_cosine_a1 = 2.0 * arm_1_radius_minus_fixed_length_1 * arm_length_1
         product_in_divisor_a2 = 5e-10 * arm_length_1
         product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
         arm_length_1_times_root_of_3_times_half = 0.5 * arm_length_1 * root_of_3
@@ -121,7 +121,7 @@ class Constants:
         self.product_in_normal_divisor, self.arm_length_2_squared = product_in_normal_divisor, arm_length_2_squared
         self.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding
         self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
-        self.fixed_length_1_minus_arm_1_radius = fixed_length_1_minus_arm_1_radius
+        self.arm_1_radius_minus_fixed_length_1 = arm_1_radius_minus_fixed_length_1
         self.product_in_scaled_cosine_a1 = product_in_scaled_cosine_a1
         self.product_in_divisor_a2 = product_in_divisor_a2
         self.product_in_determinant_divisor = product_in_determinant_divisor
@@ -144,7 +144,7 @@ class TripodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
-    KEY = "tripod_rotary b11fbcca5f737ee9"
+    KEY = "tripod_rotary d0e552d74651e9f3"
     AXES = (
         Axis(
             name="A1",
@@ -301,13 +301,13 @@ class TripodRotary(OffsetKinematics):
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_length_1 = k.arm_length_1
+        arm_1_radius_minus_fixed_length_1, arm_length_1 = k.arm_1_radius_minus_fixed_length_1, k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
         arm_length_2_squared = k.arm_length_2_squared
         arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
-        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
-        half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
-        offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
+        fixed_length_2, half_arm_length_1 = k.fixed_length_2, k.half_arm_length_1
+        half_by_arm_length_2, offset_a1, offset_a2 = k.half_by_arm_length_2, k.offset_a1, k.offset_a2
+        offset_a3, one_by_arm_length_2 = k.offset_a3, k.one_by_arm_length_2
         product_in_normal_divisor, root_of_3 = k.product_in_normal_divisor, k.root_of_3
         sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
@@ -329,7 +329,8 @@ class TripodRotary(OffsetKinematics):
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
+        # rod 1: centre about which it swings
+        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1 * cos_a1
         pivot_2_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         pivot_3_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
@@ -373,7 +374,7 @@ class TripodRotary(OffsetKinematics):
         x = foot_x + pivot_1_x + height_by_normal * normal_x
         y = foot_y + height_by_normal * normal_y
         z = foot_z + pivot_1_z + height_by_normal * normal_z
-        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1: known part of its vector
         span_1_z = z - fixed_length_2
         branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) * one_by_arm_length_2
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
@@ -403,11 +404,10 @@ class TripodRotary(OffsetKinematics):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        arm_length_1 = k.arm_length_1
+        arm_1_radius_minus_fixed_length_1, arm_length_1 = k.arm_1_radius_minus_fixed_length_1, k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
         arm_length_1_times_shortest_link, arm_length_2 = k.arm_length_1_times_shortest_link, k.arm_length_2
-        arm_length_2_squared = k.arm_length_2_squared
-        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
+        arm_length_2_squared, fixed_length_2 = k.arm_length_2_squared, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, mid_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.mid_a1
         mid_a2, mid_a3, min_type2_margin, offset_a1 = k.mid_a2, k.mid_a3, k.min_type2_margin, k.offset_a1
         offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
@@ -419,15 +419,15 @@ class TripodRotary(OffsetKinematics):
         twice_arm_length_1 = k.twice_arm_length_1
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1: known part of its vector
         span_1_z = z - fixed_length_2
         effective_a1 = sqrt(span_1_x * span_1_x + span_1_z * span_1_z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
-        sum_in_scaled_cosine_a1 = (fixed_length_2 - span_1_z) * z - product_in_scaled_cosine_a1
+        sum_in_scaled_cosine_a1 = product_in_scaled_cosine_a1 + (fixed_length_2 - span_1_z) * z
         # cosine, times the scale, without cancellation
-        scaled_cosine_a1 = sum_in_scaled_cosine_a1 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
+        scaled_cosine_a1 = sum_in_scaled_cosine_a1 - (arm_1_radius_minus_fixed_length_1 + span_1_x) * x - y * y
         twice_arm_length_1_times_effective_a1 = effective_a1 * twice_arm_length_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
         one_less_cos_a1 = twice_arm_length_1_times_effective_a1 - scaled_cosine_a1
@@ -660,13 +660,13 @@ class TripodRotary(OffsetKinematics):
         """The margins, each zero at its singularity."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_length_1 = k.arm_length_1
+        arm_1_radius_minus_fixed_length_1, arm_length_1 = k.arm_1_radius_minus_fixed_length_1, k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
         arm_length_2_squared = k.arm_length_2_squared
         arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
-        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
-        half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
-        offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
+        fixed_length_2, half_arm_length_1 = k.fixed_length_2, k.half_arm_length_1
+        half_by_arm_length_2, offset_a1, offset_a2 = k.half_by_arm_length_2, k.offset_a1, k.offset_a2
+        offset_a3, one_by_arm_length_2 = k.offset_a3, k.one_by_arm_length_2
         product_in_normal_divisor = k.product_in_normal_divisor
         quotient_in_margin_rods_coplanar, root_of_3 = k.quotient_in_margin_rods_coplanar, k.root_of_3
         sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
@@ -689,7 +689,8 @@ class TripodRotary(OffsetKinematics):
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
+        # rod 1: centre about which it swings
+        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1 * cos_a1
         pivot_2_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         pivot_3_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
@@ -731,7 +732,7 @@ class TripodRotary(OffsetKinematics):
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
         x = foot_x + pivot_1_x + height_by_normal * normal_x
-        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1: known part of its vector
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_z = z - fixed_length_2
         margin_stretched_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) * one_by_arm_length_2
@@ -764,14 +765,13 @@ class TripodRotary(OffsetKinematics):
         """The Jacobian by rows, per radian."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_1_radius, arm_length_1 = k.arm_1_radius, k.arm_length_1
-        arm_length_1_times_root_of_3 = k.arm_length_1_times_root_of_3
+        arm_1_radius, arm_1_radius_minus_fixed_length_1 = k.arm_1_radius, k.arm_1_radius_minus_fixed_length_1
+        arm_length_1, arm_length_1_times_root_of_3 = k.arm_length_1, k.arm_length_1_times_root_of_3
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
         arm_length_2_squared = k.arm_length_2_squared
         arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
-        fixed_length_1, fixed_length_1_minus_arm_1_radius = k.fixed_length_1, k.fixed_length_1_minus_arm_1_radius
-        fixed_length_2, half_arm_length_1, offset_a1 = k.fixed_length_2, k.half_arm_length_1, k.offset_a1
-        offset_a2, offset_a3 = k.offset_a2, k.offset_a3
+        fixed_length_1, fixed_length_2, half_arm_length_1 = k.fixed_length_1, k.fixed_length_2, k.half_arm_length_1
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
         product_in_determinant_divisor = k.product_in_determinant_divisor
         product_in_normal_divisor, root_of_3 = k.product_in_normal_divisor, k.root_of_3
         sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
@@ -798,7 +798,8 @@ class TripodRotary(OffsetKinematics):
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
+        # rod 1: centre about which it swings
+        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1 * cos_a1
         pivot_2_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         pivot_3_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
@@ -857,9 +858,9 @@ class TripodRotary(OffsetKinematics):
         slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y
         slope_3_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a3
         sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
-        sum_in_slope_2_by_x = fixed_length_1_minus_arm_1_radius + twice_x
-        slope_2_by_x = sum_in_slope_2_by_x - arm_length_1_times_cos_a2
-        slope_3_by_x = sum_in_slope_2_by_x - arm_length_1_times_cos_a3
+        sum_in_slope_2_by_x = arm_1_radius_minus_fixed_length_1 - twice_x
+        slope_2_by_x = -arm_length_1_times_cos_a2 - sum_in_slope_2_by_x
+        slope_3_by_x = -arm_length_1_times_cos_a3 - sum_in_slope_2_by_x
         sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
         sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
         # determinant dPhi/dx: zero in a type 2 singularity
@@ -916,11 +917,10 @@ class TripodRotary(OffsetKinematics):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        arm_length_1 = k.arm_length_1
+        arm_1_radius_minus_fixed_length_1, arm_length_1 = k.arm_1_radius_minus_fixed_length_1, k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
         arm_length_1_times_shortest_link, arm_length_2 = k.arm_length_1_times_shortest_link, k.arm_length_2
-        arm_length_2_squared = k.arm_length_2_squared
-        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
+        arm_length_2_squared, fixed_length_2 = k.arm_length_2_squared, k.fixed_length_2
         half_arm_length_1, half_by_arm_length_2, mid_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.mid_a1
         mid_a2, mid_a3, min_type2_margin, offset_a1 = k.mid_a2, k.mid_a3, k.min_type2_margin, k.offset_a1
         offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
@@ -933,7 +933,7 @@ class TripodRotary(OffsetKinematics):
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         flange_x = x - point_x  # position of the flange: the point less its offset
-        span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_x = arm_1_radius_minus_fixed_length_1 + flange_x  # rod 1: known part of its vector
         flange_z = z - point_z  # position of the flange: the point less its offset
         span_1_z = flange_z - fixed_length_2
         effective_a1 = sqrt(span_1_x * span_1_x + span_1_z * span_1_z)  # effective length of the arm that a1 turns
@@ -941,10 +941,10 @@ class TripodRotary(OffsetKinematics):
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         flange_y = y - point_y  # position of the flange: the point less its offset
-        sum_in_scaled_cosine_a1 = product_in_scaled_cosine_a1 + (span_1_z - fixed_length_2) * flange_z
+        sum_in_scaled_cosine_a1 = product_in_scaled_cosine_a1 + (fixed_length_2 - span_1_z) * flange_z
         # cosine, times the scale, without cancellation
         scaled_cosine_a1 = (
-            (fixed_length_1_minus_arm_1_radius - span_1_x) * flange_x - sum_in_scaled_cosine_a1 - flange_y * flange_y
+            sum_in_scaled_cosine_a1 - (arm_1_radius_minus_fixed_length_1 + span_1_x) * flange_x - flange_y * flange_y
         )
         twice_arm_length_1_times_effective_a1 = effective_a1 * twice_arm_length_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
@@ -984,7 +984,7 @@ class TripodRotary(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > product_in_divisor_a2):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
-        sum_in_scaled_cosine_a2 = (sum_in_pivot_2_x - span_2_x) * flange_x - sum_in_scaled_cosine_a1
+        sum_in_scaled_cosine_a2 = sum_in_scaled_cosine_a1 + (sum_in_pivot_2_x - span_2_x) * flange_x
         # cosine, times the scale, without cancellation
         scaled_cosine_a2 = flange_y * (span_2_y - sum_in_pivot_2_y) - sum_in_scaled_cosine_a2
         arm_length_1_times_effective_a2 = arm_length_1 * effective_a2
@@ -1167,13 +1167,13 @@ class TripodRotary(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
         k = self._constants
-        arm_length_1 = k.arm_length_1
+        arm_1_radius_minus_fixed_length_1, arm_length_1 = k.arm_1_radius_minus_fixed_length_1, k.arm_length_1
         arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
         arm_length_2_squared = k.arm_length_2_squared
         arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
-        fixed_length_1_minus_arm_1_radius, fixed_length_2 = k.fixed_length_1_minus_arm_1_radius, k.fixed_length_2
-        half_arm_length_1, half_by_arm_length_2, offset_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.offset_a1
-        offset_a2, offset_a3, one_by_arm_length_2 = k.offset_a2, k.offset_a3, k.one_by_arm_length_2
+        fixed_length_2, half_arm_length_1 = k.fixed_length_2, k.half_arm_length_1
+        half_by_arm_length_2, offset_a1, offset_a2 = k.half_by_arm_length_2, k.offset_a1, k.offset_a2
+        offset_a3, one_by_arm_length_2 = k.offset_a3, k.one_by_arm_length_2
         product_in_normal_divisor, root_of_3 = k.product_in_normal_divisor, k.root_of_3
         sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
         if not reasonable(axis_a1, axis_a2, axis_a3):
@@ -1195,7 +1195,8 @@ class TripodRotary(OffsetKinematics):
         centre_1_to_3_z = pivot_3_z - pivot_1_z
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
-        pivot_1_x = fixed_length_1_minus_arm_1_radius - arm_length_1 * cos_a1  # rod 1: centre about which it swings
+        # rod 1: centre about which it swings
+        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1 * cos_a1
         pivot_2_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         pivot_3_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
@@ -1237,7 +1238,7 @@ class TripodRotary(OffsetKinematics):
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
         flange_x = foot_x + pivot_1_x + height_by_normal * normal_x
-        span_1_x = flange_x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_x = arm_1_radius_minus_fixed_length_1 + flange_x  # rod 1: known part of its vector
         flange_z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_z = flange_z - fixed_length_2
         branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) * one_by_arm_length_2

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 453
+    VALUES = 449
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -127,27 +127,25 @@ class ArrayPrograms(Programs):
             given_turn_a6 != 0, 360.0 * select(given_turn_a6 > 0, given_turn_a6 - 1, given_turn_a6), closed_open_a6
         )
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        closed_one_less_cos_q3 = (k.a2_plus_effective_q3_2 + closed_reach) * (k.a2_plus_effective_q3_2 - closed_reach)
+        closed_one_less_cos_q3 = (k.a2_plus_effective_q3 + closed_reach) * (k.a2_plus_effective_q3 - closed_reach)
         # 1 + cosine, times the scale
-        closed_one_plus_cos_q3 = (closed_reach - k.a2_minus_effective_q3_2_2) * (
-            k.a2_minus_effective_q3_2_2 + closed_reach
-        )
+        closed_one_plus_cos_q3 = (closed_reach - k.a2_minus_effective_q3) * (k.a2_minus_effective_q3 + closed_reach)
         # sum of both, twice the scale: cosine² + sine² is then 1
         closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
         closed_divisor_of_cos_q3 = select(closed_sum_q3 > 0.0, closed_sum_q3, 1.0)
         # sine squared, times the squared scale
         closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
         closed_sin_swing_q3 = -2.0 * root(closed_sine_square_q3) * given_sigma_elbow / closed_divisor_of_cos_q3
-        closed_arm_along_q2 = -closed_sin_swing_q3 * k.effective_q3_2
+        closed_arm_along_q2 = -closed_sin_swing_q3 * k.effective_q3
         closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
-        closed_arm_across_q2 = k.a2 + closed_cos_swing_q3 * k.effective_q3_2
+        closed_arm_across_q2 = k.a2 + closed_cos_swing_q3 * k.effective_q3
         # rotation by q2 that takes the arm to its target point
         closed_along_q2 = closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
         closed_across_q2 = closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
         sum_in_closed_length_q2 = closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        closed_cos_q3 = k.a3_by_effective_q3_2 * closed_cos_swing_q3 - closed_sin_swing_q3 * k.d4_by_effective_q3_2
-        closed_sin_q3 = k.a3_by_effective_q3_2 * closed_sin_swing_q3 + closed_cos_swing_q3 * k.d4_by_effective_q3_2
+        closed_cos_q3 = k.a3_by_effective_q3 * closed_cos_swing_q3 - closed_sin_swing_q3 * k.d4_by_effective_q3
+        closed_sin_q3 = k.a3_by_effective_q3 * closed_sin_swing_q3 + closed_cos_swing_q3 * k.d4_by_effective_q3
         closed_axis_a3 = nearest_period(k.offset_a3 + degrees(closed_sin_q3, closed_cos_q3), closed_near_a3)
         # steps of damped least squares on the closure, from one start after the other
         tried_a1, tried_a2, tried_a3, tried_a4, tried_a5, tried_a6, passes_left, attempt, error_before = initial(
@@ -197,7 +195,7 @@ class ArrayPrograms(Programs):
             beside_arm = given_sigma_arm * branch_arm < -1e-6
             sin_q3 = sin(q3)
             cos_q3 = cos(q3)
-            branch_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2
+            branch_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3
             beside_elbow = given_sigma_elbow * branch_elbow < -1e-6
             beside_hand = given_sigma_hand * sin_q5 < -1e-6
             r33_at_q4 = cos_q23 * cos_q4
@@ -650,7 +648,7 @@ class ArrayPrograms(Programs):
         branch_arm = k.one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2_2
+        branch_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3
         return (
             (x, y, z),
             (
@@ -687,9 +685,9 @@ class ArrayPrograms(Programs):
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (k.a2_plus_effective_q3_2_2 + reach) * (k.a2_plus_effective_q3_2_2 - reach)
+        one_less_cos_q3 = (k.a2_plus_effective_q3 + reach) * (k.a2_plus_effective_q3 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - k.a2_minus_effective_q3_2) * (k.a2_minus_effective_q3_2 + reach)
+        one_plus_cos_q3 = (reach - k.a2_minus_effective_q3) * (k.a2_minus_effective_q3 + reach)
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = select(sum_q3 > 0.0, sum_q3, 1.0)
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
@@ -720,8 +718,8 @@ class ArrayPrograms(Programs):
             sin_q2 = sin(reference_a2)
             return (cos_q2, sin_q2)
 
-        arm_along_q2 = -k.effective_q3_2 * sin_swing_q3
-        arm_across_q2 = k.a2 + k.effective_q3_2 * cos_swing_q3
+        arm_along_q2 = -k.effective_q3 * sin_swing_q3
+        arm_across_q2 = k.a2 + k.effective_q3 * cos_swing_q3
         # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
         across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
@@ -739,8 +737,8 @@ class ArrayPrograms(Programs):
         near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(k.offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: whole turns added
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = k.a3_by_effective_q3_2_2 * cos_swing_q3 - k.d4_by_effective_q3_2_2 * sin_swing_q3
-        sin_q3 = k.a3_by_effective_q3_2_2 * sin_swing_q3 + k.d4_by_effective_q3_2_2 * cos_swing_q3
+        cos_q3 = k.a3_by_effective_q3 * cos_swing_q3 - k.d4_by_effective_q3 * sin_swing_q3
+        sin_q3 = k.a3_by_effective_q3 * sin_swing_q3 + k.d4_by_effective_q3 * cos_swing_q3
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(k.offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: whole turns added
@@ -914,7 +912,7 @@ class ArrayPrograms(Programs):
         margin_wrist_on_axis_1 = k.one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        margin_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2_2
+        margin_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3
         return (margin_wrist_on_axis_1, margin_elbow, sin_q5), status
 
     def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:

@@ -159,11 +159,11 @@ class ArrayPrograms(Programs):
         divisor_a2 = select(effective_a2 > k.link_length_5_times_shortest_link, effective_a2, 1.0)
         # law of cosines for a2 (rod rear): 1 - cosine, times a scale
         one_less_cos_a2 = (divisor_a2 + k.link_length_4_plus_link_length_5) * (
-            divisor_a2 + k.link_length_5_minus_link_length_4
+            divisor_a2 - k.link_length_4_minus_link_length_5
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (k.link_length_4_plus_link_length_5 - divisor_a2) * (
-            divisor_a2 - k.link_length_5_minus_link_length_4
+            divisor_a2 + k.link_length_4_minus_link_length_5
         )
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)

@@ -41,10 +41,10 @@ class ArrayPrograms(Programs):
         require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
         a1 = DEGREE * (axis_a1 - k.offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = k.sum_in_pivot_1_x + k.inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = k.inner_arm * cos_a1 - k.sum_in_pivot_1_x  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = k.inner_arm * cos_a2 - k.sum_in_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = k.sum_in_pivot_1_x + k.inner_arm * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = k.inner_arm * sin_a1
@@ -70,9 +70,9 @@ class ArrayPrograms(Programs):
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
         foot_y = 0.5 * centre_1_to_2_y
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
-        span_1_x = x - k.sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = k.sum_in_pivot_1_x + x  # rod 1: known part of its vector
         branch_knee_1 = k.one_by_outer_arm * (y * cos_a1 - span_1_x * sin_a1)
-        span_2_x = k.sum_in_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = x - k.sum_in_pivot_1_x  # rod 2: known part of its vector
         branch_knee_2 = (span_2_x * sin_a2 - y * cos_a2) * k.one_by_outer_arm
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
@@ -101,7 +101,7 @@ class ArrayPrograms(Programs):
         require(status, reasonable(ref_a1, ref_a2, x, y, z), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
-        span_1_x = x - k.sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = k.sum_in_pivot_1_x + x  # rod 1: known part of its vector
         y_squared = y * y
         effective_a1 = root(y_squared + span_1_x * span_1_x)  # effective length of the arm that a1 turns
         divisor_a1 = select(effective_a1 > k.inner_arm_times_shortest_link, effective_a1, 1.0)
@@ -112,7 +112,7 @@ class ArrayPrograms(Programs):
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
-        span_2_x = k.sum_in_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = x - k.sum_in_pivot_1_x  # rod 2: known part of its vector
         effective_a2 = root(y_squared + span_2_x * span_2_x)  # effective length of the arm that a2 turns
         divisor_a2 = select(effective_a2 > k.inner_arm_times_shortest_link, effective_a2, 1.0)
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
@@ -183,10 +183,10 @@ class ArrayPrograms(Programs):
         require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
         a1 = DEGREE * (axis_a1 - k.offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = k.sum_in_pivot_1_x + k.inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = k.inner_arm * cos_a1 - k.sum_in_pivot_1_x  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = k.inner_arm * cos_a2 - k.sum_in_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = k.sum_in_pivot_1_x + k.inner_arm * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = k.inner_arm * sin_a1
@@ -212,9 +212,9 @@ class ArrayPrograms(Programs):
         y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
         foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
         x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
-        span_1_x = x - k.sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = k.sum_in_pivot_1_x + x  # rod 1: known part of its vector
         margin_stretched_1 = k.one_by_outer_arm * (y * cos_a1 - span_1_x * sin_a1)
-        span_2_x = k.sum_in_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = x - k.sum_in_pivot_1_x  # rod 2: known part of its vector
         margin_stretched_2 = (span_2_x * sin_a2 - y * cos_a2) * k.one_by_outer_arm
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
@@ -239,10 +239,10 @@ class ArrayPrograms(Programs):
         require(status, reasonable(axis_a1, axis_a2), Status.BAD_INPUT)
         a1 = DEGREE * (axis_a1 - k.offset_a1)
         cos_a1 = cos(a1)
-        pivot_1_x = k.sum_in_pivot_1_x + k.inner_arm * cos_a1  # rod 1: centre about which it swings
+        pivot_1_x = k.inner_arm * cos_a1 - k.sum_in_pivot_1_x  # rod 1: centre about which it swings
         a2 = DEGREE * (axis_a2 - k.offset_a2)
         cos_a2 = cos(a2)
-        pivot_2_x = k.inner_arm * cos_a2 - k.sum_in_pivot_1_x  # rod 2: centre about which it swings
+        pivot_2_x = k.sum_in_pivot_1_x + k.inner_arm * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         sin_a1 = sin(a1)
         pivot_1_y = k.inner_arm * sin_a1

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 395
+    VALUES = 391
     JACOBIAN_ROWS = (0, 1, 2)
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
@@ -91,9 +91,7 @@ class ArrayPrograms(Programs):
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
         closed_one_less_cos_q3 = (k.a2_plus_effective_q3_2 + closed_reach) * (k.a2_plus_effective_q3_2 - closed_reach)
         # 1 + cosine, times the scale
-        closed_one_plus_cos_q3 = (closed_reach - k.a2_minus_effective_q3_2_2) * (
-            k.a2_minus_effective_q3_2_2 + closed_reach
-        )
+        closed_one_plus_cos_q3 = (closed_reach - k.a2_minus_effective_q3_2) * (k.a2_minus_effective_q3_2 + closed_reach)
         # sum of both, twice the scale: cosine² + sine² is then 1
         closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
         closed_divisor_of_cos_q3 = select(closed_sum_q3 > 0.0, closed_sum_q3, 1.0)
@@ -525,7 +523,7 @@ class ArrayPrograms(Programs):
         branch_arm = k.one_by_machine_scale * (x * cos_q1 + y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        branch_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2_2
+        branch_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2
         return (
             (x, y, z),
             ((r13_at_q23, sin_q1, r11_at_q23), (r23_at_q23, -cos_q1, r21_at_q23), (cos_q23, 0.0, sin_q23)),
@@ -554,7 +552,7 @@ class ArrayPrograms(Programs):
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (k.a2_plus_effective_q3_2_2 + reach) * (k.a2_plus_effective_q3_2_2 - reach)
+        one_less_cos_q3 = (k.a2_plus_effective_q3_2 + reach) * (k.a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (reach - k.a2_minus_effective_q3_2) * (k.a2_minus_effective_q3_2 + reach)
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
@@ -604,8 +602,8 @@ class ArrayPrograms(Programs):
         # A2: whole turns added
         axis_a2 = nearest_period(k.offset_a2 + degrees(direction_y_q2, direction_x_q2), near_a2)
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = k.a3_by_effective_q3_2_2 * cos_swing_q3 - k.d4_by_effective_q3_2_2 * sin_swing_q3
-        sin_q3 = k.a3_by_effective_q3_2_2 * sin_swing_q3 + k.d4_by_effective_q3_2_2 * cos_swing_q3
+        cos_q3 = k.a3_by_effective_q3_2 * cos_swing_q3 - k.d4_by_effective_q3_2 * sin_swing_q3
+        sin_q3 = k.a3_by_effective_q3_2 * sin_swing_q3 + k.d4_by_effective_q3_2 * cos_swing_q3
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(k.offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: whole turns added
@@ -685,7 +683,7 @@ class ArrayPrograms(Programs):
         margin_point_on_axis_1 = k.one_by_machine_scale * (x * cos_q1 + y * sin_q1)
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)
-        margin_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2_2
+        margin_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3_2
         return (margin_point_on_axis_1, margin_elbow), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:

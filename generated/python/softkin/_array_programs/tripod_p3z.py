@@ -112,10 +112,10 @@ class ArrayPrograms(Programs):
         rod_3_y = y - k.pivot_3_y
         a3 = z + root(radicand_a3) * sigma_carriage_3
         rod_3_z = z - a3
-        type2_rods_coplanar = -k.quotient_in_type2_rods_coplanar * (
-            (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * rod_1_x
-            + rod_1_y * (rod_2_x * rod_3_z - rod_2_z * rod_3_x)
-            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * rod_1_z
+        type2_rods_coplanar = k.quotient_in_type2_rods_coplanar * (
+            rod_1_x * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
+            + (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * rod_1_y
+            + rod_1_z * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
         )
         axis_a1 = a1 + k.offset_a1
         axis_a2 = a2 + k.offset_a2

@@ -58,7 +58,7 @@ class ArrayPrograms(Programs):
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
         # rod 1: centre about which it swings
-        pivot_1_x = k.fixed_length_1_minus_arm_1_radius - k.arm_length_1 * cos_a1
+        pivot_1_x = -k.arm_1_radius_minus_fixed_length_1 - k.arm_length_1 * cos_a1
         pivot_2_x = k.sum_in_pivot_2_x + k.half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         pivot_3_x = k.sum_in_pivot_2_x + k.half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
@@ -97,7 +97,7 @@ class ArrayPrograms(Programs):
         x = foot_x + pivot_1_x + height_by_normal * normal_x
         y = foot_y + height_by_normal * normal_y
         z = foot_z + pivot_1_z + height_by_normal * normal_z
-        span_1_x = x - k.fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_x = k.arm_1_radius_minus_fixed_length_1 + x  # rod 1: known part of its vector
         span_1_z = z - k.fixed_length_2
         branch_knee_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) * k.one_by_arm_length_2
         span_2_x = x - k.sum_in_pivot_2_x  # rod 2: known part of its vector
@@ -134,12 +134,12 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_a1, ref_a2, ref_a3, x, y, z), Status.BAD_INPUT)
-        span_1_x = x - k.fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_x = k.arm_1_radius_minus_fixed_length_1 + x  # rod 1: known part of its vector
         span_1_z = z - k.fixed_length_2
         effective_a1 = sqrt(span_1_x * span_1_x + span_1_z * span_1_z)  # effective length of the arm that a1 turns
-        sum_in_scaled_cosine_a1 = (k.fixed_length_2 - span_1_z) * z - k.product_in_scaled_cosine_a1
+        sum_in_scaled_cosine_a1 = k.product_in_scaled_cosine_a1 + (k.fixed_length_2 - span_1_z) * z
         # cosine, times the scale, without cancellation
-        scaled_cosine_a1 = sum_in_scaled_cosine_a1 + (k.fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
+        scaled_cosine_a1 = sum_in_scaled_cosine_a1 - (k.arm_1_radius_minus_fixed_length_1 + span_1_x) * x - y * y
         divisor_a1 = select(effective_a1 > k.arm_length_1_times_shortest_link, effective_a1, 1.0)
         twice_arm_length_1_times_effective_a1 = divisor_a1 * k.twice_arm_length_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
@@ -294,7 +294,7 @@ class ArrayPrograms(Programs):
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
         # rod 1: centre about which it swings
-        pivot_1_x = k.fixed_length_1_minus_arm_1_radius - k.arm_length_1 * cos_a1
+        pivot_1_x = -k.arm_1_radius_minus_fixed_length_1 - k.arm_length_1 * cos_a1
         pivot_2_x = k.sum_in_pivot_2_x + k.half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         pivot_3_x = k.sum_in_pivot_2_x + k.half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
@@ -331,7 +331,7 @@ class ArrayPrograms(Programs):
         # height, as a multiple of the normal
         height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
         x = foot_x + pivot_1_x + height_by_normal * normal_x
-        span_1_x = x - k.fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_x = k.arm_1_radius_minus_fixed_length_1 + x  # rod 1: known part of its vector
         z = foot_z + pivot_1_z + height_by_normal * normal_z
         span_1_z = z - k.fixed_length_2
         margin_stretched_1 = (span_1_x * sin_a1 - span_1_z * cos_a1) * k.one_by_arm_length_2
@@ -395,7 +395,7 @@ class ArrayPrograms(Programs):
         normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
         cos_a1 = cos(a1)
         # rod 1: centre about which it swings
-        pivot_1_x = k.fixed_length_1_minus_arm_1_radius - k.arm_length_1 * cos_a1
+        pivot_1_x = -k.arm_1_radius_minus_fixed_length_1 - k.arm_length_1 * cos_a1
         pivot_2_x = k.sum_in_pivot_2_x + k.half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
         centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
         pivot_3_x = k.sum_in_pivot_2_x + k.half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
@@ -449,9 +449,9 @@ class ArrayPrograms(Programs):
         slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y
         slope_3_by_z = twice_z_minus_fixed_length_2 + k.twice_arm_length_1 * sin_a3
         sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
-        sum_in_slope_2_by_x = k.fixed_length_1_minus_arm_1_radius + twice_x
-        slope_2_by_x = sum_in_slope_2_by_x - arm_length_1_times_cos_a2
-        slope_3_by_x = sum_in_slope_2_by_x - arm_length_1_times_cos_a3
+        sum_in_slope_2_by_x = k.arm_1_radius_minus_fixed_length_1 - twice_x
+        slope_2_by_x = -arm_length_1_times_cos_a2 - sum_in_slope_2_by_x
+        slope_3_by_x = -arm_length_1_times_cos_a3 - sum_in_slope_2_by_x
         sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
         sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
         # determinant dPhi/dx: zero in a type 2 singularity

@@ -18,19 +18,19 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    a1, a2, a2_minus_effective_q3_2_2 = k.a1, k.a2, k.a2_minus_effective_q3_2_2
-    a2_plus_effective_q3_2_2, a3_by_effective_q3_2_2 = k.a2_plus_effective_q3_2_2, k.a3_by_effective_q3_2_2
-    d1, d3, d4_by_effective_q3_2_2, d6 = k.d1, k.d3, k.d4_by_effective_q3_2_2, k.d6
-    effective_q3_2, highest_a1, highest_a2, highest_a3 = k.effective_q3_2, k.highest_a1, k.highest_a2, k.highest_a3
-    highest_a4, highest_a5, highest_a6, lowest_a1 = k.highest_a4, k.highest_a5, k.highest_a6, k.lowest_a1
-    lowest_a2, lowest_a3, lowest_a4, lowest_a5 = k.lowest_a2, k.lowest_a3, k.lowest_a4, k.lowest_a5
-    lowest_a6, machine_scale_times_free_angle, mid_a1 = k.lowest_a6, k.machine_scale_times_free_angle, k.mid_a1
-    mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
-    offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
-    offset_a5, offset_a6, product_in_lost_digits_23 = k.offset_a5, k.offset_a6, k.product_in_lost_digits_23
-    rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-    single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
-    angle_of_a3_by_effective_q3_2_2 = arctan2(d4_by_effective_q3_2_2 + 0.0, a3_by_effective_q3_2_2 + 0.0)
+    a1, a2, a3, d1, d3, d4, d6, effective_q3 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.d6, k.effective_q3
+    highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
+    highest_a5, highest_a6, lowest_a1, lowest_a2 = k.highest_a5, k.highest_a6, k.lowest_a1, k.lowest_a2
+    lowest_a3, lowest_a4, lowest_a5, lowest_a6 = k.lowest_a3, k.lowest_a4, k.lowest_a5, k.lowest_a6
+    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+    mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
+    offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+    offset_a6, product_in_lost_digits_23, rounding_q1 = k.offset_a6, k.product_in_lost_digits_23, k.rounding_q1
+    single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
+    single_a5, single_a6 = k.single_a5, k.single_a6
+    angle_in_angle_q3_front_down = arctan2(d4 / effective_q3 + 0.0, a3 / effective_q3 + 0.0)
+    a2_plus_effective_q3_2 = a2 + effective_q3
+    a2_minus_effective_q3_2 = a2 - effective_q3
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
     def branches(
@@ -57,9 +57,9 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach_front = sqrt(wrist_x_from_q1_front * wrist_x_from_q1_front + wrist_z_from_q1 * wrist_z_from_q1)
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_front = (a2_plus_effective_q3_2_2 + reach_front) * (a2_plus_effective_q3_2_2 - reach_front)
+        one_less_cos_q3_front = (a2_plus_effective_q3_2 + reach_front) * (a2_plus_effective_q3_2 - reach_front)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach_front)
+        one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach_front)
         # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3 = one_less_cos_q3_front + one_plus_cos_q3_front
         divisor_of_cos_q3_front = sum_q3 if sum_q3 > 0.0 else 1.0
@@ -73,9 +73,9 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach_back = sqrt(wrist_x_from_q1_back * wrist_x_from_q1_back + wrist_z_from_q1 * wrist_z_from_q1)
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_back = (a2_plus_effective_q3_2_2 + reach_back) * (a2_plus_effective_q3_2_2 - reach_back)
+        one_less_cos_q3_back = (a2_plus_effective_q3_2 + reach_back) * (a2_plus_effective_q3_2 - reach_back)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach_back)
+        one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach_back)
         # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3 = one_less_cos_q3_back + one_plus_cos_q3_back
         divisor_of_cos_q3_back = sum_q3 if sum_q3 > 0.0 else 1.0
@@ -107,7 +107,7 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_q3 = one_less_cos_q3_front * one_plus_cos_q3_front  # sine squared, times the squared scale
         sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_front
         if reach_front > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3_front)
+            angle_of_arm_across_q2 = arctan2(effective_q3 * sin_swing_q3, a2 + effective_q3 * cos_swing_q3_front)
             angle_of_wrist_z_from_q1 = arctan2(wrist_x_from_q1_front, wrist_z_from_q1)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
@@ -117,7 +117,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_up = reference_a2
         axis_a2_front_down = offset_a2 + angle_q2_down * RADIAN
         angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3_front)
-        angle_q3 = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3
+        angle_q3 = angle_in_angle_q3_front_down + angle_of_swing_q3
         axis_a3_front_down = offset_a3 + angle_q3 * RADIAN
         r13_from_q1 = r13 * cos_q1_front + r23 * sin_q1_front
         angle_q23 = angle_q2_down + angle_q3
@@ -181,7 +181,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a4_front_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
                 axis_a6_front_down_up = offset_a6 + arctan2(direction_y_q6_up, direction_x_q6_up) * RADIAN
         axis_a2_front_up = offset_a2 + angle_q2_up * RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3
+        angle_q3 = angle_in_angle_q3_front_down - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3 * RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
@@ -245,7 +245,7 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_q3 = one_less_cos_q3_back * one_plus_cos_q3_back  # sine squared, times the squared scale
         sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_back
         if reach_back > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3_back)
+            angle_of_arm_across_q2 = arctan2(effective_q3 * sin_swing_q3, a2 + effective_q3 * cos_swing_q3_back)
             angle_of_wrist_z_from_q1 = arctan2(wrist_x_from_q1_back, wrist_z_from_q1)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
@@ -255,7 +255,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_up = reference_a2
         axis_a2_back_down = offset_a2 + angle_q2_down * RADIAN
         angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3_back)
-        angle_q3 = angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3
+        angle_q3 = angle_in_angle_q3_front_down + angle_of_swing_q3
         axis_a3_back_down = offset_a3 + angle_q3 * RADIAN
         r13_from_q1 = r13 * cos_q1_back + r23 * sin_q1_back
         angle_q23 = angle_q2_down + angle_q3
@@ -319,7 +319,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a4_back_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
                 axis_a6_back_down_up = offset_a6 + arctan2(direction_y_q6_up, direction_x_q6_up) * RADIAN
         axis_a2_back_up = offset_a2 + angle_q2_up * RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3
+        angle_q3 = angle_in_angle_q3_front_down - angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3 * RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
@@ -484,9 +484,9 @@ def unrolled(k: Constants) -> Unrolled:
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_q1 * wrist_x_from_q1 + wrist_z_from_q1 * wrist_z_from_q1)
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3 = (a2_plus_effective_q3_2_2 + reach) * (a2_plus_effective_q3_2_2 - reach)
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach) * (a2_plus_effective_q3_2 - reach)
         # 1 + cosine, times the scale
-        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2_2) * (a2_minus_effective_q3_2_2 + reach)
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2) * (a2_minus_effective_q3_2 + reach)
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
@@ -510,12 +510,12 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         if reach > machine_scale_times_free_angle:
-            angle_q2 = arctan2(-effective_q3_2 * sin_swing_q3, a2 + effective_q3_2 * cos_swing_q3) - arctan2(
+            angle_q2 = arctan2(-effective_q3 * sin_swing_q3, a2 + effective_q3 * cos_swing_q3) - arctan2(
                 wrist_x_from_q1, wrist_z_from_q1
             )
         else:
             angle_q2 = (ref_a2 - offset_a2) * DEGREE
-        angle_q3 = angle_of_a3_by_effective_q3_2_2 + arctan2(sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_in_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)
         r13_from_q1 = r13 * cos_q1 + r23 * sin_q1
         angle_q23 = angle_q2 + angle_q3
         sin_q23 = sin(angle_q23)

@@ -18,13 +18,14 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    assembly_sign_by_outer_arm_squared, highest_a1 = k.assembly_sign_by_outer_arm_squared, k.highest_a1
+    assembly_sign_by_outer_arm_squared = k.assembly_sign_by_outer_arm_squared
+    displacement_minus_tcp_displacement, highest_a1 = k.displacement_minus_tcp_displacement, k.highest_a1
     highest_a2, inner_arm, inner_arm_minus_outer_arm = k.highest_a2, k.inner_arm, k.inner_arm_minus_outer_arm
     inner_arm_plus_outer_arm = k.inner_arm_plus_outer_arm
     inner_arm_times_shortest_link, lowest_a1, lowest_a2 = k.inner_arm_times_shortest_link, k.lowest_a1, k.lowest_a2
     machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
     min_type2_margin, offset_a1, offset_a2, single_a1 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.single_a1
-    single_a2, tcp_displacement_minus_displacement = k.single_a2, k.tcp_displacement_minus_displacement
+    single_a2 = k.single_a2
     no_offsets = not any((offset_a1, offset_a2))
 
     def branches(
@@ -35,7 +36,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 4 * (refused[Status.UNREACHABLE],)
-        span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
+        span_1_x = displacement_minus_tcp_displacement + x  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + y * y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
@@ -51,7 +52,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 4 * (refused[Status.UNREACHABLE],)
-        span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
+        span_2_x = x - displacement_minus_tcp_displacement  # rod 2: known part of its vector
         effective_a2 = sqrt(span_2_x * span_2_x + y * y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -133,7 +134,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
-        span_1_x = x - tcp_displacement_minus_displacement  # rod 1: known part of its vector
+        span_1_x = displacement_minus_tcp_displacement + x  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + y * y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
@@ -149,7 +150,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
-        span_2_x = tcp_displacement_minus_displacement + x  # rod 2: known part of its vector
+        span_2_x = x - displacement_minus_tcp_displacement  # rod 2: known part of its vector
         effective_a2 = sqrt(span_2_x * span_2_x + y * y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):

@@ -149,15 +149,15 @@ def unrolled(k: Constants) -> Unrolled:
         along_a3_times_sin_swing_a3 = along_a3 * sin_swing_a3
         sin_a3 = (across_a2_times_cos_swing_a3 + along_a3_times_sin_swing_a3) / divisor_a3
         rod_3_z_outward = z - (-arm_length * sin_a3)
-        product_in_type2_rods_coplanar_outward_outward = (rod_2_x * rod_3_z_outward - rod_2_z * rod_3_x_outward) * y
+        product_in_type2_rods_coplanar_outward_outward = (rod_2_z * rod_3_x_outward - rod_2_x * rod_3_z_outward) * y
         rod_2_y = span_2_y - arm_length_times_root_of_3_times_half_2 * cos_a2
         rod_3_y_outward = span_3_y + arm_length_times_root_of_3_times_half_2 * cos_a3
         sum_in_type2_rods_coplanar_outward_outward = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
         sum_in_type2_rods_coplanar_outward_outward_outward_2 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_outward_outward
+            product_in_type2_rods_coplanar_outward_outward
+            + rod_1_x * sum_in_type2_rods_coplanar_outward_outward
             + rod_1_z * sum_in_type2_rods_coplanar_outward_outward_outward_2
-            - product_in_type2_rods_coplanar_outward_outward
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -170,14 +170,14 @@ def unrolled(k: Constants) -> Unrolled:
         rod_3_x_inward = span_2_x + half_arm_length * cos_a3
         sin_a3 = (across_a2_times_cos_swing_a3 - along_a3_times_sin_swing_a3) / divisor_a3
         rod_3_z_inward = z - (-arm_length * sin_a3)
-        product_in_type2_rods_coplanar_outward_inward = (rod_2_x * rod_3_z_inward - rod_2_z * rod_3_x_inward) * y
+        product_in_type2_rods_coplanar_outward_inward = (rod_2_z * rod_3_x_inward - rod_2_x * rod_3_z_inward) * y
         rod_3_y_inward = span_3_y + arm_length_times_root_of_3_times_half_2 * cos_a3
         sum_in_type2_rods_coplanar_outward_inward = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
         sum_in_type2_rods_coplanar_outward_outward_inward_2 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_outward_inward
+            product_in_type2_rods_coplanar_outward_inward
+            + rod_1_x * sum_in_type2_rods_coplanar_outward_inward
             + rod_1_z * sum_in_type2_rods_coplanar_outward_outward_inward_2
-            - product_in_type2_rods_coplanar_outward_inward
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -187,25 +187,25 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_x = span_2_x + half_arm_length * cos_a2
         sin_a2 = (across_a2_times_cos_swing_a2 - along_a2_times_sin_swing_a2) / divisor_a2
         rod_2_z = z - (-arm_length * sin_a2)
-        product_in_type2_rods_coplanar_inward_outward = (rod_2_x * rod_3_z_outward - rod_2_z * rod_3_x_outward) * y
+        product_in_type2_rods_coplanar_inward_outward = (rod_2_z * rod_3_x_outward - rod_2_x * rod_3_z_outward) * y
         rod_2_y = span_2_y - arm_length_times_root_of_3_times_half_2 * cos_a2
         sum_in_type2_rods_coplanar_inward_outward = rod_2_y * rod_3_z_outward - rod_2_z * rod_3_y_outward
         sum_in_type2_rods_coplanar_outward_inward_outward_2 = rod_2_x * rod_3_y_outward - rod_2_y * rod_3_x_outward
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_inward_outward
+            product_in_type2_rods_coplanar_inward_outward
+            + rod_1_x * sum_in_type2_rods_coplanar_inward_outward
             + rod_1_z * sum_in_type2_rods_coplanar_outward_inward_outward_2
-            - product_in_type2_rods_coplanar_inward_outward
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2) * RADIAN
-        product_in_type2_rods_coplanar_inward_inward = (rod_2_x * rod_3_z_inward - rod_2_z * rod_3_x_inward) * y
+        product_in_type2_rods_coplanar_inward_inward = (rod_2_z * rod_3_x_inward - rod_2_x * rod_3_z_inward) * y
         sum_in_type2_rods_coplanar_inward_inward = rod_2_y * rod_3_z_inward - rod_2_z * rod_3_y_inward
         sum_in_type2_rods_coplanar_outward_inward_inward_2 = rod_2_x * rod_3_y_inward - rod_2_y * rod_3_x_inward
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_inward_inward
+            product_in_type2_rods_coplanar_inward_inward
+            + rod_1_x * sum_in_type2_rods_coplanar_inward_inward
             + rod_1_z * sum_in_type2_rods_coplanar_outward_inward_inward_2
-            - product_in_type2_rods_coplanar_inward_inward
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_outward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -215,31 +215,31 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = (sin_swing_a1_inward_times_span_1_x - cos_swing_a1_times_z) / divisor_a1
         rod_1_z = z - (-arm_length * sin_a1)
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_outward_outward
+            product_in_type2_rods_coplanar_outward_outward
+            + rod_1_x * sum_in_type2_rods_coplanar_outward_outward
             + rod_1_z * sum_in_type2_rods_coplanar_outward_outward_outward_2
-            - product_in_type2_rods_coplanar_outward_outward
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_outward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_outward_inward
+            product_in_type2_rods_coplanar_outward_inward
+            + rod_1_x * sum_in_type2_rods_coplanar_outward_inward
             + rod_1_z * sum_in_type2_rods_coplanar_outward_outward_inward_2
-            - product_in_type2_rods_coplanar_outward_inward
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_outward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_inward_outward
+            product_in_type2_rods_coplanar_inward_outward
+            + rod_1_x * sum_in_type2_rods_coplanar_inward_outward
             + rod_1_z * sum_in_type2_rods_coplanar_outward_inward_outward_2
-            - product_in_type2_rods_coplanar_inward_outward
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_inward_outward = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_inward_inward
+            product_in_type2_rods_coplanar_inward_inward
+            + rod_1_x * sum_in_type2_rods_coplanar_inward_inward
             + rod_1_z * sum_in_type2_rods_coplanar_outward_inward_inward_2
-            - product_in_type2_rods_coplanar_inward_inward
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_inward_inward_inward = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -372,10 +372,10 @@ def unrolled(k: Constants) -> Unrolled:
         rod_3_y = span_3_y + arm_length_times_root_of_3_times_half_2 * cos_a3
         sin_a3 = (across_a2 * cos_swing_a3 + along_a3 * sin_swing_a3) / divisor_a3
         rod_3_z = z - (-arm_length * sin_a3)
-        type2_rods_coplanar = -quotient_in_type2_rods_coplanar * (
-            (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
-            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * (z - (-arm_length * sin_a1))
-            + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * (span_1_x - arm_length * cos_a1)
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
+            (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
+            + (z - (-arm_length * sin_a1)) * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+            + (span_1_x - arm_length * cos_a1) * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
         )
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):

@@ -24,8 +24,8 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_times_shortest_link, link_length_2 = k.link_length_1_times_shortest_link, k.link_length_2
     link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
     link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
+    link_length_4_minus_link_length_5 = k.link_length_4_minus_link_length_5
     link_length_4_plus_link_length_5, link_length_5 = k.link_length_4_plus_link_length_5, k.link_length_5
-    link_length_5_minus_link_length_4 = k.link_length_5_minus_link_length_4
     link_length_5_times_shortest_link, lowest_a1 = k.link_length_5_times_shortest_link, k.lowest_a1
     lowest_a2, machine_scale_times_plane, mid_a1 = k.lowest_a2, k.machine_scale_times_plane, k.mid_a1
     mid_a2, min_type2_margin, offset_a1, offset_a2 = k.mid_a2, k.min_type2_margin, k.offset_a1, k.offset_a2
@@ -88,11 +88,11 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         # law of cosines for a2 (rod rear): 1 - cosine, times a scale
         one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
-            divisor_a2 + link_length_5_minus_link_length_4
+            divisor_a2 - link_length_4_minus_link_length_5
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
-            divisor_a2 - link_length_5_minus_link_length_4
+            divisor_a2 + link_length_4_minus_link_length_5
         )
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -158,11 +158,11 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         # law of cosines for a2 (rod rear): 1 - cosine, times a scale
         one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
-            divisor_a2 + link_length_5_minus_link_length_4
+            divisor_a2 - link_length_4_minus_link_length_5
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
-            divisor_a2 - link_length_5_minus_link_length_4
+            divisor_a2 + link_length_4_minus_link_length_5
         )
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -285,11 +285,11 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         # law of cosines for a2 (rod rear): 1 - cosine, times a scale
         one_less_cos_a2 = (divisor_a2 + link_length_4_plus_link_length_5) * (
-            divisor_a2 + link_length_5_minus_link_length_4
+            divisor_a2 - link_length_4_minus_link_length_5
         )
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (link_length_4_plus_link_length_5 - divisor_a2) * (
-            divisor_a2 - link_length_5_minus_link_length_4
+            divisor_a2 + link_length_4_minus_link_length_5
         )
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0

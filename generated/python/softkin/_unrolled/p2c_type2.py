@@ -35,7 +35,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 4 * (refused[Status.UNREACHABLE],)
-        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = sum_in_pivot_1_x + x  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + y * y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
@@ -51,7 +51,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return 4 * (refused[Status.UNREACHABLE],)
-        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = x - sum_in_pivot_1_x  # rod 2: known part of its vector
         effective_a2 = sqrt(span_2_x * span_2_x + y * y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -133,7 +133,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
-        span_1_x = x - sum_in_pivot_1_x  # rod 1: known part of its vector
+        span_1_x = sum_in_pivot_1_x + x  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + y * y)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
@@ -149,7 +149,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
-        span_2_x = sum_in_pivot_1_x + x  # rod 2: known part of its vector
+        span_2_x = x - sum_in_pivot_1_x  # rod 2: known part of its vector
         effective_a2 = sqrt(span_2_x * span_2_x + y * y)  # effective length of the arm that a2 turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):

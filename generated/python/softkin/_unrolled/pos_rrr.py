@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    a1, a2, a2_minus_effective_q3_2_2 = k.a1, k.a2, k.a2_minus_effective_q3_2_2
-    a2_plus_effective_q3_2_2, a3_by_effective_q3_2_2 = k.a2_plus_effective_q3_2_2, k.a3_by_effective_q3_2_2
-    d1, d3, d4_by_effective_q3_2_2, effective_q3_2 = k.d1, k.d3, k.d4_by_effective_q3_2_2, k.effective_q3_2
+    a1, a2, a3, d1, d3, d4, effective_q3_2 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.effective_q3_2
     highest_a1, highest_a2, highest_a3, lowest_a1 = k.highest_a1, k.highest_a2, k.highest_a3, k.lowest_a1
     lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
     product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
     single_a2, single_a3 = k.single_a2, k.single_a3
-    angle_of_a3_by_effective_q3_2_2 = arctan2(d4_by_effective_q3_2_2 + 0.0, a3_by_effective_q3_2_2 + 0.0)
+    angle_in_angle_q3_front_down = arctan2(d4 / effective_q3_2 + 0.0, a3 / effective_q3_2 + 0.0)
+    a2_plus_effective_q3_2_2 = a2 + effective_q3_2
+    a2_minus_effective_q3_2_2 = a2 - effective_q3_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3))
 
     def branches(
@@ -129,28 +129,28 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 axis_a1_front,
                 offset_a2 + angle_q2_front_down * RADIAN,
-                offset_a3 + (angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_front_down) * RADIAN,
+                offset_a3 + (angle_in_angle_q3_front_down + angle_of_swing_q3_front_down) * RADIAN,
             )
             if refusal_front == 0
             else refused[refusal_front],
             (
                 axis_a1_back,
                 offset_a2 + angle_q2_back_down * RADIAN,
-                offset_a3 + (angle_of_a3_by_effective_q3_2_2 + angle_of_swing_q3_back_down) * RADIAN,
+                offset_a3 + (angle_in_angle_q3_front_down + angle_of_swing_q3_back_down) * RADIAN,
             )
             if refusal_back == 0
             else refused[refusal_back],
             (
                 axis_a1_front,
                 offset_a2 + angle_q2_front_up * RADIAN,
-                offset_a3 + (angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_front_down) * RADIAN,
+                offset_a3 + (angle_in_angle_q3_front_down - angle_of_swing_q3_front_down) * RADIAN,
             )
             if refusal_front == 0
             else refused[refusal_front],
             (
                 axis_a1_back,
                 offset_a2 + angle_q2_back_up * RADIAN,
-                offset_a3 + (angle_of_a3_by_effective_q3_2_2 - angle_of_swing_q3_back_down) * RADIAN,
+                offset_a3 + (angle_in_angle_q3_front_down - angle_of_swing_q3_back_down) * RADIAN,
             )
             if refusal_back == 0
             else refused[refusal_back],
@@ -212,12 +212,12 @@ def unrolled(k: Constants) -> Unrolled:
             return (
                 arctan2(sin_q1, cos_q1) * RADIAN,
                 angle_q2 * RADIAN,
-                (angle_of_a3_by_effective_q3_2_2 + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
+                (angle_in_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
             )
         return (
             offset_a1 + arctan2(sin_q1, cos_q1) * RADIAN,
             offset_a2 + angle_q2 * RADIAN,
-            offset_a3 + (angle_of_a3_by_effective_q3_2_2 + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
+            offset_a3 + (angle_in_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)) * RADIAN,
         )
 
     def finish(found: tuple[Reals | int, ...], reference: Reals) -> tuple[Reals | int, ...]:

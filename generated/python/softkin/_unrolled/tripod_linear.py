@@ -121,15 +121,15 @@ def unrolled(k: Constants) -> Unrolled:
         a3 = middle_a3 + root_of_radicand_a3
         rod_3_x_below = span_2_x - a3 * half_sin_rail_angle
         rod_3_z_below = z - (-a3 * cos_rail_angle)
-        product_in_type2_rods_coplanar_below_below = (rod_2_x * rod_3_z_below - rod_2_z * rod_3_x_below) * y
+        product_in_type2_rods_coplanar_below_below = (rod_2_z * rod_3_x_below - rod_2_x * rod_3_z_below) * y
         rod_2_y = span_2_y + a2 * product_in_middle_a2
         rod_3_y_below = span_3_y - a3 * product_in_middle_a2
         sum_in_type2_rods_coplanar_below_below = rod_2_y * rod_3_z_below - rod_2_z * rod_3_y_below
         sum_in_type2_rods_coplanar_below_below_below_2 = rod_2_x * rod_3_y_below - rod_2_y * rod_3_x_below
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_below_below
+            product_in_type2_rods_coplanar_below_below
+            + rod_1_x * sum_in_type2_rods_coplanar_below_below
             + rod_1_z * sum_in_type2_rods_coplanar_below_below_below_2
-            - product_in_type2_rods_coplanar_below_below
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -139,14 +139,14 @@ def unrolled(k: Constants) -> Unrolled:
         a3 = middle_a3 - root_of_radicand_a3
         rod_3_x_above = span_2_x - a3 * half_sin_rail_angle
         rod_3_z_above = z - (-a3 * cos_rail_angle)
-        product_in_type2_rods_coplanar_below_above = (rod_2_x * rod_3_z_above - rod_2_z * rod_3_x_above) * y
+        product_in_type2_rods_coplanar_below_above = (rod_2_z * rod_3_x_above - rod_2_x * rod_3_z_above) * y
         rod_3_y_above = span_3_y - a3 * product_in_middle_a2
         sum_in_type2_rods_coplanar_below_above = rod_2_y * rod_3_z_above - rod_2_z * rod_3_y_above
         sum_in_type2_rods_coplanar_below_below_above_2 = rod_2_x * rod_3_y_above - rod_2_y * rod_3_x_above
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_below_above
+            product_in_type2_rods_coplanar_below_above
+            + rod_1_x * sum_in_type2_rods_coplanar_below_above
             + rod_1_z * sum_in_type2_rods_coplanar_below_below_above_2
-            - product_in_type2_rods_coplanar_below_above
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -154,25 +154,25 @@ def unrolled(k: Constants) -> Unrolled:
         a2 = middle_a2 - root_of_radicand_a2
         rod_2_x = span_2_x - a2 * half_sin_rail_angle
         rod_2_z = z - (-a2 * cos_rail_angle)
-        product_in_type2_rods_coplanar_above_below = (rod_2_x * rod_3_z_below - rod_2_z * rod_3_x_below) * y
+        product_in_type2_rods_coplanar_above_below = (rod_2_z * rod_3_x_below - rod_2_x * rod_3_z_below) * y
         rod_2_y = span_2_y + a2 * product_in_middle_a2
         sum_in_type2_rods_coplanar_above_below = rod_2_y * rod_3_z_below - rod_2_z * rod_3_y_below
         sum_in_type2_rods_coplanar_below_above_below_2 = rod_2_x * rod_3_y_below - rod_2_y * rod_3_x_below
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_above_below
+            product_in_type2_rods_coplanar_above_below
+            + rod_1_x * sum_in_type2_rods_coplanar_above_below
             + rod_1_z * sum_in_type2_rods_coplanar_below_above_below_2
-            - product_in_type2_rods_coplanar_above_below
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a2_above = a2 + offset_a2
-        product_in_type2_rods_coplanar_above_above = (rod_2_x * rod_3_z_above - rod_2_z * rod_3_x_above) * y
+        product_in_type2_rods_coplanar_above_above = (rod_2_z * rod_3_x_above - rod_2_x * rod_3_z_above) * y
         sum_in_type2_rods_coplanar_above_above = rod_2_y * rod_3_z_above - rod_2_z * rod_3_y_above
         sum_in_type2_rods_coplanar_below_above_above_2 = rod_2_x * rod_3_y_above - rod_2_y * rod_3_x_above
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_above_above
+            product_in_type2_rods_coplanar_above_above
+            + rod_1_x * sum_in_type2_rods_coplanar_above_above
             + rod_1_z * sum_in_type2_rods_coplanar_below_above_above_2
-            - product_in_type2_rods_coplanar_above_above
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_below_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -180,31 +180,31 @@ def unrolled(k: Constants) -> Unrolled:
         rod_1_x = span_1_x + a1 * sin_rail_angle
         rod_1_z = z - (-a1 * cos_rail_angle)
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_below_below
+            product_in_type2_rods_coplanar_below_below
+            + rod_1_x * sum_in_type2_rods_coplanar_below_below
             + rod_1_z * sum_in_type2_rods_coplanar_below_below_below_2
-            - product_in_type2_rods_coplanar_below_below
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_below_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         axis_a1_above = a1 + offset_a1
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_below_above
+            product_in_type2_rods_coplanar_below_above
+            + rod_1_x * sum_in_type2_rods_coplanar_below_above
             + rod_1_z * sum_in_type2_rods_coplanar_below_below_above_2
-            - product_in_type2_rods_coplanar_below_above
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_below_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_above_below
+            product_in_type2_rods_coplanar_above_below
+            + rod_1_x * sum_in_type2_rods_coplanar_above_below
             + rod_1_z * sum_in_type2_rods_coplanar_below_above_below_2
-            - product_in_type2_rods_coplanar_above_below
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_above_below = 0 if type2_rods_coplanar >= min_type2_margin else 3
         type2_rods_coplanar = (
-            rod_1_x * sum_in_type2_rods_coplanar_above_above
+            product_in_type2_rods_coplanar_above_above
+            + rod_1_x * sum_in_type2_rods_coplanar_above_above
             + rod_1_z * sum_in_type2_rods_coplanar_below_above_above_2
-            - product_in_type2_rods_coplanar_above_above
         ) * quotient_in_type2_rods_coplanar
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         refusal_above_above_above = 0 if type2_rods_coplanar >= min_type2_margin else 3
@@ -297,10 +297,10 @@ def unrolled(k: Constants) -> Unrolled:
         rod_3_x = span_2_x - a3 * half_sin_rail_angle
         rod_3_y = span_3_y - a3 * product_in_middle_a2
         rod_3_z = z - (-a3 * cos_rail_angle)
-        type2_rods_coplanar = -quotient_in_type2_rods_coplanar * (
-            (rod_2_x * rod_3_z - rod_2_z * rod_3_x) * y
-            + (rod_2_y * rod_3_x - rod_2_x * rod_3_y) * (z - (-a1 * cos_rail_angle))
-            + (rod_2_z * rod_3_y - rod_2_y * rod_3_z) * (span_1_x + a1 * sin_rail_angle)
+        type2_rods_coplanar = quotient_in_type2_rods_coplanar * (
+            (rod_2_z * rod_3_x - rod_2_x * rod_3_z) * y
+            + (z - (-a1 * cos_rail_angle)) * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
+            + (span_1_x + a1 * sin_rail_angle) * (rod_2_y * rod_3_z - rod_2_z * rod_3_y)
         )
         # rods_coplanar: in the other assembly mode, or too close to a type 2 singularity
         if not (type2_rods_coplanar >= min_type2_margin):

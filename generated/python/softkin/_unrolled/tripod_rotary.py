@@ -18,19 +18,18 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    arm_1_radius, arm_length_1 = k.arm_1_radius, k.arm_length_1
-    arm_length_1_times_shortest_link, arm_length_2 = k.arm_length_1_times_shortest_link, k.arm_length_2
-    fixed_length_1, fixed_length_1_minus_arm_1_radius = k.fixed_length_1, k.fixed_length_1_minus_arm_1_radius
-    fixed_length_2, half_arm_length_1 = k.fixed_length_2, k.half_arm_length_1
-    half_by_arm_length_2, highest_a1, highest_a2 = k.half_by_arm_length_2, k.highest_a1, k.highest_a2
-    highest_a3, lowest_a1, lowest_a2, lowest_a3 = k.highest_a3, k.lowest_a1, k.lowest_a2, k.lowest_a3
-    mid_a1, mid_a2, mid_a3, min_type2_margin = k.mid_a1, k.mid_a2, k.mid_a3, k.min_type2_margin
-    offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+    arm_1_radius, arm_1_radius_minus_fixed_length_1 = k.arm_1_radius, k.arm_1_radius_minus_fixed_length_1
+    arm_length_1, arm_length_1_times_shortest_link = k.arm_length_1, k.arm_length_1_times_shortest_link
+    arm_length_2, fixed_length_1, fixed_length_2 = k.arm_length_2, k.fixed_length_1, k.fixed_length_2
+    half_arm_length_1, half_by_arm_length_2, highest_a1 = k.half_arm_length_1, k.half_by_arm_length_2, k.highest_a1
+    highest_a2, highest_a3, lowest_a1, lowest_a2 = k.highest_a2, k.highest_a3, k.lowest_a1, k.lowest_a2
+    lowest_a3, mid_a1, mid_a2, mid_a3 = k.lowest_a3, k.mid_a1, k.mid_a2, k.mid_a3
+    min_type2_margin, offset_a1, offset_a2, offset_a3 = k.min_type2_margin, k.offset_a1, k.offset_a2, k.offset_a3
     one_by_arm_length_2, product_in_divisor_a2 = k.one_by_arm_length_2, k.product_in_divisor_a2
     quotient_in_type2_rods_coplanar, root_of_3 = k.quotient_in_type2_rods_coplanar, k.root_of_3
     sin_max_angle_ball_joint, single_a1, single_a2 = k.sin_max_angle_ball_joint, k.single_a1, k.single_a2
     single_a3, sum_in_pivot_2_x, twice_arm_length_1 = k.single_a3, k.sum_in_pivot_2_x, k.twice_arm_length_1
-    product_in_scaled_cosine_a1_2 = -2.0 * arm_length_1 * fixed_length_1_minus_arm_1_radius
+    product_in_scaled_cosine_a1_2 = 2.0 * arm_1_radius_minus_fixed_length_1 * arm_length_1
     sum_in_span_2_y = 0.5 * arm_1_radius * root_of_3 - 0.5 * fixed_length_1 * root_of_3
     arm_length_1_times_root_of_3_times_half_2 = 0.5 * arm_length_1 * root_of_3
     root_of_3_times_half_by_arm_length_2_2 = 0.5 * root_of_3 / arm_length_2
@@ -41,7 +40,7 @@ def unrolled(k: Constants) -> Unrolled:
     ) -> tuple[Any, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1: known part of its vector
         span_1_z = z - fixed_length_2
         effective_a1 = sqrt(span_1_x * span_1_x + span_1_z * span_1_z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
@@ -49,7 +48,7 @@ def unrolled(k: Constants) -> Unrolled:
             return 8 * (refused[Status.UNREACHABLE],)
         sum_in_scaled_cosine_a1 = product_in_scaled_cosine_a1_2 + (fixed_length_2 - span_1_z) * z
         # cosine, times the scale, without cancellation
-        scaled_cosine_a1 = sum_in_scaled_cosine_a1 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
+        scaled_cosine_a1 = sum_in_scaled_cosine_a1 - (arm_1_radius_minus_fixed_length_1 + span_1_x) * x - y * y
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
         twice_arm_length_1_times_effective_a1 = divisor_a1 * twice_arm_length_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
@@ -70,9 +69,9 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: its effective length is too short
         if not (effective_a2 > product_in_divisor_a2):
             return 8 * (refused[Status.UNREACHABLE],)
-        sum_in_scaled_cosine_a2 = (span_2_x - sum_in_pivot_2_x) * x - sum_in_scaled_cosine_a1
+        sum_in_scaled_cosine_a2 = sum_in_scaled_cosine_a1 + (sum_in_pivot_2_x - span_2_x) * x
         # cosine, times the scale, without cancellation
-        scaled_cosine_a2 = sum_in_scaled_cosine_a2 + (span_2_y + sum_in_span_2_y) * y
+        scaled_cosine_a2 = (span_2_y + sum_in_span_2_y) * y - sum_in_scaled_cosine_a2
         divisor_a2 = effective_a2 if effective_a2 > product_in_divisor_a2 else 1.0
         arm_length_1_times_effective_a2 = arm_length_1 * divisor_a2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
@@ -92,7 +91,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a3 > product_in_divisor_a2):
             return 8 * (refused[Status.UNREACHABLE],)
         # cosine, times the scale, without cancellation
-        scaled_cosine_a3 = sum_in_scaled_cosine_a2 + (span_3_y - sum_in_span_2_y) * y
+        scaled_cosine_a3 = (span_3_y - sum_in_span_2_y) * y - sum_in_scaled_cosine_a2
         divisor_a3 = effective_a3 if effective_a3 > product_in_divisor_a2 else 1.0
         arm_length_1_times_effective_a3 = arm_length_1 * divisor_a3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
@@ -272,7 +271,7 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
-        span_1_x = x - fixed_length_1_minus_arm_1_radius  # rod 1: known part of its vector
+        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1: known part of its vector
         span_1_z = z - fixed_length_2
         effective_a1 = sqrt(span_1_x * span_1_x + span_1_z * span_1_z)  # effective length of the arm that a1 turns
         # a1: its effective length is too short
@@ -280,7 +279,7 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         sum_in_scaled_cosine_a1 = product_in_scaled_cosine_a1_2 + (fixed_length_2 - span_1_z) * z
         # cosine, times the scale, without cancellation
-        scaled_cosine_a1 = sum_in_scaled_cosine_a1 + (fixed_length_1_minus_arm_1_radius - span_1_x) * x - y * y
+        scaled_cosine_a1 = sum_in_scaled_cosine_a1 - (arm_1_radius_minus_fixed_length_1 + span_1_x) * x - y * y
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
         twice_arm_length_1_times_effective_a1 = divisor_a1 * twice_arm_length_1
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
@@ -301,9 +300,9 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: its effective length is too short
         if not (effective_a2 > product_in_divisor_a2):
             return None
-        sum_in_scaled_cosine_a2 = (span_2_x - sum_in_pivot_2_x) * x - sum_in_scaled_cosine_a1
+        sum_in_scaled_cosine_a2 = sum_in_scaled_cosine_a1 + (sum_in_pivot_2_x - span_2_x) * x
         # cosine, times the scale, without cancellation
-        scaled_cosine_a2 = sum_in_scaled_cosine_a2 + (span_2_y + sum_in_span_2_y) * y
+        scaled_cosine_a2 = (span_2_y + sum_in_span_2_y) * y - sum_in_scaled_cosine_a2
         divisor_a2 = effective_a2 if effective_a2 > product_in_divisor_a2 else 1.0
         arm_length_1_times_effective_a2 = arm_length_1 * divisor_a2
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
@@ -323,7 +322,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a3 > product_in_divisor_a2):
             return None
         # cosine, times the scale, without cancellation
-        scaled_cosine_a3 = sum_in_scaled_cosine_a2 + (span_3_y - sum_in_span_2_y) * y
+        scaled_cosine_a3 = (span_3_y - sum_in_span_2_y) * y - sum_in_scaled_cosine_a2
         divisor_a3 = effective_a3 if effective_a3 > product_in_divisor_a2 else 1.0
         arm_length_1_times_effective_a3 = arm_length_1 * divisor_a3
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
