@@ -6,35 +6,13 @@ import sympy as sp
 from sympy import pi
 
 from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
-from derive.mechanism import Joint, Mechanism, Parameter, Task, Turning, Vendor, distance, length, linear, rotary
+from derive.mechanism import Task, Turning, distance, length, linear, rotary
+from tests.machines.textbook import textbook as _chain
 
 X, Y, Z = (linear(name, f"slide {name}") for name in "XYZ")
 A1, A2, A3, A4, A5, A6, A7 = (rotary(f"A{k}", f"turn A{k}") for k in range(1, 8))
 L5 = length("link_5", "link 5", nominal=30.0)
 L1, L2, L3, L4 = (length(f"link_{k}", f"link {k}", nominal=v) for k, v in enumerate((50.0, 200.0, 300.0, 120.0), 1))
-
-
-def _chain(
-    name: str,
-    joints: tuple[Joint, ...],
-    chain: Chain,
-    parameters: tuple[Parameter, ...],
-    task: Task,
-    held: tuple[Joint, ...] = (),
-) -> Mechanism:
-    return Mechanism(
-        name=f"Kin_{name}",
-        vendor=Vendor.TEXTBOOK,
-        family="articulated",
-        source="the tests",
-        summary="A serial chain.",
-        joints=joints,
-        parameters=parameters,
-        chain=chain,
-        task=task,
-        offset_interface=False,
-        held=held,
-    )
 
 
 def _by_table(*rows: tuple[sp.Expr | float, float, sp.Expr | float, float]) -> Chain:

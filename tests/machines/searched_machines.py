@@ -4,8 +4,21 @@ from __future__ import annotations
 
 from sympy import cos, sin
 
-from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz
-from derive.mechanism import Mechanism, Task, Turning, Vendor, angle, branch, distance, length, radians, rotary
+from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
+from derive.mechanism import (
+    Branch,
+    Mechanism,
+    Parameter,
+    Task,
+    Turning,
+    angle,
+    branch,
+    distance,
+    length,
+    radians,
+    rotary,
+)
+from tests.machines.textbook import textbook
 
 A1, A2, A3, A4, A5, A6 = (rotary(f"A{k}", f"turn A{k}") for k in range(1, 7))
 UPPER, FORE = length("link_a", "upper arm", nominal=540.0), length("link_b", "forearm", nominal=540.0)
@@ -18,39 +31,18 @@ M_FLANGE = length("link_c", "wrist to flange", nominal=0.2)
 LEAN = angle("lean", "lean of the axes of the wrist against each other", nominal=60.0, low=40.0, high=80.0)
 
 
-def _arm(name: str, chain: object, parameters: tuple[object, ...], branches: tuple[object, ...] = ()) -> Mechanism:
-    return Mechanism(
-        name=f"Kin_{name}",
-        vendor=Vendor.TEXTBOOK,
-        family="articulated",
-        source="the tests",
-        summary="An arm whose wrist axes miss each other.",
-        joints=(A1, A2, A3, A4, A5, A6),
-        parameters=parameters,  # type: ignore[arg-type]
-        chain=chain,  # type: ignore[arg-type]
-        task=Task("xyz", Turning.FULL),
-        branches=branches,  # type: ignore[arg-type]
-        offset_interface=False,
-    )
+def _arm(name: str, chain: Chain, parameters: tuple[Parameter, ...], branches: tuple[Branch, ...] = ()) -> Mechanism:
+    """An arm whose wrist axes miss each other."""
+    return textbook(name, (A1, A2, A3, A4, A5, A6), chain, parameters, Task("xyz", Turning.FULL), branches)
 
 
 _BESIDE = tuple(distance(f"beside_{k}", f"shift {k} beside the axes", nominal=50.0) for k in range(1, 5))
 REACH = length("reach_a", "last axis to the point", nominal=200.0)
 
 
-def _point(name: str, chain: object) -> Mechanism:
-    return Mechanism(
-        name=f"Kin_{name}",
-        vendor=Vendor.TEXTBOOK,
-        family="articulated",
-        source="the tests",
-        summary="An arm with three axes that miss each other.",
-        joints=(A1, A2, A3),
-        parameters=(*_BESIDE, REACH),
-        chain=chain,  # type: ignore[arg-type]
-        task=Task("xyz"),
-        offset_interface=False,
-    )
+def _point(name: str, chain: Chain) -> Mechanism:
+    """An arm with three axes that miss each other."""
+    return textbook(name, (A1, A2, A3), chain, (*_BESIDE, REACH), Task("xyz"))
 
 
 _B1, _B2, _B3, _B4 = _BESIDE

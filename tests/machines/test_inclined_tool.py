@@ -12,20 +12,15 @@ from sympy import pi
 
 from derive import compile_mechanism
 from derive.frames import Ry, Rz, Tx, Tz
-from derive.mechanism import Mechanism, Task, Turning, Vendor, distance
+from derive.mechanism import Task, Turning, distance
+from tests.machines.textbook import textbook
 
 BESIDE, BELOW = distance("beside", "Along X", nominal=30.0), distance("below", "Along Z", nominal=-50.0)
-INCLINED = Mechanism(
-    name="Kin_InclinedTool",
-    vendor=Vendor.TEXTBOOK,
-    family="orientation",
-    source="the tests",
-    summary="A tool that is inclined against the flange.",
-    joints=(),
-    parameters=(BESIDE, BELOW),
-    chain=Tx(BESIDE) * Ry(pi / 6) * Tz(BELOW) * Rz(pi / 3),
-    task=Task("", Turning.NONE),
+CHAIN = Tx(BESIDE) * Ry(pi / 6) * Tz(BELOW) * Rz(pi / 3)
+INCLINED = textbook(
+    "InclinedTool", (), CHAIN, (BESIDE, BELOW), Task("", Turning.NONE), family="orientation", offset_interface=None
 )
+"""A tool that is inclined against the flange."""
 TOOL = Frame((30.0, 0.0, 0.0)) @ Frame.from_euler(0.0, 30.0, 60.0, (-25.0, 0.0, -50.0 * 0.75**0.5))
 """The same as a frame: 50 along the inclined axis, downward."""
 FURTHER = Frame.from_euler(10.0, 20.0, 30.0, (1.0, 2.0, 3.0))

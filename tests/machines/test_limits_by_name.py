@@ -8,9 +8,9 @@ from sympy import sin
 
 from derive.description.validate import validate
 from derive.frames import Rz, Tx
-from derive.mechanism import Mechanism as Description
-from derive.mechanism import Task, Vendor, branch, length, rotary
+from derive.mechanism import Task, branch, length, rotary
 from tests.machines.made import built_of, imported_class
+from tests.machines.textbook import textbook
 
 A1, A2 = (rotary(name, f"turn {name}") for name in ("A1", "A2"))
 UPPER = length("upper_arm", "from the shoulder to the elbow", nominal=300.0)
@@ -20,19 +20,8 @@ LOWER = length("lower_arm", "from the elbow to the tool", nominal=200.0)
 @pytest.fixture(scope="module")
 def arm() -> type[Mechanism]:
     """A planar arm whose lengths are called like limits."""
-    description = Description(
-        name="Kin_NamedArm",
-        vendor=Vendor.TEXTBOOK,
-        family="planar",
-        source="the tests",
-        summary="An arm in a plane.",
-        joints=(A1, A2),
-        parameters=(UPPER, LOWER),
-        chain=Rz(A1) * Tx(UPPER) * Rz(A2) * Tx(LOWER),
-        task=Task("xy"),
-        branches=(branch("elbow", sin(A2), right=+1, left=-1),),
-        offset_interface=False,
-    )
+    chain, elbow = Rz(A1) * Tx(UPPER) * Rz(A2) * Tx(LOWER), branch("elbow", sin(A2), right=+1, left=-1)
+    description = textbook("NamedArm", (A1, A2), chain, (UPPER, LOWER), Task("xy"), (elbow,), family="planar")
     mechanism = validate(description)
     return imported_class(mechanism, built_of(mechanism))
 
