@@ -67,7 +67,7 @@ def common_factor(first: sp.Expr, second: sp.Expr) -> sp.Expr:
     To find it takes seconds where there are dozens of symbols, and nearly always it is a number. With numbers for all
     symbols but one this shows at once.
     """
-    if not (is_rational(first) and is_rational(second)):
+    if not (is_rational(first) and is_rational(second)) or not first.free_symbols | second.free_symbols:
         return sp.gcd(first, second)
     symbols = sorted(first.free_symbols | second.free_symbols, key=lambda s: s.sort_key())
     one, other = (_ring(tuple(symbols)).from_expr(value) for value in (first, second))
@@ -85,7 +85,7 @@ def may_be_square(value: sp.Expr, angles: Sequence[sp.Symbol]) -> bool:
     """Whether a polynomial takes squares of rational numbers only, at rational points of the unit circle for sines and
     cosines of the angles, and whole numbers for the rest.
     """
-    if not is_rational(value):
+    if not is_rational(value) or not value.free_symbols:
         return True
     ring = _ring(tuple(sorted(value.free_symbols, key=lambda s: s.sort_key())))
     polynomial, rng = ring.from_expr(value), Random(_SEED)

@@ -41,7 +41,11 @@ class _Turned:
         return statement
 
     def _undone(self, value: sp.Expr) -> sp.Expr:
-        if value.free_symbols & self.names != self.names or not value.is_polynomial(*self.names, *self.before):
+        if (
+            value.free_symbols & self.names != self.names
+            or is_condition(value)
+            or not value.is_polynomial(*self.names, *self.before)
+        ):
             return value
         polynomial = sp.Poly(value.xreplace(dict(self.values)), *self.before)
         if polynomial.total_degree() != 1:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
 import sympy as sp
+from sympy.core.relational import Relational
 from sympy.logic.boolalg import BooleanFalse, BooleanTrue
 
 from derive.ir.constants import DEGREE
@@ -192,7 +193,7 @@ class Run:
         if isinstance(value, sp.sin | sp.cos):
             return Value(self._angles.pair(self.number(value.args[0]))[isinstance(value, sp.sin)])
         if isinstance(value, Select):
-            return self.number(value.args[1 if self.truth(value.args[0]) else 2])
+            return self._chosen(*value.args)
         if isinstance(value, ToReal | Wrap | NearestPeriod | NearestOnArc):
             return self.number(value.args[0])
         if isinstance(value, Root):
@@ -202,6 +203,13 @@ class Run:
         if isinstance(value, sp.Abs | sp.sign):
             return self._size(self.number(value.args[0]), isinstance(value, sp.sign))
         raise NotAlgebraic(f"it holds {value.func.__name__}")
+
+    def _chosen(self, condition: sp.Basic, first: sp.Basic, second: sp.Basic) -> Value:
+        """The side of a choice. A plain number in place of a value limits it, which is not regular: 1 for 1.0001."""
+        is_limit = isinstance(condition, Relational) and first.is_number and not second.is_number
+        if is_limit and any(self.number(a).rational is None for a in condition.args):
+            return self.number(second)
+        return self.number(first if self.truth(condition) else second)
 
     def _size(self, value: Value, is_sign: bool) -> Value:
         """The absolute value or the sign of a number."""
