@@ -13,6 +13,7 @@ conditions: the conditions of a refusal, one by one
 every_branch: all branches of the inverse as one straight line, for Python and C
 expression: the walk over an expression that all languages share
 inputs: the names of the inputs of a machine in a language
+interface: the programs of a machine as functions: summary, arguments and results
 javascript/: JavaScript
 language: the protocol of an output language
 linuxcnc/: kinematics modules of LinuxCNC
@@ -23,6 +24,7 @@ picture/: the drawing of a machine as PNG and SVG
 plcopen/: objects of a Structured Text project, and PLCopenXML
 python/: the Python package
 setup: the setup program of a machine, for Python, C and JavaScript
+shared_constants: the constants that the runtimes of Python, C and JavaScript print
 softmotion/: function blocks for SoftMotion
 st/: Structured Text
 """

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from tests.c.programs import SANITIZED, compiled_with_a_fault, part_of
-from tests.c.test_equal_to_python import compared, differences
+from tests.c.test_equal_to_python import compared
 from tests.corpus.recording import read
+from tests.javascript.comparison import differences
 
 ARM = "Kin_Scara4_ZCcoupled_Type1"
 ELBOW = "Kin_ArticulatedRobot_6DOF"

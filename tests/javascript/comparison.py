@@ -1,4 +1,4 @@
-"""What JavaScript answers, held against the Python package that is asked the same.
+"""What another language answers, held against the Python package that is asked the same.
 
 Statuses, bytes, slots, reasons, units and turns are equal. Reals are equal within 1e-12 of their scale over the
 smallest margin of the pose. Where that margin is below `SINGULAR`, axes are not known to that: both bring the machine
@@ -8,7 +8,7 @@ to one frame.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from math import isfinite
@@ -17,8 +17,9 @@ from typing import Any
 import softkin
 
 from tests.corpus.comparison import ROUNDED, SINGULAR
-from tests.corpus.robots import Robot
+from tests.corpus.robots import Robot, robot
 
+SHOWN = 5
 SAME = 1e-12
 FRAME = 1e-11
 """Of two solutions of a singular pose, as a part of its size."""
@@ -230,3 +231,37 @@ class Comparison:
 def _answers(recipe: str) -> dict[tuple[str, str], Any]:
     """What the package answered of a machine: JavaScript, C and every planted fault are held against the same."""
     return {}
+
+
+def compared(
+    recording: list[Answer], ask: Callable[[list[Answer]], list[Answer]], said: Callable[[Answer], Answer | None]
+) -> list[Comparison]:
+    """The machines of a recording, each compared. ask: the language; said: a question as it can be put there."""
+    asked = [[q for q in map(said, part["asked"]) if q is not None] for part in recording]
+    machines = [
+        {"parameters": part["recipe"][0]["parameters"], "calls": [call for q in own for call in calls_of(q)]}
+        for part, own in zip(recording, asked, strict=True)
+    ]
+    found = []
+    for part, own, answer in zip(recording, asked, ask(machines), strict=True):
+        one = Comparison(robot(part["recipe"]))
+        assert answer["made"] == {"status": 0}
+        answers = iter(answer["found"])
+        for question in own:
+            one.compare(question, answers)
+        assert next(answers, None) is None
+        found.append(one)
+    return found
+
+
+def differences(every: list[Comparison]) -> list[str]:
+    """All differences, in words."""
+    return [text for one in every for text in one.found]
+
+
+def check(name: str, every: list[Comparison]) -> None:
+    """Every answer is that of the package, and enough of them are solutions and refusals with reasons."""
+    found = differences(every)
+    assert not found, f"{len(found)} differences:\n" + "\n".join(found[:SHOWN])
+    assert sum(one.regular for one in every) >= (0 if name == "Kin_Tool" else 10)
+    assert sum(one.refused for one in every) >= (0 if name == "Kin_Tool" else 10)

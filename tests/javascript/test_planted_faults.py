@@ -8,8 +8,9 @@ from collections.abc import Callable
 import pytest
 
 from tests.corpus.recording import read
+from tests.javascript.comparison import differences
 from tests.javascript.modules import part_of, written
-from tests.javascript.test_equal_to_python import compared, differences
+from tests.javascript.test_equal_to_python import compared
 
 ARM = "Kin_Scara4_ZCcoupled_Type1"
 ELBOW = "Kin_ArticulatedRobot_6DOF"

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, cached_property
 
-import softkin
-
 from derive.description.mechanism import Mechanism
 from tests.catalogue.machines import MECHANISMS, Machine, machines_of
-from tests.harness.library import Library
+from tests.text.both import Both
 from tests.text.controller import OK, Controller
 from tests.text.limits import limited_machines
 from tests.text.samples import Sample, grid, regular
@@ -19,26 +17,10 @@ __all__ = ["MECHANISMS", "SerialPair", "serial_pairs_of"]
 
 
 @dataclass(frozen=True)
-class SerialPair:
-    """A machine, and its two implementations."""
+class SerialPair(Both):
+    """A machine of a serial mechanism."""
 
     machine: Machine
-    controller: Controller
-
-    @property
-    def mechanism(self) -> Mechanism:
-        """The description."""
-        return self.machine.mechanism
-
-    @property
-    def robot(self) -> softkin.Mechanism:
-        """The machine in Python."""
-        return self.machine.robot
-
-    @property
-    def library(self) -> Library:
-        """The compiled unit."""
-        return self.controller.library
 
     @cached_property
     def regular(self) -> tuple[Sample, ...]:
@@ -49,10 +31,6 @@ class SerialPair:
     def grid(self) -> tuple[Sample, ...]:
         """All joints at multiples of a quarter turn."""
         return grid(self.machine)
-
-    def __str__(self) -> str:
-        """What to say where they differ."""
-        return f"{self.mechanism.block_name}, {self.machine.label}: {dict(self.machine.given)}"
 
 
 @cache

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from derive.description.mechanism import Joint
 from derive.emit.braces import block
-from derive.emit.c.functions import FRAME, read_by
+from derive.emit.c.functions import FRAME
 from derive.emit.c.printer import C, status, type_of
 from derive.emit.c.program import Body, function_of, taken
 from derive.emit.c.refusal import Refusals
 from derive.emit.every_branch import EveryBranch, every_branch, is_unrolled, signs, without_doubts
+from derive.emit.interface import read_by
 from derive.ir.program import Require, Status
 from derive.ir.symbols import REFUSAL, choices, suffixed, symbols_of
 from derive.kept import kept_by_identity
@@ -109,7 +110,7 @@ class _OfAll(Refusals):
 
 def _given(kin: Kinematics) -> dict[str, str]:
     reference = {joint.reference.name: f"reference[{i}]" for i, joint in enumerate(kin.mechanism.joints)}
-    return {name: f"frame->{place}" for name, place in FRAME} | reference
+    return FRAME | reference
 
 
 def _near(joint: Joint, printer: C) -> str:

@@ -14,11 +14,11 @@ import sympy as sp
 from derive.description.mechanism import Joint
 from derive.emit.braces import block
 from derive.emit.c.every_branch import straight_line
-from derive.emit.c.functions import read_by
 from derive.emit.c.layout import comment, commented
 from derive.emit.c.printer import C, member, spelled, type_of
 from derive.emit.c.program import function_of, without_brackets
 from derive.emit.every_branch import constants, known_constants, read_of, signs
+from derive.emit.interface import read_by
 from derive.equations.rotation_repair import surely_exact
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Program, Require

@@ -13,7 +13,7 @@ from derive.emit.braces import harmless
 from derive.emit.c.description import counts, in_words, inputs, tables
 from derive.emit.c.every_branch import MOST_SLOTS, constants_of_branches, every_branch_lines
 from derive.emit.c.every_branch import NAME as EVERY_BRANCH
-from derive.emit.c.functions import FRAME, Function, arguments_of, functions, read_by, rotation_function
+from derive.emit.c.functions import FRAME, Function, functions, rotation_function
 from derive.emit.c.lanes import constants_of_lanes
 from derive.emit.c.layout import comment, laid_out, page
 from derive.emit.c.printer import C, list_of, member, number, text, type_of
@@ -28,25 +28,10 @@ from derive.emit.c.program import (
     taken,
 )
 from derive.emit.c.setup import constants_read, setup
+from derive.emit.interface import arguments_of, read_by
 from derive.emit.language import GENERATED, Part, environment, short_name
-from derive.ir import cells, roots
-from derive.ir.constants import (
-    EDGE,
-    EXACT_ROTATION,
-    FINISHED,
-    FREE_ANGLE,
-    GEARED_TURN,
-    LARGEST,
-    LEAST,
-    LIMIT,
-    ONE_TURN,
-    PIVOT,
-    ROTATION,
-    SOLVABLE,
-    TRIALS,
-    UNLIMITED,
-)
-from derive.ir.program import Status
+from derive.emit.shared_constants import COUNTS, NUMBERS, OF_THE_SEARCH, STATUSES
+from derive.ir.roots import SHIFTS
 from derive.ir.symbols import symbols_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
@@ -65,18 +50,6 @@ _CELLS, _PLACES, _SOLUTIONS = 64, 128, 128
 """The sizes of the arrays of a scan: cells that are still to be cut, candidates, roots of all branches together."""
 _STACK = 36
 """The stack that a scan needs (kB): its cells and candidates, and little more."""
-_OF_THE_SEARCH = (
-    *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
-    *("NEXT", "RESERVE", "RIM", "SEAM", "TOUCHED", "TURNED", "VANISHING"),
-)
-_MEANINGS = {
-    Status.OK: "no error",
-    Status.NOT_INITIALIZED: "a parameter is not allowed",
-    Status.BAD_INPUT: "numbers must be finite and at most 1e9 in size, and a rotation must be one",
-    Status.UNREACHABLE: "out of reach or beyond a limit",
-    Status.IMPOSSIBLE: "the mechanism cannot be assembled there, or a joint is undetermined",
-    Status.INVALID_COUPLING: "this pair of position and orientation kinematics is impossible",
-}
 
 
 def part(kinematics: Kinematics) -> Part | None:
@@ -130,22 +103,15 @@ def _fits(kin: Kinematics) -> bool:
 @cache
 def _templates() -> Environment:
     templates = environment(name).overlay(variable_start_string="@{", variable_end_string="}@")
-    numbers = {
-        "edge": EDGE, "exact": EXACT_ROTATION, "free_angle": FREE_ANGLE, "geared_turn": GEARED_TURN, "largest": LARGEST,
-        "largest_error": ROTATION, "least": LEAST, "limit": LIMIT, "one_turn": ONE_TURN, "pivot": PIVOT,
-        "solvable": SOLVABLE, "unlimited": UNLIMITED,
-    }  # fmt: skip
     templates.filters |= {"text": text}
-    templates.globals |= {key: number(float(value)) for key, value in numbers.items()}
+    templates.globals |= COUNTS | {key: number(value) for key, value in NUMBERS.items()}
     rotation = function_lines(rotation_function(), "", {}, reasons_of_rotation())
     templates.globals |= {
         "generated": GENERATED,
-        "statuses": [{"name": s.name, "meaning": _MEANINGS[s]} for s in Status],
+        "statuses": STATUSES,
         "rotation": laid_out(rotation),
-        "search_constants": {key: f"{(vars(cells) | vars(roots))[key]!r}" for key in _OF_THE_SEARCH},
-        "shifts": list_of(map(number, roots.SHIFTS)),
-        "trials": TRIALS,
-        "finished": FINISHED,
+        "search_constants": {key: f"{value!r}" for key, value in OF_THE_SEARCH.items() if key != "SHIFTS"},
+        "shifts": list_of(map(number, SHIFTS)),
         "most_axes": MOST_AXES,
         "most_branches": MOST_BRANCHES,
         "most_directions": MOST_DIRECTIONS,
@@ -162,7 +128,7 @@ def _templates() -> Environment:
 def _known(kin: Kinematics, module: str) -> dict[str, Any]:
     """The values that the templates of header and source arrange."""
     found = functions(kin)
-    read = {name for f in found for name in read_by(f.program) - f.given.keys()} | constants_read(kin)
+    read = {name for f in found for name in read_by(f.program) - f.entry.given} | constants_read(kin)
     read |= constants_of_branches(kin) | constants_of_lanes(kin)
     made = setup(kin, module, read, inputs(kin))
     stored = {name: f"k->{member(name)}" for name in made.constants}
@@ -261,7 +227,7 @@ def _further(kin: Kinematics, module: str, stored: dict[str, str]) -> dict[str, 
 def _starts(machine: str, stored: dict[str, str]) -> dict[str, tuple[str, list[str]]]:
     """The functions of a machine whose forward kinematics starts where a caller says."""
     given = "const void *machine, {}const softkin_frame *start, {}"
-    places = {f"start_{name}": f"start->{place}" for name, place in FRAME}
+    places = {f"start_{name}": f"start{place.removeprefix('frame')}" for name, place in FRAME.items()}
     written = [f"{text} = {places[name]};" for name, text in stored.items() if name in places]
     head = f"static void start_at({given.format('', 'void *moved')})"
     moved = [f"{machine} *k = moved;", f"*k = *(const {machine} *)machine;", *written]

@@ -9,10 +9,11 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from derive.emit.braces import block, indented
-from derive.emit.c.functions import Function, function_name, names_in, read_by
+from derive.emit.c.functions import Function, function_name
 from derive.emit.c.layout import comment, commented
 from derive.emit.c.printer import C, list_of, names_of, spelled, type_of
 from derive.emit.c.refusal import Refusals
+from derive.emit.interface import names_in, read_by
 from derive.ir.primitives import Select
 from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, binds
 from derive.ir.symbols import PLACE
@@ -31,15 +32,16 @@ def function_lines(function: Function, machine: str, constants: Mapping[str, str
     body = Body(printer, reasons, names_in(program))
     types = {s.name: type_of(s) for s in program.inputs}
     own = [(name, place) for name, place in function.given.items() if name in read]
-    head = taken(own, types)
+    arguments = taken(own, types)
     lines = body.lines(structured(program))
     values = {o.name: body.printer.print(o.value) for o in decided(program).outputs}
     writes = [f"{place} = {values[name]};" for name, place in function.results]
-    inner = [*head, *lines, *writes, "return SOFTKIN_OK;"]
+    inner = [*arguments, *lines, *writes, "return SOFTKIN_OK;"]
     if function.is_of_machine:
         inner = [f"const {machine} *k = machine;", *inner] if _reads("k", inner) else inner
     given = f"const void *machine, {function.parameters}" if function.is_of_machine else function.parameters
-    return function_of(function.summary, f"static softkin_status {function.name}({given}, softkin_refusal *why)", inner)
+    head = f"static softkin_status {function.name}({given}, softkin_refusal *why)"
+    return function_of(function.entry.summary, head, inner)
 
 
 def function_of(summary: str, head: str, inner: Sequence[str]) -> list[str]:

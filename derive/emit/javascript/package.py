@@ -13,32 +13,17 @@ from jinja2 import Environment
 from derive.drawing.parts import Parts, parts_of
 from derive.drawing.pose import drawn_pose, nominal_machine
 from derive.emit.braces import block
+from derive.emit.interface import arguments_of, read_by
 from derive.emit.javascript.description import description, inputs
 from derive.emit.javascript.functions import functions, rotation_function
 from derive.emit.javascript.layout import comment, laid_out
 from derive.emit.javascript.printer import PRINTER, RUNTIME, list_of, spelled, text
-from derive.emit.javascript.program import function_lines, looked_for, read_by
+from derive.emit.javascript.program import function_lines, looked_for
 from derive.emit.javascript.refusal import Refusals
 from derive.emit.javascript.setup import setup_lines
 from derive.emit.language import GENERATED, Part, environment, short_name
-from derive.ir import cells, roots
-from derive.ir.constants import (
-    EDGE,
-    EXACT_ROTATION,
-    FINISHED,
-    FREE_ANGLE,
-    GEARED_TURN,
-    LARGEST,
-    LIMIT,
-    ONE_TURN,
-    PIVOT,
-    ROTATION,
-    SOLVABLE,
-    TIE,
-    TRIALS,
-    UNLIMITED,
-)
-from derive.ir.program import FindRoot, Status
+from derive.emit.shared_constants import COUNTS, NUMBERS, OF_THE_SEARCH, STATUSES
+from derive.ir.program import FindRoot
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 from derive.report.reasons import reasons_of, reasons_of_rotation
@@ -51,20 +36,8 @@ _RUNTIME = tuple(
 )
 """The files that are the same for all mechanisms; a machine may have the name of one of them."""
 _AROUND = ("index.js", "package.json")
-_OF_THE_SEARCH = (
-    *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
-    *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
-)
 _TEXT = 90
 """The largest number of columns of a text; a longer one is written as a sum."""
-_MEANINGS = {
-    Status.OK: "no error",
-    Status.NOT_INITIALIZED: "a parameter is not allowed",
-    Status.BAD_INPUT: "numbers must be finite and at most 1e9 in size, and a rotation must be one",
-    Status.UNREACHABLE: "out of reach or beyond a limit",
-    Status.IMPOSSIBLE: "the mechanism cannot be assembled there, or a joint is undetermined",
-    Status.INVALID_COUPLING: "this pair of position and orientation kinematics is impossible",
-}
 
 
 def part(kinematics: Kinematics) -> Part:
@@ -99,21 +72,14 @@ def module_name(mechanism: str) -> str:
 @cache
 def _templates() -> Environment:
     templates = environment(name).overlay(variable_start_string="<<", variable_end_string=">>")
-    numbers = {
-        "edge": EDGE, "exact": EXACT_ROTATION, "free_angle": FREE_ANGLE, "geared_turn": GEARED_TURN, "largest": LARGEST,
-        "largest_error": ROTATION, "limit": LIMIT, "one_turn": ONE_TURN, "pivot": PIVOT, "solvable": SOLVABLE,
-        "tie": TIE, "unlimited": UNLIMITED,
-    }  # fmt: skip
     templates.filters |= {"text": text}
-    templates.globals |= {key: PRINTER.number(float(value)) for key, value in numbers.items()}
+    templates.globals |= COUNTS | {key: PRINTER.number(value) for key, value in NUMBERS.items()}
     templates.globals |= {
         "generated": GENERATED,
         "version": _VERSION,
-        "statuses": [{"name": s.name, "meaning": _MEANINGS[s]} for s in Status],
+        "statuses": STATUSES,
         "rotation": laid_out(function_lines(rotation_function(), Refusals(reasons_of_rotation()))),
-        "search_constants": {key: _literal((vars(cells) | vars(roots))[key]) for key in _OF_THE_SEARCH},
-        "trials": TRIALS,
-        "finished": FINISHED,
+        "search_constants": {key: _literal(value) for key, value in OF_THE_SEARCH.items()},
     }
     return templates
 
@@ -126,7 +92,7 @@ def _module(kin: Kinematics, module: str) -> str:
     parts = _parts(kin)
     found, refusals = functions(kin, parts), Refusals(reasons_of(kin))
     further, entries = _further(kin)
-    read = {name for f in found for name in read_by(f.program) - f.given}
+    read = {name for f in found for name in read_by(f.program) - f.entry.given}
     read |= set(re.findall(r"k\.(\w+)", " ".join(entries)))
     setup = setup_lines(kin, read, inputs(kin))
     programs = [f"{f.key}: {f.name}," for f in found if f.key]
@@ -198,8 +164,7 @@ def _all_joints(kin: Kinematics) -> list[str]:
     """The function that finds all roots of a scan; its arguments are those of the scan itself."""
     for program in kin.shared:
         for search in (s for s in program.body if isinstance(s, FindRoot)):
-            constants = {o.name for o in kin.setup.outputs}
-            given = [spelled(s.name) for s in program.inputs if s.name not in constants]
+            given = map(spelled, arguments_of(program, kin))
             taken = f"const {list_of(given)} = given;"
             body = block("function findAllJoints(k, given)", [taken, f"return {looked_for(search, 'everyRoot')};"])
             return ["/** The joints at every root of the search, the nearest to the reference first. */", *body]

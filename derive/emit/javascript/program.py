@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from derive.emit.braces import block, indented
-from derive.emit.javascript.functions import Function, Shape, names
+from derive.emit.interface import Shape, names, read_by
+from derive.emit.javascript.functions import Function
 from derive.emit.javascript.layout import comment, commented
 from derive.emit.javascript.printer import PRINTER, function_name, list_of, names_of, spelled
 from derive.emit.javascript.refusal import Refusals, condition_of
@@ -18,14 +19,11 @@ from derive.ir.program import (
     FindRoot,
     Iterate,
     Let,
-    Program,
     Require,
     Solve,
     binds,
-    expressions,
-    reason_expressions,
 )
-from derive.ir.symbols import PLACE, is_condition, symbols_of
+from derive.ir.symbols import PLACE, is_condition
 from derive.ir.tree import If, Item, grouped
 from derive.lowering.decided import decided
 from derive.lowering.scheduling import structured
@@ -36,30 +34,20 @@ _PLACE = "({ tried, side, freed, freed_angle }) => "
 def function_lines(function: Function, refusals: Refusals) -> list[str]:
     """The function: it takes its arguments apart, then makes the statements of the program in their order."""
     read = read_by(function.program)
-    constants = sorted(read - function.given)
+    constants = sorted(read - function.entry.given)
     head = [f"const {{ {', '.join(map(_taken, constants))} }} = k;"] if constants else []
-    arguments = [(name, shape) for name, shape in function.arguments]
-    head += [f"const {_target(shape, read)} = {name};" for name, shape in arguments if read & set(names(shape))]
+    given = [(name, shape) for name, shape in function.arguments if read & set(names(shape))]
+    head += [f"const {_target(shape, read)} = {name};" for name, shape in given]
     lines = _Body(refusals).lines(structured(function.program))
     values = {o.name: PRINTER.print(o.value) for o in decided(function.program).outputs}
     result = "null" if function.result is None else _value(function.result, values)
-    given = ", ".join(["k", *(name for name, _ in arguments)])
-    text = block(f"function {function.name}({given})", [*head, *lines, f"return {result};"])
-    return [f"/** {function.summary} */", *text]
+    taken = ", ".join(["k", *(name for name, _ in function.arguments)])
+    text = block(f"function {function.name}({taken})", [*head, *lines, f"return {result};"])
+    return [f"/** {function.entry.summary} */", *text]
 
 
 def _taken(constant: str) -> str:
     return constant if spelled(constant) == constant else f"{constant}: {spelled(constant)}"
-
-
-def read_by(program: Program) -> set[str]:
-    """The names that a program itself reads, without those that only its called programs read."""
-    values = [e for s in program.body for e in (*expressions(s), *reason_expressions(s))] + [
-        o.value for o in program.outputs
-    ]
-    given = {g.name for s in program.body if isinstance(s, FindRoot) for p in (s.trial, s.finish) for g in s.given(p)}
-    found = {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
-    return found - {s.name for s in program.bound()}
 
 
 def _target(shape: Shape, read: set[str]) -> str:

@@ -10,8 +10,8 @@ from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.program import Call, FindRoot
 from derive.ir.symbols import PLACE, is_condition
 
-GIVEN, FOUND = "given", "found"
-"""The argument of a shared program, and its result: its values or, on plain numbers, the status of its refusal."""
+FOUND = "found"
+"""The result of a shared program: its values or, on plain numbers, the status of its refusal."""
 
 
 def scalar_lines(call: Call, printer: ScalarPrinter, refused: str = f"return {FOUND}") -> list[str]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from derive.emit.interface import Shape, names, read_by
 from derive.emit.python import calls as python_calls
 from derive.emit.python.layout import assigned, fits, note_lines, taken_apart, tuple_of
 from derive.emit.python.loops import scalar_end, scalar_head, solve_lines
@@ -22,18 +23,13 @@ from derive.ir.program import (
     Program,
     Require,
     Solve,
-    expressions,
-    reason_expressions,
     rewritten,
 )
-from derive.ir.symbols import PLACE, replaced, symbols_of
+from derive.ir.symbols import replaced
 from derive.ir.tree import If, Item, grouped
 from derive.ir.verify import verify
 from derive.lowering.decided import decided
 from derive.lowering.scheduling import structured
-
-Shape = str | tuple["Shape", ...]
-"""Names, nested as the tuples of the method's arguments and results are."""
 
 _SCALAR, _MODULO_TURNS = ScalarPrinter(), ScalarPrinter(modulo_turns=True)
 
@@ -185,22 +181,12 @@ def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
 
 def unpacked(method: Method) -> list[str]:
     """The arguments, unpacked to the names that the program reads; a value that it does not read is `_`."""
-    read = _read(method.program)
+    read = read_by(method.program)
     lines: list[str] = []
     for argument in method.arguments:
         if read & set(names(argument.shape)):
             lines += taken_apart([_targets(part, read) for part in argument.shape], argument.source)
     return lines
-
-
-def _read(program: Program) -> set[str]:
-    """The names that a program itself reads, without those that only its called programs read."""
-    values = [e for s in program.body for e in (*expressions(s), *reason_expressions(s))] + [
-        o.value for o in program.outputs
-    ]
-    given = {g.name for s in program.body if isinstance(s, FindRoot) for p in (s.trial, s.finish) for g in s.given(p)}
-    found = {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
-    return found - {s.name for s in program.bound()}
 
 
 def _targets(shape: Shape, read: set[str]) -> str:
@@ -209,15 +195,6 @@ def _targets(shape: Shape, read: set[str]) -> str:
     if not read & set(names(shape)):
         return "_"
     return tuple_of([_targets(s, read) for s in shape])
-
-
-def names(shape: Shape) -> Iterator[str]:
-    """The names of a shape, in order."""
-    if isinstance(shape, str):
-        yield shape
-    else:
-        for part in shape:
-            yield from names(part)
 
 
 def constant_lines(method: Method, owner: str = "self._constants") -> list[str]:
@@ -229,7 +206,7 @@ def constant_lines(method: Method, owner: str = "self._constants") -> list[str]:
 def constants_of(method: Method) -> list[str]:
     """The names that a method reads besides its arguments, in alphabetical order."""
     given = {name for argument in method.arguments for name in names(argument.shape)}
-    return sorted(_read(method.program) - given)
+    return sorted(read_by(method.program) - given)
 
 
 def values_of(method: Method, printer: ScalarPrinter) -> str:

@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from derive.emit.interface import rotation_entry
 from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
-from derive.emit.python.methods import ROTATION, ROTATION_ARGUMENT
+from derive.emit.python.methods import ROTATION_ARGUMENT
 from derive.emit.python.printer import ScalarPrinter, primitives_in
 from derive.emit.python.program import Method, scalar_body
 from derive.emit.python.refusal import explained
@@ -18,8 +19,10 @@ from derive.report.reasons import reasons_of_rotation
 
 def rotation_functions() -> dict[str, object]:
     """The values that the templates read: the bodies of both functions, and the names that they call."""
-    summary = "The rotation as it is used."
-    method = Method("made_rotation", summary, rotation_program(), (ROTATION_ARGUMENT,), "Rotation", ROTATION)
+    entry = rotation_entry()
+    method = Method(
+        "made_rotation", entry.summary, entry.program, (ROTATION_ARGUMENT,), "Rotation", ROTATION_ARGUMENT.shape
+    )
     plain = _with_shortcut(scalar_body(method, explained(reasons_of_rotation())))
     arrays = array_body(replace(method, program=untold(method.program)))
     return {

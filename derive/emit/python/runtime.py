@@ -15,27 +15,8 @@ from derive.emit.python.arrays import OF_A_SEARCH
 from derive.emit.python.layout import documented
 from derive.emit.python.printer import literal
 from derive.emit.python.rotation import rotation_functions
+from derive.emit.shared_constants import COUNTS, NUMBERS, OF_THE_SEARCH, STATUSES
 from derive.ir import cells, roots
-from derive.ir.constants import (
-    EDGE,
-    EXACT_ROTATION,
-    FINISHED,
-    FREE_ANGLE,
-    GEARED_TURN,
-    HELD,
-    LARGEST,
-    LEAST,
-    LIMIT,
-    ONE_TURN,
-    PIVOT,
-    ROTATION,
-    SINGULAR,
-    SOLVABLE,
-    TIE,
-    TRIALS,
-    UNLIMITED,
-)
-from derive.ir.program import Status
 from derive.ir.reason import Why
 from derive.report.reasons import NO_MEANING, OTHER_TURN
 
@@ -43,23 +24,11 @@ NAME = "python"
 """The folder of the templates."""
 _VERSION = "0.1.0"
 """The version of the package, and of each package that is made for a user's machines."""
-_OF_THE_SEARCH = (
-    *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
-    *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
-)
 
 _TEXT = 110
 """The most columns of a line of a docstring."""
 _CHUNK = 8192
 """The rows of a batch that are computed together: an array then has 64 KiB."""
-_MEANINGS = {
-    Status.OK: "no error",
-    Status.NOT_INITIALIZED: "a parameter is not allowed",
-    Status.BAD_INPUT: "numbers must be finite and at most 1e9 in size, and a rotation must be one",
-    Status.UNREACHABLE: "out of reach or beyond a limit",
-    Status.IMPOSSIBLE: "the mechanism cannot be assembled there, or a joint is undetermined",
-    Status.INVALID_COUPLING: "this pair of position and orientation kinematics is impossible",
-}
 
 
 @cache
@@ -67,38 +36,23 @@ def templates() -> Environment:
     """The templates, which know the constants."""
     found = environment(NAME)
     found.filters |= {"paragraph": _paragraph, "literal": entries.literal}
+    found.globals |= COUNTS | {key: literal(value) for key, value in NUMBERS.items()}
     found.globals |= {
         "generated": GENERATED,
-        "statuses": [{"name": s.name, "softmotion": s.value, "meaning": _MEANINGS[s]} for s in Status],
+        "statuses": STATUSES,
         "version": _VERSION,
         "chunk": _CHUNK,
         "values_of_a_search": OF_A_SEARCH,
-        "edge": literal(float(EDGE)),
-        "held": literal(float(HELD)),
-        "free_angle": literal(float(FREE_ANGLE)),
-        "largest": literal(float(LARGEST)),
-        "least": literal(float(LEAST)),
         "rotation": rotation_functions(),
-        "largest_error": literal(float(ROTATION)),
-        "search_constants": {name: _literal((vars(cells) | vars(roots))[name]) for name in _OF_THE_SEARCH},
-        "exact": literal(float(EXACT_ROTATION)),
-        "one_turn": literal(int(ONE_TURN)),
-        "geared_turn": literal(float(GEARED_TURN)),
-        "pivot": literal(float(PIVOT)),
-        "singular": literal(float(SINGULAR)),
+        "search_constants": {key: _literal(value) for key, value in OF_THE_SEARCH.items()},
+        "one_turn": literal(int(NUMBERS["one_turn"])),
         "cells": _after_docstring(Path(cells.__file__).read_text()),
         "roots": _after_docstring(Path(roots.__file__).read_text()),
-        "trials": TRIALS,
-        "finished": FINISHED,
-        "solvable": literal(float(SOLVABLE)),
-        "tie": literal(float(TIE)),
         "no_meaning": NO_MEANING,
         "below": entries.literal(Why.BELOW.value),
         "above": entries.literal(Why.ABOVE.value),
         "other_turn": entries.literal(OTHER_TURN),
         "kinds_of_parameters": {role.value: entries.usual(role) for role in Role},
-        "limit": literal(float(LIMIT)),
-        "unlimited": literal(float(UNLIMITED)),
     }
     return found
 

@@ -12,8 +12,8 @@ import softkin
 
 from derive.description.mechanism import Mechanism
 from tests.catalogue.coupling.parts import ORIENTATIONS, Part, orientation_parts, part
-from tests.harness.library import Library
 from tests.text import values
+from tests.text.both import Both
 from tests.text.controller import OK, Answer, Controller
 from tests.text.samples import Rows, Sample, tilted
 from tests.text.units import compiled
@@ -105,28 +105,13 @@ class Machine:
 
 
 @dataclass(frozen=True)
-class OrientationPair:
+class OrientationPair(Both):
     """An orientation kinematics as a function block and in Python, and samples of it."""
 
     machine: Machine
-    part: Part
     controller: OrientationController
+    part: Part
     regular: tuple[Sample, ...]
-
-    @property
-    def mechanism(self) -> Mechanism:
-        """The orientation kinematics."""
-        return self.machine.mechanism
-
-    @property
-    def robot(self) -> softkin.Mechanism:
-        """The machine in Python."""
-        return self.machine.robot
-
-    @property
-    def library(self) -> Library:
-        """What the block was compiled to."""
-        return self.controller.library
 
     def __str__(self) -> str:
         return f"{self.robot!r}"
@@ -147,7 +132,7 @@ def _pair(one: Part, order: str) -> OrientationPair:
     rng = np.random.default_rng(29)
     unlimited = part(one.mechanism, **{p.name: one.robot.parameters[p.name] for p in one.mechanism.parameters})
     samples = tuple(_sample(one.robot, axes, rng) for axes in unlimited.draw(8, rng).tolist())
-    return OrientationPair(Machine("", one.mechanism, {}, one.robot), one, controller, samples)
+    return OrientationPair(Machine("", one.mechanism, {}, one.robot), controller, one, samples)
 
 
 def _sample(robot: softkin.Mechanism, axes: list[float], rng: np.random.Generator) -> Sample:

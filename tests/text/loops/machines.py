@@ -14,8 +14,8 @@ from softkin import KinematicsError, Status
 
 from derive.description.mechanism import Mechanism, Parameter, Role
 from derive.kinematics.parameters import machine_parameters
-from tests.harness.library import Library
 from tests.mechanisms import catalogue
+from tests.text.both import Both
 from tests.text.controller import OK, Controller
 from tests.text.samples import Sample, tilted
 from tests.text.units import compiled
@@ -39,33 +39,14 @@ class Machine:
 
 
 @dataclass(frozen=True)
-class Loop:
-    """A machine and its two implementations, with the names that `tests.text.comparisons` reads."""
+class Loop(Both):
+    """A machine, and samples of it."""
 
     machine: Machine
-    controller: Controller
     regular: tuple[Sample, ...]
     """At a pose."""
     any: tuple[Sample, ...]
     """Anywhere: most of them cannot be assembled."""
-
-    @property
-    def mechanism(self) -> Mechanism:
-        """The mechanism of the loop."""
-        return self.machine.mechanism
-
-    @property
-    def robot(self) -> softkin.Mechanism:
-        """The machine in Python."""
-        return self.machine.robot
-
-    @property
-    def library(self) -> Library:
-        """What the block was compiled to."""
-        return self.controller.library
-
-    def __str__(self) -> str:
-        return f"{self.mechanism.block_name}, {self.machine.label}: {dict(self.machine.given)}"
 
 
 @cache

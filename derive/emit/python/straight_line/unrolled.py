@@ -16,8 +16,9 @@ from derive.emit.every_branch import (
     trusted,
     without_doubts,
 )
+from derive.emit.interface import POSITION, ROTATION
 from derive.emit.python.layout import assigned, repeated, tuple_of
-from derive.emit.python.methods import POSITION, ROTATION, branch
+from derive.emit.python.methods import branch
 from derive.emit.python.printer import ScalarPrinter, primitives_in, spelled
 from derive.emit.python.program import (
     Argument,
