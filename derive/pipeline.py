@@ -169,7 +169,7 @@ def derive_one(
 def derive_and_measure(mechanism: Mechanism, told: Told = _nobody) -> Kinematics:
     """Derive one mechanism and measure it. Raises what `faults.UNFIT` lists, where one of them fails."""
     from derive.kinematics.build import build
-    from derive.kinematics.no_pose import why_no_pose
+    from derive.kinematics.refusals.no_pose import why_no_pose
     from derive.report.branch_meanings import with_meanings
     from derive.report.self_test import self_test
     from derive.witness import Disagreement, NoPose, witness

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from derive.description.amounts import with_right_angles
 from derive.description.mechanism import Mechanism
-from derive.description.right_angles import with_right_angles
 from derive.form.chain import with_normal_chain
 from derive.form.gears import with_gears
 from derive.form.inner_names import with_inner_names

@@ -65,12 +65,10 @@ DOUBTFUL = sp.Float("1e-2")
 """A step whose margin is at most this may have lost digits that a later step needs."""
 NEARLY_FREE = sp.Float("1e-6")
 """Where lost digits may have refused a pose, an angle with a conditioning of this share or less is set free."""
-ATTEMPTS = 4
-"""The largest number of starts from which the closure is solved where digits are lost."""
+SCANNED = 120
+"""The values of free angles that are tried, all around the circle, to find the start that is nearest to a pose."""
 PASSES = 40
 """The largest number of steps from each start: next to a double root every step leaves a third of the error."""
-TURNED = sp.Float("137.5")
-"""How far (degrees) free angles are turned from start to start: multiples of it are nowhere near each other."""
 LONGEST_STEP = sp.Rational(1, 2)
 """The longest step towards a pose, in radians and lengths of the machine."""
 SHARE_OF_DAMPING = sp.Float("1e-3")

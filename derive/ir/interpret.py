@@ -184,17 +184,13 @@ def _require(condition: Array, otherwise: Status, status: NDArray[np.object_]) -
 
 
 def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> None:
-    """Run a shared program in rows where it is wanted and nothing has refused; a row that it refuses has its status, or
-    the call's.
-    """
+    """Run a shared program in rows where it is wanted and nothing has refused; a refused row has its status."""
     wanted = _broadcast(evaluate(call.wanted, known), status.shape) & (status == Status.OK)
     rows, own = (wanted, status[wanted]) if call.is_conditional else (..., status)
     given = {s.name: known[s.name] for s in call.constants} | {n.name: evaluate(v, known) for n, v in call.given}
     inner = {name: _broadcast(value, status.shape)[rows] for name, value in given.items()}
     _execute(call.program.body if own.size else (), inner, own)
-    if call.refusal is not None:
-        own[own != Status.OK] = call.refusal[0]
-    status[rows] = own
+    status[rows] = own if call.refusal is None else [s if s is Status.OK else call.refusal[0] for s in own]
     outputs = {o.name: o.value for o in call.program.outputs}
     for name in call.names:
         known[name.name] = np.zeros(status.shape, dtype=bool if is_condition(name) else float)

@@ -15,11 +15,9 @@ inverse: inverse kinematics of one branch, for a pose or for a point off the fla
 kinematics: the bundle that all later folders read: every program of a mechanism, and the meanings of its names
 lost_digits/: where a closed form has lost digits, steps on the closure meet the pose
 margins/: the singularity margins of a machine that is solved in closed form
-neighbours: what a refused arm misses: axes that do not meet, tasks that fit
-no_pose: the reason why a machine has no pose at its nominal dimensions
-number_of_joints: the refusal of more or fewer joints than commanded quantities
 parameters: all inputs of a machine, and the setup program
 reference_cases: the data of a test on the controller: machines, calls, expected answers
+refusals/: why a machine is refused
 sampling: samples of machines and axis values, for numerical decisions of the build
 scan/: a mechanism with a root scan along one joint
 shared_names: where an input has the name of a derived value, the mechanism is derived again with another name

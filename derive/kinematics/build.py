@@ -9,8 +9,8 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from derive.description.amounts import almost_right_angles
 from derive.description.mechanism import DescriptionError, Mechanism, Turning
-from derive.description.right_angles import almost_right_angles
 from derive.equations.axes import finite
 from derive.equations.conditions import with_conditions
 from derive.equations.limits import limits_program
@@ -43,9 +43,9 @@ from derive.kinematics.lost_digits.closure_steps import Machine
 from derive.kinematics.lost_digits.doubts import meeting, with_doubts
 from derive.kinematics.margins.candidates import Factor, factor_of
 from derive.kinematics.margins.determinant import samples_anywhere, singularity_program
-from derive.kinematics.no_pose import near_home
-from derive.kinematics.number_of_joints import check_joints
 from derive.kinematics.parameters import machine_parameters, setup_program
+from derive.kinematics.refusals.no_pose import near_home
+from derive.kinematics.refusals.number_of_joints import check_joints
 from derive.kinematics.sampling import sample_machine
 from derive.kinematics.scan.choice import with_search
 from derive.kinematics.scan.derivations import from_joints, solve_both, trial_on_branch

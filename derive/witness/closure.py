@@ -17,8 +17,8 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from derive.description.amounts import with_right_angles
 from derive.description.mechanism import ROTATION, Mechanism, Turning, X, Y, Z
-from derive.description.right_angles import with_right_angles
 from derive.geometry.frames import Motion
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import Array

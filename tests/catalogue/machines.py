@@ -162,6 +162,14 @@ class Machine:
         """The same robot with other parameters."""
         return type(self.robot)(**{**self.given, **parameters})
 
+    @property
+    def open_robot(self) -> softkin.Mechanism:
+        """The same robot, whose inverse refuses no solution of the closure in its assembly mode: no limits, no edge
+        beside the other mode, and poses that forward kinematics does not find again.
+        """
+        is_unchecked = {"check_limits"} | ({"check_forward"} if self.mechanism.is_platform else set())
+        return self.changed(**dict.fromkeys(is_unchecked | ({"min_type2_margin"} if self.mechanism.rods else set()), 0))
+
     def _any(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
         columns = []
         for joint, offset in zip(self.mechanism.joints, self.closure.offsets, strict=True):

@@ -11,7 +11,8 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE, EDGE
 from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
-from derive.ir.program import Let, Program, Require, Status
+from derive.ir.program import Call, Let, Program, Require, Status
+from derive.ir.symbols import is_condition
 from derive.kept import kept_by_identity
 
 DIGITS = 60
@@ -101,7 +102,9 @@ def _number(expression: sp.Basic) -> object:
 
 @kept_by_identity(100)
 def _compiled(program: Program) -> _Run:
-    """The program as a Python function. Straight-line programs alone: no loop, no system of equations."""
+    """The program as a Python function. Straight-line programs alone: no loop, no system of equations. Programs that
+    are run only where digits are lost are not run, and no pose that is asked may need one.
+    """
     text = _Text()
     lines = ["def run(known):", "    known, status = dict(known), ok"]
     for statement in program.body:
@@ -110,6 +113,10 @@ def _compiled(program: Program) -> _Run:
         elif isinstance(statement, Require):
             holds = text.of(statement.condition)
             lines.append(f"    status = {statement.otherwise.name} if status is ok and not {holds} else status")
+        elif isinstance(statement, Call) and statement.is_rare:
+            lines.append(f"    assert not {text.of(statement.wanted)}, 'a pose that loses digits of doubles'")
+            unbound = {n.name: sp.false if is_condition(n) else sp.Integer(0) for n in statement.names}
+            lines += [f"    known[{name!r}] = {text.of(value)}" for name, value in unbound.items()]
         else:
             raise TypeError(f"{type(statement).__name__} is no statement of a straight line")
     outputs = ", ".join(f"{o.name!r}: {text.of(o.value)}" for o in program.outputs)

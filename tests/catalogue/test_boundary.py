@@ -181,7 +181,7 @@ def test_a_tool_that_points_the_opposite_way(mechanism: Mechanism, machines: tup
         half_turns = 2 * horizontal[:, :, None] * horizontal[:, None, :] - np.eye(3)
         opposite = half_turns @ rotations
         own = machine.robot.forward_batch(axes)[2]
-        robot = machine.changed(check_limits=False)
+        robot = machine.open_robot
         _, statuses = robot.inverse_batch(positions, opposite, own, axes)
         turns = mechanism.task.turning is Turning.ABOUT_Z
         if mechanism.task.turning is Turning.FULL:

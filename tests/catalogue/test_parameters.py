@@ -91,12 +91,13 @@ def test_defaults_are_the_ones_it_says(mechanism: Mechanism, machines: tuple[Mac
         expected = machines[0].given.get(parameter.name, parameter.default)
         assert robot.parameters[parameter.name] == expected
         own = next((p for p in mechanism.parameters if p.name == parameter.name), None)
-        usual = {"check_limits": 1.0, "min_type2_margin": 1e-3, "warning_distance": 1e-3}.get(parameter.name, 0.0)
+        usual = dict.fromkeys(("check_limits", "check_forward"), 1.0)
+        usual |= dict.fromkeys(("min_type2_margin", "warning_distance"), 1e-3)
         swing = 45.0 if parameter.name == "max_angle_ball_joint" else None  # as CODESYS has it
         by_role = {**dict.fromkeys(LENGTHS), Role.ANGLE: swing, Role.SIGN: 1.0}
         if mechanism.is_platform and own is not None:  # what must be given, and what need not, is said one by one
             by_role |= dict.fromkeys((Role.DISTANCE, Role.ANGLE), own.default)
-        assert parameter.default == (usual if own is None else by_role.get(own.role, 0.0))
+        assert parameter.default == (usual.get(parameter.name, 0.0) if own is None else by_role.get(own.role, 0.0))
 
 
 def test_limits_must_be_in_order(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:

@@ -16,7 +16,7 @@ POSES = 2
 def compare(machine: Machine, position: Array, rotation: Array, axes: Array) -> int:
     """Hold the slots of a pose against the roots of the closure, with held axes where they are; how many there are."""
     roots = solutions(machine, position, rotation, machine.closure.joints(axes[None])[0])
-    robot = machine.changed(min_type2_margin=0.0) if machine.mechanism.rods else machine.robot
+    robot = machine.open_robot
     found = robot.inverse_all((position, rotation), held_at(robot, axes))
     slots = [s.axes for s in found if s.status is Status.OK]
     assert len(slots) == len(roots)

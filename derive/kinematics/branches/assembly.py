@@ -38,7 +38,7 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.kinematics.forward import pose_at_axes, solve_for_position
-from derive.kinematics.no_pose import why_no_pose
+from derive.kinematics.refusals.no_pose import why_no_pose
 from derive.kinematics.sampling import Samples, machine_at, possible_axes, sample_axes, sample_machine
 from derive.plate.legs import MARGIN, is_driven
 from derive.plate.plate import platform_checks

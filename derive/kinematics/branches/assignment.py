@@ -21,7 +21,7 @@ from derive.ir.program import Let, Output, Statement, Status, rewritten
 from derive.ir.symbols import branch_sign, real
 from derive.kinematics.forward import derivation_at_axes
 from derive.kinematics.inverse import Inverse
-from derive.kinematics.no_pose import near_home, why_no_pose
+from derive.kinematics.refusals.no_pose import near_home, why_no_pose
 from derive.kinematics.sampling import possible_axes, sample_machine
 from derive.plate.turning import given_pose
 

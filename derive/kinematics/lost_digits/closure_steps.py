@@ -5,7 +5,8 @@ the damping d is a share of its size. A fold or a free angle is no special case:
 move. A solution counts if its error is rounding, and no branch has the wrong sign.
 
 Where the steps meet nothing, the closed form gives another start: with nearly free angles at the reference, then with
-them turned. Where they meet the pose on another branch, the joint of its two roots is mirrored about the start.
+them turned to where the closed form comes nearest to the pose, of many values around the circle. Where the steps meet
+the pose on another branch, the joint of its two roots is mirrored about the start.
 """
 
 from __future__ import annotations
@@ -18,7 +19,6 @@ from derive.description.mechanism import Joint, Mechanism, Turning
 from derive.equations.axes import reference_value
 from derive.equations.chain_splits import is_spatial
 from derive.ir.constants import (
-    ATTEMPTS,
     BOUNDARY,
     CONVERGED,
     DEGREE,
@@ -28,8 +28,8 @@ from derive.ir.constants import (
     NEARLY,
     NEARLY_FREE,
     PASSES,
+    SCANNED,
     SHARE_OF_DAMPING,
-    TURNED,
 )
 from derive.ir.passes import normalise
 from derive.ir.primitives import NearestPeriod, Root, Select, ToReal, larger
@@ -62,6 +62,12 @@ _FIRST = sp.Integer(9)
 _LEFT, _ATTEMPT, _BEFORE = count("passes_left"), count("attempt"), real("error_before")
 _ANOTHER, _MIRRORS, _IS_MET = flag("another"), flag("mirrors"), flag("pose_is_met")
 _FREE, _FREE_TURN = real("free_angle"), real("free_turn")
+_NEAREST, _NEAREST_TURN = real("nearest_error"), real("nearest_turn")
+_NEAREST_NOW, _NEAREST_TURN_NOW = real("nearest_error_now"), real("nearest_turn_now")
+_SCAN_ENDS = SCANNED + 2
+"""The attempts: 0 from the given start, 1 with nearly free angles at the reference, then one of the scan each, and this
+one from the nearest of the scan.
+"""
 
 
 @dataclass(frozen=True)
@@ -136,17 +142,19 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
     following = count("next_attempt")
     step = (*_at_axes(machine), *_error(machine), *_sides(machine), *_attempt(following), *closed, *_step(machine))
     return Iterate(
-        state=(*map(_tried, joints), _LEFT, _ATTEMPT, _BEFORE),
-        start=(*map(started, joints), sp.Integer(PASSES), _ZERO, _FIRST),
+        state=(*map(_tried, joints), _LEFT, _ATTEMPT, _BEFORE, _NEAREST, _NEAREST_TURN),
+        start=(*map(started, joints), sp.Integer(PASSES), _ZERO, _FIRST, _FIRST, _ZERO),
         step=tuple(s for s in step if isinstance(s, Let | Solve)),
         following=(
             *(_next(machine, j, starts[j]) for j in joints),
-            Select(_ANOTHER, sp.Integer(PASSES), _LEFT - 1),
+            Select(_ANOTHER, Select(_is_scan(following), _ZERO, sp.Integer(PASSES)), _LEFT - 1),
             following,
             Select(sp.Or(_ANOTHER, _MIRRORS), _FIRST, real("error")),
+            _NEAREST_NOW,
+            _NEAREST_TURN_NOW,
         ),
-        done=sp.Or(_IS_MET, sp.And(_ANOTHER, sp.Ge(following, ATTEMPTS))),
-        limit=ATTEMPTS * (PASSES + 1),
+        done=sp.Or(_IS_MET, sp.And(_ANOTHER, sp.Gt(following, _SCAN_ENDS))),
+        limit=3 * (PASSES + 1) + SCANNED,
         otherwise=Status.UNREACHABLE,
         note="steps of damped least squares on the closure, from one start after the other",
     )
@@ -154,12 +162,27 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
 
 def _attempt(following: sp.Symbol) -> tuple[Let, ...]:
     """Whether another start is taken, which one, and what is free there."""
+    nearer = flag("is_nearer")
+    turn = Select(sp.Ge(following, _SCAN_ENDS), _NEAREST_TURN_NOW, _ZERO)
     return (
         Let(_ANOTHER, sp.Le(_LEFT, 0)),
         Let(following, _ATTEMPT + Select(_ANOTHER, _ONE, _ZERO)),
         Let(_FREE, Select(sp.Gt(following, 0), NEARLY_FREE, FREE_ANGLE)),
-        Let(_FREE_TURN, TURNED * ToReal(Select(sp.Gt(following, 1), following - 1, _ZERO))),
+        Let(nearer, sp.And(_is_scan(_ATTEMPT), sp.Lt(real("error"), _NEAREST))),
+        Let(_NEAREST_NOW, Select(nearer, real("error"), _NEAREST)),
+        Let(_NEAREST_TURN_NOW, Select(nearer, _turn_of(_ATTEMPT), _NEAREST_TURN)),
+        Let(_FREE_TURN, Select(_is_scan(following), _turn_of(following), turn), "how far free angles are turned"),
     )
+
+
+def _is_scan(attempt: sp.Symbol) -> sp.Basic:
+    """Whether an attempt is one of the scan: its start is rated, and no step is taken."""
+    return sp.And(sp.Gt(attempt, 1), sp.Lt(attempt, _SCAN_ENDS))
+
+
+def _turn_of(attempt: sp.Symbol) -> sp.Expr:
+    """How far (degrees) an attempt of the scan turns the free angles."""
+    return sp.Rational(360, SCANNED) * ToReal(attempt - 1)
 
 
 def _on_its_turn(joint: Joint, branch: Program) -> sp.Expr:

@@ -26,7 +26,7 @@ from derive.ir.symbols import SIDE, TRIED, cosine, names_in, sine
 from derive.kinematics.branches.derived import with_named_steps
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, solve_at, solve_pose
-from derive.kinematics.neighbours import fitting_task, what_misses
+from derive.kinematics.refusals.neighbours import fitting_task, what_misses
 from derive.kinematics.scan.guards import guards_of
 from derive.kinematics.scan.quartic import quartic_of
 from derive.kinematics.shared_names import refuse_shared_names

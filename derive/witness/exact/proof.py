@@ -11,9 +11,8 @@ from random import Random
 
 import sympy as sp
 
-from derive.description.amounts import in_radians, number_in
+from derive.description.amounts import in_radians, number_in, with_right_angles
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role, Turning
-from derive.description.right_angles import with_right_angles
 from derive.geometry.frames import Motion
 from derive.ir.program import Program
 from derive.ir.symbols import MIN_TYPE2_MARGIN, ROTATION_ENTRIES

@@ -706,7 +706,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   return SOFTKIN_OK;
 }
 
-/* Position, rotation, and the signed margin of every branch. */
+/* Position, rotation and the signed margin of every branch. */
 static softkin_status find_forward(const void *machine, const double *axes, softkin_frame *frame,
     double *margins, softkin_refusal *why) {
   const ac6_rzryryrxryrz_j6offset_machine *k = machine;
@@ -849,7 +849,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   return SOFTKIN_OK;
 }
 
-/* The axes of one branch on their turns, before any limit. */
+/* The axes of one branch, on their turns; limits are not tested. */
 static softkin_status find_branch(const void *machine, const softkin_frame *frame, const int8_t *signs,
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why) {
   const ac6_rzryryrxryrz_j6offset_machine *k = machine;
@@ -1407,7 +1407,7 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
-/* The arguments of the search. */
+/* Arguments of the search. */
 static softkin_status find_search_given(const void *machine, const softkin_frame *frame, const int8_t *signs,
     const int8_t *turns, const double *reference, double *given, softkin_refusal *why) {
   (void)turns;
@@ -1450,7 +1450,7 @@ static softkin_status find_search_given(const void *machine, const softkin_frame
   return SOFTKIN_OK;
 }
 
-/* The axes of joint values. */
+/* The axis values of joint values. */
 static softkin_status find_from_joints(const void *machine, const double *joints, const int8_t *turns,
     const double *reference, double *axes, softkin_refusal *why) {
   (void)why;

@@ -190,36 +190,39 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int passes_left = 40;
   int attempt = 0;
   double error_before = 9.0;
+  double nearest_error = 9.0;
+  double nearest_turn = 0.0;
   double q1, sin_q1, cos_q1, q2, q3, q4, q2_plus_q3, q2_plus_q3_plus_q4, cos_q234, r11_at_q234, q5, sin_q5,
       cos_q5, r12_at_q5, sin_q234, r13_at_q234, cos_q2, r11_at_q2, x_at_q3, cos_q23, r11_at_q23, x_at_q4,
       x_at_q5, x_at_q6, d6_times_r12_at_q5, x, wrist_x, r21_at_q234, r22_at_q5, r23_at_q234, r21_at_q2,
       y_at_q3, r21_at_q23, y_at_q4, y_at_q5, y_at_q6, d6_times_r22_at_q5, y, wrist_y, branch_shoulder,
       sin_q3, r11_at_q5, q6, sin_q6, cos_q6, r11_at_q6, r21_at_q5, r21_at_q6, r31_at_q5, r31_at_q6,
       r13_at_q6, r23_at_q6, r33_at_q6, r32_at_q5, error_1, error_2, sin_q2, z_at_q3, sin_q23, z_at_q4,
-      z_at_q6, z, error_3, error_4, error_5, error_6, value_in_error, error, free_angle, free_turn,
-      closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1, closed_cos_q1, closed_sin_q1,
-      closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1, cos_q1_times_one_by_machine_scale, rate_1_2,
-      z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4, rate_1_4, y_minus_y_at_q5, rate_1_5, z_minus_z_at_q6,
-      y_minus_y_at_q6, rate_1_6, product_in_damping, damping, product_1_1, sin_q1_times_one_by_machine_scale,
-      rate_2_2, rate_2_3, rate_2_4, x_minus_x_at_q5, rate_2_5, x_minus_x_at_q6, rate_2_6, product_1_2,
-      rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6, product_1_3, rate_1_2_plus_rate_1_3_plus_rate_1_4,
-      product_1_4, product_1_5, product_1_6, product_2_2, product_2_3, rate_2_2_plus_rate_2_3_plus_rate_2_4,
-      product_2_4, product_2_5, product_2_6, product_3_3, rate_3_2_plus_rate_3_3_plus_rate_3_4, product_3_4,
-      product_3_5, product_3_6, product_4_4, product_4_5, product_4_6, product_5_5, product_5_6, product_6_6,
-      multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6, step_a1,
-      sum_in_step_a2, step_a2, step_a3, step_a4, step_a5, step_a6, step_length, shrinking,
-      closed_r21_from_q1, closed_r22_from_q1, closed_radius_q6, closed_q6_radius_of_q5, closed_cos_q5,
-      closed_reference_a6, closed_along_q6, closed_length_q6, closed_cos_q6, closed_across_q6, closed_sin_q6,
-      closed_r31_from_q1_before_q6, closed_r31_from_q1_before_q56, closed_wrist_x_from_q1,
-      closed_r33_from_q1_before_q6, closed_wrist_z_from_q1, closed_reach, closed_reference_a2,
-      closed_one_less_cos_q3, closed_one_plus_cos_q3, closed_cos_q3, closed_arm_along_q2,
-      closed_sine_square_q3, closed_sin_q3, closed_arm_across_q2, closed_direction_x_q2,
-      closed_direction_y_q2, closed_angle_q2, closed_axis_a2, closed_angle_q3, closed_axis_a3,
-      closed_angle_with_q4, closed_axis_a4, closed_axis_a5, closed_axis_a6, shared_quotient;
+      z_at_q6, z, error_3, error_4, error_5, error_6, value_in_error, error, free_angle, nearest_turn_now,
+      free_turn, closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1, closed_cos_q1,
+      closed_sin_q1, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1, cos_q1_times_one_by_machine_scale,
+      rate_1_2, z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4, rate_1_4, y_minus_y_at_q5, rate_1_5,
+      z_minus_z_at_q6, y_minus_y_at_q6, rate_1_6, product_in_damping, damping, product_1_1,
+      sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, rate_2_4, x_minus_x_at_q5, rate_2_5,
+      x_minus_x_at_q6, rate_2_6, product_1_2, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6, product_1_3,
+      rate_1_2_plus_rate_1_3_plus_rate_1_4, product_1_4, product_1_5, product_1_6, product_2_2, product_2_3,
+      rate_2_2_plus_rate_2_3_plus_rate_2_4, product_2_4, product_2_5, product_2_6, product_3_3,
+      rate_3_2_plus_rate_3_3_plus_rate_3_4, product_3_4, product_3_5, product_3_6, product_4_4, product_4_5,
+      product_4_6, product_5_5, product_5_6, product_6_6, multiplier_1, multiplier_2, multiplier_3,
+      multiplier_4, multiplier_5, multiplier_6, step_a1, sum_in_step_a2, step_a2, step_a3, step_a4, step_a5,
+      step_a6, step_length, shrinking, closed_r21_from_q1, closed_r22_from_q1, closed_radius_q6,
+      closed_q6_radius_of_q5, closed_cos_q5, closed_reference_a6, closed_along_q6, closed_length_q6,
+      closed_cos_q6, closed_across_q6, closed_sin_q6, closed_r31_from_q1_before_q6,
+      closed_r31_from_q1_before_q56, closed_wrist_x_from_q1, closed_r33_from_q1_before_q6,
+      closed_wrist_z_from_q1, closed_reach, closed_reference_a2, closed_one_less_cos_q3,
+      closed_one_plus_cos_q3, closed_cos_q3, closed_arm_along_q2, closed_sine_square_q3, closed_sin_q3,
+      closed_arm_across_q2, closed_direction_x_q2, closed_direction_y_q2, closed_angle_q2, closed_axis_a2,
+      closed_angle_q3, closed_axis_a3, closed_angle_with_q4, closed_axis_a4, closed_axis_a5, closed_axis_a6,
+      nearest_error_now, shared_quotient;
   int next_attempt;
-  bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, mirrors;
+  bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, mirrors, is_nearer;
   for (int pass = 0;; pass += 1) {
-    if (pass == 164) {
+    if (pass == 243) {
       return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
     }
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
@@ -307,7 +310,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_wrist);
     free_angle = next_attempt > 0 ? 1e-6 : 1e-11;
-    free_turn = -137.5*(next_attempt > 1 ? 1 - next_attempt : 0);
+    is_nearer = (attempt > 1) && (attempt < 122) && (error < nearest_error);
+    nearest_turn_now = is_nearer ? -3.0*(1 - attempt) : nearest_turn;
+    /* how far free angles are turned */
+    free_turn = (next_attempt > 1) && (next_attempt < 122) ? -3.0*(1 - next_attempt)
+        : (next_attempt >= 122 ? nearest_turn_now : 0.0);
     closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
     free_angle_times_machine_scale = free_angle*k->machine_scale;
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
@@ -463,8 +470,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         + softkin_angle_of(closed_q6_radius_of_q5, closed_cos_q5)*SOFTKIN_RADIAN, closed_near_a5);
     closed_axis_a6 = softkin_on_turn(k->offset_a6
         + softkin_angle_of(closed_sin_q6, closed_cos_q6)*SOFTKIN_RADIAN, closed_near_a6);
+    nearest_error_now = is_nearer ? error : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (pose_is_met || (another && (next_attempt >= 4))) {
+    if (pose_is_met || (another && (next_attempt > 122))) {
       break;
     }
     tried_a1 = (another ? closed_axis_a1
@@ -479,9 +487,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a6 = (another ? closed_axis_a6
         : (mirrors ? (beside_wrist ? 2.0*closed_axis_a6 - tried_a6 : tried_a6) : tried_a6
         + shared_quotient*step_a6));
-    passes_left = (another ? 40 : passes_left - 1);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 122) ? 0 : 40) : passes_left - 1);
     attempt = next_attempt;
     error_before = (another || mirrors ? 9.0 : error);
+    nearest_error = nearest_error_now;
+    nearest_turn = nearest_turn_now;
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
   const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);
@@ -499,7 +509,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   return SOFTKIN_OK;
 }
 
-/* Position, rotation, and the signed margin of every branch. */
+/* Position, rotation and the signed margin of every branch. */
 static softkin_status find_forward(const void *machine, const double *axes, softkin_frame *frame,
     double *margins, softkin_refusal *why) {
   const ac6_threeparallel_machine *k = machine;
@@ -587,7 +597,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   return SOFTKIN_OK;
 }
 
-/* The axes of one branch on their turns, before any limit. */
+/* The axes of one branch, on their turns; limits are not tested. */
 static softkin_status find_branch(const void *machine, const softkin_frame *frame, const int8_t *signs,
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why) {
   const ac6_threeparallel_machine *k = machine;

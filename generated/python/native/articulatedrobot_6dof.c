@@ -230,6 +230,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int passes_left = 40;
   int attempt = 0;
   double error_before = 9.0;
+  double nearest_error = 9.0;
+  double nearest_turn = 0.0;
   double q1, sin_q1, cos_q1, q2, q3, q2_plus_q3, cos_q23, r11_at_q23, sin_q23, r13_at_q23, q4, sin_q4,
       cos_q4, r13_at_q4, q5, sin_q5, cos_q5, r11_at_q5, x_at_q2, sin_q2, r13_at_q2, x_at_q3, x_at_q4,
       x_at_q5, d6_times_r11_at_q5, x, wrist_x, r21_at_q23, r23_at_q23, r23_at_q4, r21_at_q5, y_at_q2,
@@ -237,8 +239,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       branch_elbow, r33_at_q4, r31_at_q5, r12_at_q4, r13_at_q5, q6, sin_q6, cos_q6, r13_at_q6, r22_at_q4,
       r23_at_q5, r23_at_q6, r32_at_q4, r33_at_q5, r33_at_q6, r12_at_q6, r22_at_q6, r32_at_q6, error_1,
       error_2, cos_q2, z_at_q3, z_at_q4, z_at_q5, z, error_3, error_4, error_5, error_6, value_in_error,
-      error, free_angle, free_turn, closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1,
-      closed_cos_q1, closed_sin_q1, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1,
+      error, free_angle, nearest_turn_now, free_turn, closed_reference_a1, free_angle_times_machine_scale,
+      closed_divisor_q1, closed_cos_q1, closed_sin_q1, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1,
       cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4,
       y_minus_y_at_q4, rate_1_4, z_minus_z_at_q5, y_minus_y_at_q5, rate_1_5, rate_1_6, product_in_damping,
       damping, product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, x_minus_x_at_q4, rate_2_4,
@@ -253,11 +255,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       closed_r23_from_q1, closed_radius_q4, closed_direction_x_q4, closed_direction_y_q4, closed_axis_a4,
       closed_r13_from_q123, closed_q4_radius_of_q5, closed_axis_a5, closed_r22_from_q1, closed_r12_from_q1,
       closed_r32_from_q123, closed_direction_x_q6, closed_r21_from_q1, closed_r11_from_q1,
-      closed_r31_from_q123, closed_direction_y_q6, closed_axis_a6, shared_quotient;
+      closed_r31_from_q123, closed_direction_y_q6, closed_axis_a6, nearest_error_now, shared_quotient;
   int next_attempt;
-  bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, mirrors;
+  bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, mirrors, is_nearer;
   for (int pass = 0;; pass += 1) {
-    if (pass == 164) {
+    if (pass == 243) {
       return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
     }
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
@@ -350,7 +352,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
     free_angle = next_attempt > 0 ? 1e-6 : 1e-11;
-    free_turn = -137.5*(next_attempt > 1 ? 1 - next_attempt : 0);
+    is_nearer = (attempt > 1) && (attempt < 122) && (error < nearest_error);
+    nearest_turn_now = is_nearer ? -3.0*(1 - attempt) : nearest_turn;
+    /* how far free angles are turned */
+    free_turn = (next_attempt > 1) && (next_attempt < 122) ? -3.0*(1 - next_attempt)
+        : (next_attempt >= 122 ? nearest_turn_now : 0.0);
     closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
     free_angle_times_machine_scale = free_angle*k->machine_scale;
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
@@ -501,8 +507,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         - closed_direction_y_q4*closed_r31_from_q123;
     closed_axis_a6 = softkin_on_turn(k->offset_a6
         + softkin_angle_of(closed_direction_y_q6, closed_direction_x_q6)*SOFTKIN_RADIAN, closed_near_a6);
+    nearest_error_now = is_nearer ? error : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (pose_is_met || (another && (next_attempt >= 4))) {
+    if (pose_is_met || (another && (next_attempt > 122))) {
       break;
     }
     tried_a1 = (another ? closed_axis_a1
@@ -517,9 +524,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         + shared_quotient*step_a4));
     tried_a5 = (another ? closed_axis_a5 : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
     tried_a6 = (another ? closed_axis_a6 : (mirrors ? tried_a6 : tried_a6 + shared_quotient*step_a6));
-    passes_left = (another ? 40 : passes_left - 1);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 122) ? 0 : 40) : passes_left - 1);
     attempt = next_attempt;
     error_before = (another || mirrors ? 9.0 : error);
+    nearest_error = nearest_error_now;
+    nearest_turn = nearest_turn_now;
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
   const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);
@@ -537,7 +546,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   return SOFTKIN_OK;
 }
 
-/* Position, rotation, and the signed margin of every branch. */
+/* Position, rotation and the signed margin of every branch. */
 static softkin_status find_forward(const void *machine, const double *axes, softkin_frame *frame,
     double *margins, softkin_refusal *why) {
   const articulatedrobot_6dof_machine *k = machine;
@@ -630,7 +639,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   return SOFTKIN_OK;
 }
 
-/* The axes of one branch on their turns, before any limit. */
+/* The axes of one branch, on their turns; limits are not tested. */
 static softkin_status find_branch(const void *machine, const softkin_frame *frame, const int8_t *signs,
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why) {
   const articulatedrobot_6dof_machine *k = machine;

@@ -157,20 +157,22 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int passes_left = 40;
   int attempt = 0;
   double error_before = 9.0;
+  double nearest_error = 9.0;
+  double nearest_turn = 0.0;
   double q1, sin_q1, cos_q1, x_at_q2, q2, sin_q2, r13_at_q2, x_at_q3, q3, q2_plus_q3, cos_q23, r11_at_q23,
       sin_q23, r13_at_q23, x, y_at_q2, r23_at_q2, y_at_q3, r21_at_q23, r23_at_q23, y, branch_arm, sin_q3,
-      cos_q3, branch_elbow, error_1, error_2, cos_q2, z_at_q3, z, error_3, error, free_angle, free_turn,
-      closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1, closed_cos_q1, closed_sin_q1,
-      closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1, cos_q1_times_one_by_machine_scale, rate_1_2,
-      z_minus_z_at_q3, rate_1_3, product_in_damping, damping, product_1_1, sin_q1_times_one_by_machine_scale,
-      rate_2_2, rate_2_3, product_1_2, rate_3_2, rate_3_3, product_1_3, product_2_2, product_2_3,
-      product_3_3, multiplier_1, multiplier_2, multiplier_3, step_a1, step_a2, step_a3, step_length,
-      shrinking, closed_reference_a2, closed_direction_x_q2, closed_direction_y_q2, closed_axis_a2,
-      shared_quotient;
+      cos_q3, branch_elbow, error_1, error_2, cos_q2, z_at_q3, z, error_3, error, free_angle,
+      nearest_turn_now, free_turn, closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1,
+      closed_cos_q1, closed_sin_q1, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1,
+      cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, product_in_damping, damping,
+      product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, product_1_2, rate_3_2, rate_3_3,
+      product_1_3, product_2_2, product_2_3, product_3_3, multiplier_1, multiplier_2, multiplier_3, step_a1,
+      step_a2, step_a3, step_length, shrinking, closed_reference_a2, closed_direction_x_q2,
+      closed_direction_y_q2, closed_axis_a2, nearest_error_now, shared_quotient;
   int next_attempt;
-  bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, mirrors;
+  bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, mirrors, is_nearer;
   for (int pass = 0;; pass += 1) {
-    if (pass == 164) {
+    if (pass == 243) {
       return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
     }
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
@@ -215,7 +217,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_arm || beside_elbow);
     free_angle = next_attempt > 0 ? 1e-6 : 1e-11;
-    free_turn = -137.5*(next_attempt > 1 ? 1 - next_attempt : 0);
+    is_nearer = (attempt > 1) && (attempt < 122) && (error < nearest_error);
+    nearest_turn_now = is_nearer ? -3.0*(1 - attempt) : nearest_turn;
+    /* how far free angles are turned */
+    free_turn = (next_attempt > 1) && (next_attempt < 122) ? -3.0*(1 - next_attempt)
+        : (next_attempt >= 122 ? nearest_turn_now : 0.0);
     closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
     free_angle_times_machine_scale = free_angle*k->machine_scale;
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
@@ -268,8 +274,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         : sin(closed_reference_a2);
     closed_axis_a2 = softkin_on_turn(k->offset_a2
         + softkin_angle_of(closed_direction_y_q2, closed_direction_x_q2)*SOFTKIN_RADIAN, closed_near_a2);
+    nearest_error_now = is_nearer ? error : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (pose_is_met || (another && (next_attempt >= 4))) {
+    if (pose_is_met || (another && (next_attempt > 122))) {
       break;
     }
     tried_a1 = (another ? closed_axis_a1
@@ -279,9 +286,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a3 = (another ? closed_axis_a3
         : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
         + shared_quotient*step_a3));
-    passes_left = (another ? 40 : passes_left - 1);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 122) ? 0 : 40) : passes_left - 1);
     attempt = next_attempt;
     error_before = (another || mirrors ? 9.0 : error);
+    nearest_error = nearest_error_now;
+    nearest_turn = nearest_turn_now;
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
   const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);
@@ -293,7 +302,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   return SOFTKIN_OK;
 }
 
-/* Position, rotation, and the signed margin of every branch. */
+/* Position, rotation and the signed margin of every branch. */
 static softkin_status find_forward(const void *machine, const double *axes, softkin_frame *frame,
     double *margins, softkin_refusal *why) {
   const pos_rrr_machine *k = machine;
@@ -346,7 +355,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   return SOFTKIN_OK;
 }
 
-/* The axes of one branch on their turns, before any limit. */
+/* The axes of one branch, on their turns; limits are not tested. */
 static softkin_status find_branch(const void *machine, const softkin_frame *frame, const int8_t *signs,
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why) {
   const pos_rrr_machine *k = machine;

@@ -104,7 +104,7 @@ static const char *const ROWS[] = {"x", "y", "z"};
 
 static const int DISTANCE_AXES[] = {0, 1, 2};
 
-/* Position, rotation, and the signed margin of every branch. */
+/* Position, rotation and the signed margin of every branch. */
 static softkin_status find_forward(const void *machine, const double *axes, softkin_frame *frame,
     double *margins, softkin_refusal *why) {
   const tripod_p3z_machine *k = machine;
@@ -174,7 +174,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   return SOFTKIN_OK;
 }
 
-/* The axes of one branch on their turns, before any limit. */
+/* The axes of one branch, on their turns; limits are not tested. */
 static softkin_status find_branch(const void *machine, const softkin_frame *frame, const int8_t *signs,
     const int8_t *turns, const double *reference, double *axes, softkin_refusal *why) {
   (void)turns;

@@ -106,7 +106,7 @@ class BipodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Bipod_Rotary"
-    KEY = "bipod_rotary 5cf8b700f21b141f"
+    KEY = "bipod_rotary d973252ce7289b03"
     AXES = (
         Axis(
             name="A1",

@@ -131,7 +131,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Delta_C"
-    KEY = "delta_c be83389f52740437"
+    KEY = "delta_c b33a505e3871df14"
     AXES = (
         Axis(
             name="A1",

@@ -152,7 +152,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_DualScara"
-    KEY = "dualscara 3ea2da0a762b0bf1"
+    KEY = "dualscara 891c5bee598d1269"
     AXES = (
         Axis(
             name="A1",

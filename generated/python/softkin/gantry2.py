@@ -64,7 +64,7 @@ class Gantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Gantry2"
-    KEY = "gantry2 18e4a2282eed064b"
+    KEY = "gantry2 d81516d5868406e5"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),

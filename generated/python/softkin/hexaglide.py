@@ -60,7 +60,8 @@ Verified at 144 poses, before this file was written, by a witness that knows the
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 1, each of which the inverse finds, too.
-    The equations of the inverse hold exactly (checked in a finite field at 3 random machines and poses); forward kinematics iterates.
+    The equations of the inverse hold exactly (checked in a finite field at 3 random machines and poses);
+    forward kinematics iterates.
 """
 
 from __future__ import annotations
@@ -503,7 +504,7 @@ class Hexaglide(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Hexaglide"
-    KEY = "hexaglide c37c92c3227cf90c"
+    KEY = "hexaglide ec88d3ce37b8c0e2"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="X of carriage 1", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="X of carriage 2", multi_turn=False),

@@ -50,7 +50,8 @@ Verified at 144 poses, before this file was written, by a witness that knows the
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 1, each of which the inverse finds, too.
-    The equations of the inverse hold exactly (checked in a finite field at 3 random machines and poses); forward kinematics iterates.
+    The equations of the inverse hold exactly (checked in a finite field at 3 random machines and poses);
+    forward kinematics iterates.
 """
 
 from __future__ import annotations
@@ -372,7 +373,7 @@ class Hexapod(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Hexapod"
-    KEY = "hexapod 5645bb0232e6f1a7"
+    KEY = "hexapod 97bfd10d76b2d7e2"
     AXES = (
         Axis(name="L1", kind="linear", unit="u", meaning="Length of leg 1, between its joints", multi_turn=False),
         Axis(name="L2", kind="linear", unit="u", meaning="Length of leg 2, between its joints", multi_turn=False),

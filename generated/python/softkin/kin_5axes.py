@@ -80,7 +80,7 @@ class Kin5Axes(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_5Axes"
-    KEY = "kin_5axes da3acfe8d97432eb"
+    KEY = "kin_5axes d8ec3d87f28a9adb"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),

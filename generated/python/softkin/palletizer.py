@@ -107,7 +107,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer"
-    KEY = "palletizer 88be3b3fb2835c80"
+    KEY = "palletizer d8bac71faae2a449"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),
@@ -308,7 +308,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             else closed_open_a3
         )
         # steps of damped least squares on the closure, from one start after the other
-        tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before = (
+        tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before, nearest_error, nearest_turn = (
             start_a1,
             start_a2,
             start_a3,
@@ -316,8 +316,10 @@ class Palletizer(OffsetKinematics, TwistChoice):
             40,
             0,
             9.0,
+            9.0,
+            0.0,
         )
-        for _ in range(164):
+        for _ in range(243):
             a1 = (tried_a1 - offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -366,7 +368,14 @@ class Palletizer(OffsetKinematics, TwistChoice):
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_elbow or beside_shoulder)
             free_angle = 1e-6 if next_attempt > 0 else 1e-11
-            free_turn = -137.5 * (1 - next_attempt if next_attempt > 1 else 0)
+            is_nearer = (attempt > 1) and (attempt < 122) and (error < nearest_error)
+            nearest_turn_now = -3.0 * (1 - attempt) if is_nearer else nearest_turn
+            # how far free angles are turned
+            free_turn = (
+                -3.0 * (1 - next_attempt)
+                if (next_attempt > 1) and (next_attempt < 122)
+                else (nearest_turn_now if next_attempt >= 122 else 0.0)
+            )
             closed_reference_a4 = DEGREE * (free_turn + given_ref_a4 - offset_a4)
             closed_cos_a4 = cos(closed_reference_a4)
             closed_sin_a4 = sin(closed_reference_a4)
@@ -484,8 +493,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
             closed_axis_a3 = nearest_period(
                 offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) * RADIAN, closed_near_a3
             )
+            nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if pose_is_met or (another and (next_attempt >= 4)):
+            if pose_is_met or (another and (next_attempt > 122)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -499,9 +509,11 @@ class Palletizer(OffsetKinematics, TwistChoice):
             tried_a2 = closed_axis_a2 if another else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
             tried_a3 = closed_axis_a3 if another else (tried_a3 if mirrors else tried_a3 + shared_quotient * step_a3)
             tried_a4 = given_ref_a4 if another else tried_a4
-            passes_left = 40 if another else passes_left - 1
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 122) else 40) if another else passes_left - 1
             attempt = next_attempt
             error_before = 9.0 if another or mirrors else error
+            nearest_error = nearest_error_now
+            nearest_turn = nearest_turn_now
         else:
             return Status.UNREACHABLE
         chosen_a1 = tried_a1

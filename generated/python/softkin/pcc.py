@@ -85,7 +85,7 @@ class PCC(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_PCC"
-    KEY = "pcc 7af75d3641e72327"
+    KEY = "pcc ca6609836b3eaaba"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Inner arm about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Outer arm about Z, its absolute angle", multi_turn=True),

@@ -57,7 +57,8 @@ Verified at 144 poses, before this file was written, by a witness that knows the
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 8, each of which the inverse finds, too.
-    The equations of the inverse hold exactly (checked in a finite field at 3 random machines and poses); forward kinematics iterates.
+    The equations of the inverse hold exactly (checked in a finite field at 3 random machines and poses);
+    forward kinematics iterates.
 """
 
 from __future__ import annotations
@@ -334,7 +335,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Planar_3RRR"
-    KEY = "planar_3rrr 038aa0d1ccf81281"
+    KEY = "planar_3rrr cab6b97d7d484b7a"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z, from +X", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z, from +X", multi_turn=True),

@@ -24,9 +24,9 @@ counted together):
     forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
     inverse: 46 additions, 39 multiplications, 7 divisions, 4 square roots, 3 sines
     inverse, all 4 branches: 161 additions, 118 multiplications, 20 divisions, 9 square roots, 10 sines
-    a branch at a singular pose, in addition: 14468 additions, 20693 multiplications, 1315 divisions, 332
-    square roots, 2301 sines
-    steps of damped least squares on the closure, from one start after the other: at most 164 passes, all of
+    a branch at a singular pose, in addition: 21663 additions, 30890 multiplications, 1947 divisions, 490
+    square roots, 3407 sines
+    steps of damped least squares on the closure, from one start after the other: at most 243 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -96,7 +96,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr 31f2b898d5b25964"
+    KEY = "pos_rrr ac2d9be06605c1f9"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -293,8 +293,17 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= closed_axis_a3 - closed_near_a3 < 179.999999999:
             closed_axis_a3 = nearest_period(closed_axis_a3, closed_near_a3)
         # steps of damped least squares on the closure, from one start after the other
-        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before = start_a1, start_a2, start_a3, 40, 0, 9.0
-        for _ in range(164):
+        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = (
+            start_a1,
+            start_a2,
+            start_a3,
+            40,
+            0,
+            9.0,
+            9.0,
+            0.0,
+        )
+        for _ in range(243):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -337,7 +346,14 @@ class PosRRR(OffsetKinematics):
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_arm or beside_elbow)
             free_angle = 1e-6 if next_attempt > 0 else 1e-11
-            free_turn = -137.5 * (1 - next_attempt if next_attempt > 1 else 0)
+            is_nearer = (attempt > 1) and (attempt < 122) and (error < nearest_error)
+            nearest_turn_now = -3.0 * (1 - attempt) if is_nearer else nearest_turn
+            # how far free angles are turned
+            free_turn = (
+                -3.0 * (1 - next_attempt)
+                if (next_attempt > 1) and (next_attempt < 122)
+                else (nearest_turn_now if next_attempt >= 122 else 0.0)
+            )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
             free_angle_times_machine_scale = free_angle * machine_scale
             closed_divisor_q1 = (
@@ -406,8 +422,9 @@ class PosRRR(OffsetKinematics):
             closed_axis_a2 = nearest_period(
                 offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
             )
+            nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if pose_is_met or (another and (next_attempt >= 4)):
+            if pose_is_met or (another and (next_attempt > 122)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -428,9 +445,11 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = 40 if another else passes_left - 1
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 122) else 40) if another else passes_left - 1
             attempt = next_attempt
             error_before = 9.0 if another or mirrors else error
+            nearest_error = nearest_error_now
+            nearest_turn = nearest_turn_now
         else:
             return Status.UNREACHABLE
         chosen_a1 = tried_a1
@@ -538,8 +557,17 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= closed_axis_a3 - closed_near_a3 < 179.999999999:
             closed_axis_a3 = nearest_period(closed_axis_a3, closed_near_a3)
         # steps of damped least squares on the closure, from one start after the other
-        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before = start_a1, start_a2, start_a3, 40, 0, 9.0
-        for _ in range(164):
+        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = (
+            start_a1,
+            start_a2,
+            start_a3,
+            40,
+            0,
+            9.0,
+            9.0,
+            0.0,
+        )
+        for _ in range(243):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -585,7 +613,14 @@ class PosRRR(OffsetKinematics):
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_arm or beside_elbow)
             free_angle = 1e-6 if next_attempt > 0 else 1e-11
-            free_turn = -137.5 * (1 - next_attempt if next_attempt > 1 else 0)
+            is_nearer = (attempt > 1) and (attempt < 122) and (error < nearest_error)
+            nearest_turn_now = -3.0 * (1 - attempt) if is_nearer else nearest_turn
+            # how far free angles are turned
+            free_turn = (
+                -3.0 * (1 - next_attempt)
+                if (next_attempt > 1) and (next_attempt < 122)
+                else (nearest_turn_now if next_attempt >= 122 else 0.0)
+            )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
             free_angle_times_machine_scale = free_angle * machine_scale
             closed_divisor_q1 = (
@@ -654,8 +689,9 @@ class PosRRR(OffsetKinematics):
             closed_axis_a2 = nearest_period(
                 offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
             )
+            nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if pose_is_met or (another and (next_attempt >= 4)):
+            if pose_is_met or (another and (next_attempt > 122)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -676,9 +712,11 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = 40 if another else passes_left - 1
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 122) else 40) if another else passes_left - 1
             attempt = next_attempt
             error_before = 9.0 if another or mirrors else error
+            nearest_error = nearest_error_now
+            nearest_turn = nearest_turn_now
         else:
             return Status.UNREACHABLE
         chosen_a1 = tried_a1

@@ -85,7 +85,7 @@ class Scara2Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara2_Z"
-    KEY = "scara2_z b7cc971c420eb6f8"
+    KEY = "scara2_z ff39094f55362158"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

@@ -86,7 +86,7 @@ class Scara3CCZ(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_CCZ"
-    KEY = "scara3_ccz d8086eeb03984c8a"
+    KEY = "scara3_ccz a8cd7b2dce6d210f"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

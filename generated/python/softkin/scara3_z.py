@@ -89,7 +89,7 @@ class Scara3Z(TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_Z"
-    KEY = "scara3_z 5e34eebc4f45dd69"
+    KEY = "scara3_z 81f1601a0b406156"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

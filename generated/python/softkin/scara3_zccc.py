@@ -97,7 +97,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_ZCCC"
-    KEY = "scara3_zccc c564f159546547d8"
+    KEY = "scara3_zccc dddcd2300d068aca"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Column along Z, up", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),

@@ -106,7 +106,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_CCZC_ZCcoupled"
-    KEY = "scara4_cczc_zccoupled 7c1f41fc869a9a08"
+    KEY = "scara4_cczc_zccoupled 831e4473647c671f"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

@@ -97,7 +97,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCCC"
-    KEY = "scara4_zccc 2695040b6c4f8c6f"
+    KEY = "scara4_zccc 648c762a789e963f"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Column along Z, up", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),

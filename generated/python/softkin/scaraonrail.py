@@ -96,7 +96,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_ScaraOnRail"
-    KEY = "scaraonrail cc962552a4e189d3"
+    KEY = "scaraonrail 9fbb95a97086ad6e"
     AXES = (
         Axis(name="E1", kind="linear", unit="u", meaning="Rail along X: carries the arm", multi_turn=False),
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),

@@ -113,7 +113,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_SCCC"
-    KEY = "sccc d970c20e0613b7b9"
+    KEY = "sccc 9250e536bb53ebd3"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Link 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Link 2 about Z", multi_turn=True),

@@ -59,7 +59,7 @@ class Tool(OrientationKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Tool"
-    KEY = "tool f1d30a62645c257d"
+    KEY = "tool dc1763445a1b1311"
     AXES = ()
     PARAMETERS = (
         Parameter.of("distance", "tool_x", "Flange to the tool, along X"),

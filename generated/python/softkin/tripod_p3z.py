@@ -215,7 +215,7 @@ class TripodP3Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_P3Z"
-    KEY = "tripod_p3z 09df8c88a455d89c"
+    KEY = "tripod_p3z a5b56bf0de8617df"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along Z, up", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along Z, up", multi_turn=False),

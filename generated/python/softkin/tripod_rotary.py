@@ -144,7 +144,7 @@ class TripodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
-    KEY = "tripod_rotary d0e552d74651e9f3"
+    KEY = "tripod_rotary 969193e67939ff74"
     AXES = (
         Axis(
             name="A1",

@@ -13,7 +13,7 @@ from derive.description.mechanism import DescriptionError, Mechanism, Task, Turn
 from derive.description.validate import validate
 from derive.frames import Rz, Tx, Ty, Tz
 from derive.kinematics.build import build
-from derive.kinematics.no_pose import why_no_pose
+from derive.kinematics.refusals.no_pose import why_no_pose
 from derive.mechanism import length, linear, rotary
 from derive.vectors import vector
 from tests.unit.kinematics.inventions import A1, L1

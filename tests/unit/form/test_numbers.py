@@ -12,9 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy import Rational, pi, sin
 
-from derive.description.amounts import in_radians
+from derive.description.amounts import almost_right, as_right_angles, in_radians
 from derive.description.mechanism import DescriptionError, Joint, Mechanism, Task, Turning, branch
-from derive.description.right_angles import almost_right, as_right_angles
 from derive.description.validate import validate
 from derive.form.machine import in_form
 from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz, denavit_hartenberg

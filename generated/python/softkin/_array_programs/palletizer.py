@@ -37,7 +37,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 243
+    VALUES = 248
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def meet_point(self, given: Values, status: Codes) -> Values:
@@ -84,10 +84,10 @@ class ArrayPrograms(Programs):
             given_turn_a3 != 0, 360.0 * select(given_turn_a3 > 0, given_turn_a3 - 1, given_turn_a3), closed_open_a3
         )
         # steps of damped least squares on the closure, from one start after the other
-        tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before = initial(
-            start_a1, start_a2, start_a3, start_a4, 40, 0, 9.0
+        tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before, nearest_error, nearest_turn = (
+            initial(start_a1, start_a2, start_a3, start_a4, 40, 0, 9.0, 9.0, 0.0)
         )
-        for _ in range(164):
+        for _ in range(243):
             a1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -136,7 +136,14 @@ class ArrayPrograms(Programs):
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_elbow | beside_shoulder)
             free_angle = select(next_attempt > 0, 1e-6, 1e-11)
-            free_turn = -137.5 * select(next_attempt > 1, 1 - next_attempt, 0)
+            is_nearer = (attempt > 1) & (attempt < 122) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -3.0 * (1 - attempt), nearest_turn)
+            # how far free angles are turned
+            free_turn = select(
+                (next_attempt > 1) & (next_attempt < 122),
+                -3.0 * (1 - next_attempt),
+                select(next_attempt >= 122, nearest_turn_now, 0.0),
+            )
             closed_reference_a4 = DEGREE * (free_turn + given_ref_a4 - k.offset_a4)
             closed_cos_a4 = cos(closed_reference_a4)
             closed_sin_a4 = sin(closed_reference_a4)
@@ -248,30 +255,49 @@ class ArrayPrograms(Programs):
             closed_axis_a3 = nearest_period(
                 k.offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) / DEGREE, closed_near_a3
             )
+            nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = pose_is_met | (another & (next_attempt >= 4))
+            done = pose_is_met | (another & (next_attempt > 122))
             if settled(done, status):
                 break
-            tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before = advanced(
-                done,
-                (tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before),
-                (
-                    select(
-                        another,
-                        closed_axis_a1,
-                        select(
-                            mirrors,
-                            select(beside_shoulder, 2.0 * closed_axis_a1 - tried_a1, tried_a1),
-                            tried_a1 + shared_quotient * step_a1,
-                        ),
+            tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before, nearest_error, nearest_turn = (
+                advanced(
+                    done,
+                    (
+                        tried_a1,
+                        tried_a2,
+                        tried_a3,
+                        tried_a4,
+                        passes_left,
+                        attempt,
+                        error_before,
+                        nearest_error,
+                        nearest_turn,
                     ),
-                    select(another, closed_axis_a2, select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2)),
-                    select(another, closed_axis_a3, select(mirrors, tried_a3, tried_a3 + shared_quotient * step_a3)),
-                    select(another, given_ref_a4, tried_a4),
-                    select(another, 40, passes_left - 1),
-                    next_attempt,
-                    select(another | mirrors, 9.0, error),
-                ),
+                    (
+                        select(
+                            another,
+                            closed_axis_a1,
+                            select(
+                                mirrors,
+                                select(beside_shoulder, 2.0 * closed_axis_a1 - tried_a1, tried_a1),
+                                tried_a1 + shared_quotient * step_a1,
+                            ),
+                        ),
+                        select(
+                            another, closed_axis_a2, select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2)
+                        ),
+                        select(
+                            another, closed_axis_a3, select(mirrors, tried_a3, tried_a3 + shared_quotient * step_a3)
+                        ),
+                        select(another, given_ref_a4, tried_a4),
+                        select(another, select((next_attempt > 1) & (next_attempt < 122), 0, 40), passes_left - 1),
+                        next_attempt,
+                        select(another | mirrors, 9.0, error),
+                        nearest_error_now,
+                        nearest_turn_now,
+                    ),
+                )
             )
         require(status, done, Status.UNREACHABLE)
         chosen_a1 = nearest_period(tried_a1, closed_near_a1)

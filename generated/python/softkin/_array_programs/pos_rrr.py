@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 391
+    VALUES = 401
     JACOBIAN_ROWS = (0, 1, 2)
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
@@ -106,10 +106,10 @@ class ArrayPrograms(Programs):
         closed_sin_q3 = k.a3_by_effective_q3_2 * closed_sin_swing_q3 + closed_cos_swing_q3 * k.d4_by_effective_q3_2
         closed_axis_a3 = nearest_period(k.offset_a3 + degrees(closed_sin_q3, closed_cos_q3), closed_near_a3)
         # steps of damped least squares on the closure, from one start after the other
-        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before = initial(
-            start_a1, start_a2, start_a3, 40, 0, 9.0
+        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = initial(
+            start_a1, start_a2, start_a3, 40, 0, 9.0, 9.0, 0.0
         )
-        for _ in range(164):
+        for _ in range(243):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -152,7 +152,14 @@ class ArrayPrograms(Programs):
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_arm | beside_elbow)
             free_angle = select(next_attempt > 0, 1e-6, 1e-11)
-            free_turn = -137.5 * select(next_attempt > 1, 1 - next_attempt, 0)
+            is_nearer = (attempt > 1) & (attempt < 122) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -3.0 * (1 - attempt), nearest_turn)
+            # how far free angles are turned
+            free_turn = select(
+                (next_attempt > 1) & (next_attempt < 122),
+                -3.0 * (1 - next_attempt),
+                select(next_attempt >= 122, nearest_turn_now, 0.0),
+            )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
             free_angle_times_machine_scale = free_angle * k.machine_scale
             closed_divisor_q1 = select(
@@ -219,13 +226,14 @@ class ArrayPrograms(Programs):
             closed_axis_a2 = nearest_period(
                 k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
             )
+            nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = pose_is_met | (another & (next_attempt >= 4))
+            done = pose_is_met | (another & (next_attempt > 122))
             if settled(done, status):
                 break
-            tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before = advanced(
+            tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = advanced(
                 done,
-                (tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before),
+                (tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn),
                 (
                     select(
                         another,
@@ -246,9 +254,11 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, 40, passes_left - 1),
+                    select(another, select((next_attempt > 1) & (next_attempt < 122), 0, 40), passes_left - 1),
                     next_attempt,
                     select(another | mirrors, 9.0, error),
+                    nearest_error_now,
+                    nearest_turn_now,
                 ),
             )
         require(status, done, Status.UNREACHABLE)
@@ -335,10 +345,10 @@ class ArrayPrograms(Programs):
         closed_arm_across_q2 = k.a2 + closed_cos_q3 * tool_z + closed_sin_q3 * tool_x
         closed_axis_a3 = nearest_period(k.offset_a3 + degrees(closed_sin_q3, closed_cos_q3), closed_near_a3)
         # steps of damped least squares on the closure, from one start after the other
-        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before = initial(
-            start_a1, start_a2, start_a3, 40, 0, 9.0
+        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = initial(
+            start_a1, start_a2, start_a3, 40, 0, 9.0, 9.0, 0.0
         )
-        for _ in range(164):
+        for _ in range(243):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -384,7 +394,14 @@ class ArrayPrograms(Programs):
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_arm | beside_elbow)
             free_angle = select(next_attempt > 0, 1e-6, 1e-11)
-            free_turn = -137.5 * select(next_attempt > 1, 1 - next_attempt, 0)
+            is_nearer = (attempt > 1) & (attempt < 122) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -3.0 * (1 - attempt), nearest_turn)
+            # how far free angles are turned
+            free_turn = select(
+                (next_attempt > 1) & (next_attempt < 122),
+                -3.0 * (1 - next_attempt),
+                select(next_attempt >= 122, nearest_turn_now, 0.0),
+            )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
             free_angle_times_machine_scale = free_angle * k.machine_scale
             closed_divisor_q1 = select(
@@ -451,13 +468,14 @@ class ArrayPrograms(Programs):
             closed_axis_a2 = nearest_period(
                 k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
             )
+            nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = pose_is_met | (another & (next_attempt >= 4))
+            done = pose_is_met | (another & (next_attempt > 122))
             if settled(done, status):
                 break
-            tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before = advanced(
+            tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = advanced(
                 done,
-                (tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before),
+                (tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn),
                 (
                     select(
                         another,
@@ -478,9 +496,11 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, 40, passes_left - 1),
+                    select(another, select((next_attempt > 1) & (next_attempt < 122), 0, 40), passes_left - 1),
                     next_attempt,
                     select(another | mirrors, 9.0, error),
+                    nearest_error_now,
+                    nearest_turn_now,
                 ),
             )
         require(status, done, Status.UNREACHABLE)
