@@ -63,7 +63,7 @@ DAMPED = sp.Float("1e-12")
 lengths of the machine, is left."""
 DOUBTFUL = sp.Float("1e-2")
 """A step whose margin is at most this may have lost digits that a later step needs."""
-NEARLY_FREE = sp.Float("1e-6")
+NEARLY_FREE = sp.Float("1e-5")
 """Where lost digits may have refused a pose, an angle with a conditioning of this share or less is set free."""
 SCANNED = 120
 """The values of free angles that are tried, all around the circle, to find the start that is nearest to a pose."""

@@ -270,7 +270,7 @@ def _sides(machine: Machine) -> list[Statement]:
     """Whether the pose is met, on the wanted branch or on another one."""
     error, close, met = real("error"), flag("pose_is_close"), _IS_MET
     wrong = {a: flag(f"beside_{a.branch.name}") for a in machine.assignments}
-    sides = [Let(w, sp.Lt(ToReal(a.sigma) * real(f"branch_{a.branch.name}"), -NEARLY)) for a, w in wrong.items()]
+    sides = [Let(w, sp.Lt(ToReal(a.sigma) * real(f"branch_{a.branch.name}"), -2 * NEARLY)) for a, w in wrong.items()]
     is_last = sp.Or(sp.Gt(2 * error, _BEFORE), sp.Le(_LEFT, 0))
     is_close = sp.Or(sp.Le(error, BOUNDARY), sp.And(sp.Le(error, CONVERGED), is_last))
     return [

@@ -265,10 +265,10 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     y = y_at_q6 - d6_times_r22_at_q5;
     wrist_y = d6_times_r22_at_q5 + y;
     branch_shoulder = -k->one_by_machine_scale*(wrist_x*cos_q1 + wrist_y*sin_q1);
-    beside_shoulder = branch_shoulder*closed_sign_shoulder < -1e-6;
+    beside_shoulder = branch_shoulder*closed_sign_shoulder < -2e-6;
     sin_q3 = sin(q3);
-    beside_elbow = closed_sign_elbow*sin_q3 < -1e-6;
-    beside_wrist = closed_sign_wrist*sin_q5 < -1e-6;
+    beside_elbow = closed_sign_elbow*sin_q3 < -2e-6;
+    beside_wrist = closed_sign_wrist*sin_q5 < -2e-6;
     r11_at_q5 = r11_at_q234*cos_q5 + sin_q1*sin_q5;
     q6 = (tried_a6 - k->offset_a6)*SOFTKIN_DEGREE;
     sin_q6 = sin(q6);
@@ -309,7 +309,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     pose_is_met = pose_is_close && (!beside_elbow) && (!beside_shoulder) && (!beside_wrist);
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_wrist);
-    free_angle = next_attempt > 0 ? 1e-6 : 1e-11;
+    free_angle = next_attempt > 0 ? 1e-5 : 1e-11;
     is_nearer = (attempt > 1) && (attempt < 122) && (error < nearest_error);
     nearest_turn_now = is_nearer ? -3.0*(1 - attempt) : nearest_turn;
     /* how far free angles are turned */

@@ -302,12 +302,12 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     y = d6_times_r21_at_q5 + y_at_q5;
     wrist_y = y - d6_times_r21_at_q5;
     branch_arm = k->one_by_machine_scale*(wrist_x*cos_q1 + wrist_y*sin_q1);
-    beside_arm = branch_arm*closed_sign_arm < -1e-6;
+    beside_arm = branch_arm*closed_sign_arm < -2e-6;
     sin_q3 = sin(q3);
     cos_q3 = cos(q3);
     branch_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3;
-    beside_elbow = branch_elbow*closed_sign_elbow < -1e-6;
-    beside_hand = closed_sign_hand*sin_q5 < -1e-6;
+    beside_elbow = branch_elbow*closed_sign_elbow < -2e-6;
+    beside_hand = closed_sign_hand*sin_q5 < -2e-6;
     r33_at_q4 = cos_q23*cos_q4;
     r31_at_q5 = cos_q5*sin_q23 - r33_at_q4*sin_q5;
     r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
@@ -351,7 +351,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow) && (!beside_hand);
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
-    free_angle = next_attempt > 0 ? 1e-6 : 1e-11;
+    free_angle = next_attempt > 0 ? 1e-5 : 1e-11;
     is_nearer = (attempt > 1) && (attempt < 122) && (error < nearest_error);
     nearest_turn_now = is_nearer ? -3.0*(1 - attempt) : nearest_turn;
     /* how far free angles are turned */

@@ -197,11 +197,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     r23_at_q23 = -sin_q1*sin_q23;
     y = y_at_q3 + k->a3*r23_at_q23 + k->d4*r21_at_q23 - k->d3*cos_q1;
     branch_arm = k->one_by_machine_scale*(x*cos_q1 + y*sin_q1);
-    beside_arm = branch_arm*closed_sign_arm < -1e-6;
+    beside_arm = branch_arm*closed_sign_arm < -2e-6;
     sin_q3 = sin(q3);
     cos_q3 = cos(q3);
     branch_elbow = (k->d4*cos_q3 - k->a3*sin_q3)*k->one_by_effective_q3_2;
-    beside_elbow = branch_elbow*closed_sign_elbow < -1e-6;
+    beside_elbow = branch_elbow*closed_sign_elbow < -2e-6;
     error_1 = (goal_x - x)*k->one_by_machine_scale;
     error_2 = (goal_y - y)*k->one_by_machine_scale;
     cos_q2 = cos(q2);
@@ -216,7 +216,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow);
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_arm || beside_elbow);
-    free_angle = next_attempt > 0 ? 1e-6 : 1e-11;
+    free_angle = next_attempt > 0 ? 1e-5 : 1e-11;
     is_nearer = (attempt > 1) && (attempt < 122) && (error < nearest_error);
     nearest_turn_now = is_nearer ? -3.0*(1 - attempt) : nearest_turn;
     /* how far free angles are turned */

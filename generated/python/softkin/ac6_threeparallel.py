@@ -104,7 +104,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 8e4fae9a93623731"
+    KEY = "ac6_threeparallel 9447d02d44c30c87"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -414,10 +414,10 @@ class Ac6ThreeParallel(Mechanism):
             y = y_at_q6 - d6_times_r22_at_q5
             wrist_y = d6_times_r22_at_q5 + y
             branch_shoulder = -one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
-            beside_shoulder = given_sigma_shoulder * branch_shoulder < -1e-6
+            beside_shoulder = given_sigma_shoulder * branch_shoulder < -2e-6
             sin_q3 = sin(q3)
-            beside_elbow = given_sigma_elbow * sin_q3 < -1e-6
-            beside_wrist = given_sigma_wrist * sin_q5 < -1e-6
+            beside_elbow = given_sigma_elbow * sin_q3 < -2e-6
+            beside_wrist = given_sigma_wrist * sin_q5 < -2e-6
             r11_at_q5 = r11_at_q234 * cos_q5 + sin_q1 * sin_q5
             q6 = (tried_a6 - offset_a6) * DEGREE
             sin_q6 = sin(q6)
@@ -494,7 +494,7 @@ class Ac6ThreeParallel(Mechanism):
             pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder) and (not beside_wrist)
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_elbow or beside_shoulder or beside_wrist)
-            free_angle = 1e-6 if next_attempt > 0 else 1e-11
+            free_angle = 1e-5 if next_attempt > 0 else 1e-11
             is_nearer = (attempt > 1) and (attempt < 122) and (error < nearest_error)
             nearest_turn_now = -3.0 * (1 - attempt) if is_nearer else nearest_turn
             # how far free angles are turned

@@ -107,7 +107,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof 48c740a440ab050b"
+    KEY = "articulatedrobot_6dof ebabffb49a939d56"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -455,12 +455,12 @@ class ArticulatedRobot6DOF(Mechanism):
             y = d6_times_r21_at_q5 + y_at_q5
             wrist_y = y - d6_times_r21_at_q5
             branch_arm = one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
-            beside_arm = given_sigma_arm * branch_arm < -1e-6
+            beside_arm = given_sigma_arm * branch_arm < -2e-6
             sin_q3 = sin(q3)
             cos_q3 = cos(q3)
             branch_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3
-            beside_elbow = given_sigma_elbow * branch_elbow < -1e-6
-            beside_hand = given_sigma_hand * sin_q5 < -1e-6
+            beside_elbow = given_sigma_elbow * branch_elbow < -2e-6
+            beside_hand = given_sigma_hand * sin_q5 < -2e-6
             r33_at_q4 = cos_q23 * cos_q4
             r31_at_q5 = cos_q5 * sin_q23 - r33_at_q4 * sin_q5
             r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
@@ -540,7 +540,7 @@ class ArticulatedRobot6DOF(Mechanism):
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow) and (not beside_hand)
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_arm or beside_elbow or beside_hand)
-            free_angle = 1e-6 if next_attempt > 0 else 1e-11
+            free_angle = 1e-5 if next_attempt > 0 else 1e-11
             is_nearer = (attempt > 1) and (attempt < 122) and (error < nearest_error)
             nearest_turn_now = -3.0 * (1 - attempt) if is_nearer else nearest_turn
             # how far free angles are turned

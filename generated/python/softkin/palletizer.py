@@ -347,9 +347,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
             y_at_a4 = y_at_a3 + wrist_offset_x * sin_a1
             y = y_at_a4 + given_point_y * r11_at_a4 - given_point_x * r12_at_a4
             branch_shoulder = one_by_machine_scale * (x * cos_a1 + y * sin_a1)
-            beside_shoulder = given_sigma_shoulder * branch_shoulder < -1e-6
+            beside_shoulder = given_sigma_shoulder * branch_shoulder < -2e-6
             cos_a3_from_a2 = cos(a2 - a3)
-            beside_elbow = given_sigma_elbow * cos_a3_from_a2 < -1e-6
+            beside_elbow = given_sigma_elbow * cos_a3_from_a2 < -2e-6
             error_1 = (goal_x - x) * one_by_machine_scale
             error_2 = (goal_y - y) * one_by_machine_scale
             cos_a2 = cos(a2)
@@ -367,7 +367,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder)
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_elbow or beside_shoulder)
-            free_angle = 1e-6 if next_attempt > 0 else 1e-11
+            free_angle = 1e-5 if next_attempt > 0 else 1e-11
             is_nearer = (attempt > 1) and (attempt < 122) and (error < nearest_error)
             nearest_turn_now = -3.0 * (1 - attempt) if is_nearer else nearest_turn
             # how far free angles are turned

@@ -96,7 +96,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr ac2d9be06605c1f9"
+    KEY = "pos_rrr c6562f6a9450f4e4"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -326,11 +326,11 @@ class PosRRR(OffsetKinematics):
             r23_at_q23 = -sin_q1 * sin_q23
             y = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23 - d3 * cos_q1
             branch_arm = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
-            beside_arm = given_sigma_arm * branch_arm < -1e-6
+            beside_arm = given_sigma_arm * branch_arm < -2e-6
             sin_q3 = sin(q3)
             cos_q3 = cos(q3)
             branch_elbow = (d4 * cos_q3 - a3 * sin_q3) * one_by_effective_q3_2
-            beside_elbow = given_sigma_elbow * branch_elbow < -1e-6
+            beside_elbow = given_sigma_elbow * branch_elbow < -2e-6
             error_1 = (goal_x - x) * one_by_machine_scale
             error_2 = (goal_y - y) * one_by_machine_scale
             cos_q2 = cos(q2)
@@ -345,7 +345,7 @@ class PosRRR(OffsetKinematics):
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_arm or beside_elbow)
-            free_angle = 1e-6 if next_attempt > 0 else 1e-11
+            free_angle = 1e-5 if next_attempt > 0 else 1e-11
             is_nearer = (attempt > 1) and (attempt < 122) and (error < nearest_error)
             nearest_turn_now = -3.0 * (1 - attempt) if is_nearer else nearest_turn
             # how far free angles are turned
@@ -592,11 +592,11 @@ class PosRRR(OffsetKinematics):
             flange_y = y_at_q3 + a3 * r23_at_q23 + d4 * r21_at_q23 - d3 * cos_q1
             y = flange_y + given_point_x * r23_at_q23 + given_point_z * r21_at_q23 - given_point_y * cos_q1
             branch_arm = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
-            beside_arm = given_sigma_arm * branch_arm < -1e-6
+            beside_arm = given_sigma_arm * branch_arm < -2e-6
             sin_q3 = sin(q3)
             cos_q3 = cos(q3)
             branch_elbow = one_by_machine_scale * (tool_x * cos_q3 - tool_z * sin_q3)
-            beside_elbow = given_sigma_elbow * branch_elbow < -1e-6
+            beside_elbow = given_sigma_elbow * branch_elbow < -2e-6
             error_1 = (goal_x - x) * one_by_machine_scale
             error_2 = (goal_y - y) * one_by_machine_scale
             cos_q2 = cos(q2)
@@ -612,7 +612,7 @@ class PosRRR(OffsetKinematics):
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_arm or beside_elbow)
-            free_angle = 1e-6 if next_attempt > 0 else 1e-11
+            free_angle = 1e-5 if next_attempt > 0 else 1e-11
             is_nearer = (attempt > 1) and (attempt < 122) and (error < nearest_error)
             nearest_turn_now = -3.0 * (1 - attempt) if is_nearer else nearest_turn
             # how far free angles are turned

@@ -173,10 +173,10 @@ class ArrayPrograms(Programs):
             y = y_at_q6 - d6_times_r22_at_q5
             wrist_y = d6_times_r22_at_q5 + y
             branch_shoulder = -k.one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
-            beside_shoulder = given_sigma_shoulder * branch_shoulder < -1e-6
+            beside_shoulder = given_sigma_shoulder * branch_shoulder < -2e-6
             sin_q3 = sin(q3)
-            beside_elbow = given_sigma_elbow * sin_q3 < -1e-6
-            beside_wrist = given_sigma_wrist * sin_q5 < -1e-6
+            beside_elbow = given_sigma_elbow * sin_q3 < -2e-6
+            beside_wrist = given_sigma_wrist * sin_q5 < -2e-6
             r11_at_q5 = r11_at_q234 * cos_q5 + sin_q1 * sin_q5
             q6 = (tried_a6 - k.offset_a6) * DEGREE
             sin_q6 = sin(q6)
@@ -255,7 +255,7 @@ class ArrayPrograms(Programs):
             )
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_wrist)
-            free_angle = select(next_attempt > 0, 1e-6, 1e-11)
+            free_angle = select(next_attempt > 0, 1e-5, 1e-11)
             is_nearer = (attempt > 1) & (attempt < 122) & (error < nearest_error)
             nearest_turn_now = select(is_nearer, -3.0 * (1 - attempt), nearest_turn)
             # how far free angles are turned

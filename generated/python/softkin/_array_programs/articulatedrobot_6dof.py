@@ -202,12 +202,12 @@ class ArrayPrograms(Programs):
             y = d6_times_r21_at_q5 + y_at_q5
             wrist_y = y - d6_times_r21_at_q5
             branch_arm = k.one_by_machine_scale * (wrist_x * cos_q1 + wrist_y * sin_q1)
-            beside_arm = given_sigma_arm * branch_arm < -1e-6
+            beside_arm = given_sigma_arm * branch_arm < -2e-6
             sin_q3 = sin(q3)
             cos_q3 = cos(q3)
             branch_elbow = (k.d4 * cos_q3 - k.a3 * sin_q3) * k.one_by_effective_q3
-            beside_elbow = given_sigma_elbow * branch_elbow < -1e-6
-            beside_hand = given_sigma_hand * sin_q5 < -1e-6
+            beside_elbow = given_sigma_elbow * branch_elbow < -2e-6
+            beside_hand = given_sigma_hand * sin_q5 < -2e-6
             r33_at_q4 = cos_q23 * cos_q4
             r31_at_q5 = cos_q5 * sin_q23 - r33_at_q4 * sin_q5
             r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
@@ -287,7 +287,7 @@ class ArrayPrograms(Programs):
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow)) & (opposite(beside_hand))
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_arm | beside_elbow | beside_hand)
-            free_angle = select(next_attempt > 0, 1e-6, 1e-11)
+            free_angle = select(next_attempt > 0, 1e-5, 1e-11)
             is_nearer = (attempt > 1) & (attempt < 122) & (error < nearest_error)
             nearest_turn_now = select(is_nearer, -3.0 * (1 - attempt), nearest_turn)
             # how far free angles are turned

@@ -115,9 +115,9 @@ class ArrayPrograms(Programs):
             y_at_a4 = y_at_a3 + k.wrist_offset_x * sin_a1
             y = y_at_a4 + given_point_y * r11_at_a4 - given_point_x * r12_at_a4
             branch_shoulder = k.one_by_machine_scale * (x * cos_a1 + y * sin_a1)
-            beside_shoulder = given_sigma_shoulder * branch_shoulder < -1e-6
+            beside_shoulder = given_sigma_shoulder * branch_shoulder < -2e-6
             cos_a3_from_a2 = cos(a2 - a3)
-            beside_elbow = given_sigma_elbow * cos_a3_from_a2 < -1e-6
+            beside_elbow = given_sigma_elbow * cos_a3_from_a2 < -2e-6
             error_1 = (goal_x - x) * k.one_by_machine_scale
             error_2 = (goal_y - y) * k.one_by_machine_scale
             cos_a2 = cos(a2)
@@ -135,7 +135,7 @@ class ArrayPrograms(Programs):
             pose_is_met = pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder))
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_elbow | beside_shoulder)
-            free_angle = select(next_attempt > 0, 1e-6, 1e-11)
+            free_angle = select(next_attempt > 0, 1e-5, 1e-11)
             is_nearer = (attempt > 1) & (attempt < 122) & (error < nearest_error)
             nearest_turn_now = select(is_nearer, -3.0 * (1 - attempt), nearest_turn)
             # how far free angles are turned
