@@ -13,7 +13,7 @@ from derive.equations.choices import converted, input_of
 from derive.equations.windows import windows
 from derive.geometry.frames import Motion
 from derive.ir.constants import LARGEST, LEAST, SINGULAR, TIE_SHARE
-from derive.ir.passes import without_assumptions
+from derive.ir.passes import plain, without_assumptions
 from derive.ir.primitives import Select, ToReal
 from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Reason, about_parameters
@@ -136,7 +136,8 @@ def setup_program(
     outputs += [Output(let.name.name, let.name) for let in hoisted if let.name in read]
     inputs = tuple(input_of(p) for p in parameters)
     typed = tuple(converted(s, parameters) for s in without_assumptions(body))
-    return verify(Program("setup", inputs, typed, tuple(outputs)))
+    answers = tuple(Output(o.name, plain(o.value)) for o in outputs)
+    return verify(Program("setup", inputs, typed, answers))
 
 
 def constants_of(mechanism: Mechanism, parameters: tuple[Parameter, ...], at_home: Sequence[Statement]) -> list[str]:
