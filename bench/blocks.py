@@ -18,7 +18,7 @@ import numpy as np
 
 from bench.counting import Counts, counted, counting_library
 from derive.description.mechanism import Mechanism
-from derive.emit.st.names import input_name
+from derive.emit.softmotion.inputs import wanted_name
 from derive.ir.symbols import SCALE
 from derive.kinematics.parameters import machine_parameters
 from derive.kinematics.sampling import sample_axes
@@ -131,7 +131,7 @@ def _algebra(counts: Counts) -> int:
 def _set(own: Any, mechanism: Mechanism, given: Mapping[str, float]) -> None:
     """The inputs of the block by hand, which bear the names of the generated one, and its Initialize."""
     for parameter in machine_parameters(mechanism):
-        if hasattr(own, name := input_name(parameter)):
+        if hasattr(own, name := wanted_name(parameter)):
             kind = type(getattr(own, name))
             setattr(own, name, kind(given[parameter.name]))
     own.call("Initialize")

@@ -62,13 +62,15 @@ DAMPED = sp.Float("1e-12")
 """The square of the damping in damped least squares: an error that the joints reduce more slowly than the damping, in
 lengths of the machine, is left."""
 DOUBTFUL = sp.Float("1e-2")
-"""A step whose margin is at most this may have lost digits that a later step needs."""
-NEARLY_FREE = sp.Float("1e-5")
-"""Where lost digits may have refused a pose, an angle with a conditioning of this share or less is set free."""
-SCANNED = 120
+"""A step whose margin is at most this may have lost digits that a later step needs; there its angle is set free."""
+SCANNED = 60
 """The values of free angles that are tried, all around the circle, to find the start that is nearest to a pose."""
 PASSES = 40
 """The largest number of steps from each start: next to a double root every step leaves a third of the error."""
+STALLED = sp.Float("0.999")
+"""A step towards a pose that leaves more than this share of the error makes hardly any progress."""
+COST_OF_A_STALL = 8
+"""As many steps are given up for it: a pose that the machine does not have ends after a few."""
 LONGEST_STEP = sp.Rational(1, 2)
 """The longest step towards a pose, in radians and lengths of the machine."""
 SHARE_OF_DAMPING = sp.Float("1e-3")

@@ -62,8 +62,9 @@ def conjunction(head: str, parts: Sequence[str], tail: str) -> list[str]:
     whole = f"{head}{' AND '.join(bracketed)}{tail}"
     if len(whole) <= WIDTH - INSIDE or max(map(len, bracketed)) <= _LONG_CONDITION:
         return wrapped(whole)
-    lines = [head + bracketed[0], *(f"{2 * _INDENT}AND {part}" for part in bracketed[1:])]
-    return [*lines[:-1], lines[-1] + tail]
+    first, *others = bracketed
+    *lines, last = [head + first, *(f"{2 * _INDENT}AND {part}" for part in others)]
+    return [piece for line in (*lines, last + tail) for piece in wrapped(line)]
 
 
 def commented(lines: Sequence[str], comment: str, width: int = WIDTH - INSIDE) -> list[str]:

@@ -11,6 +11,7 @@ the pose on another branch, the joint of its two roots is mirrored about the sta
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -21,15 +22,17 @@ from derive.equations.chain_splits import is_spatial
 from derive.ir.constants import (
     BOUNDARY,
     CONVERGED,
+    COST_OF_A_STALL,
     DEGREE,
+    DOUBTFUL,
     FREE_ANGLE,
     LEAST_DAMPING,
     LONGEST_STEP,
     NEARLY,
-    NEARLY_FREE,
     PASSES,
     SCANNED,
     SHARE_OF_DAMPING,
+    STALLED,
 )
 from derive.ir.passes import normalise
 from derive.ir.primitives import NearestPeriod, Root, Select, ToReal, larger
@@ -61,6 +64,8 @@ _FIRST = sp.Integer(9)
 """Larger than every error: the error before the first step."""
 _LEFT, _ATTEMPT, _BEFORE = count("passes_left"), count("attempt"), real("error_before")
 _ANOTHER, _MIRRORS, _IS_MET = flag("another"), flag("mirrors"), flag("pose_is_met")
+_LEFT_NOW = count("passes_left_now")
+_ENDS = flag("no_start_is_left")
 _FREE, _FREE_TURN = real("free_angle"), real("free_turn")
 _NEAREST, _NEAREST_TURN = real("nearest_error"), real("nearest_turn")
 _NEAREST_NOW, _NEAREST_TURN_NOW = real("nearest_error_now"), real("nearest_turn_now")
@@ -140,20 +145,21 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
     joints = machine.mechanism.joints
     closed, starts = _closed_form(machine.mechanism, branch)
     following = count("next_attempt")
-    step = (*_at_axes(machine), *_error(machine), *_sides(machine), *_attempt(following), *closed, *_step(machine))
+    attempt = (*_attempt(following), *closed, _ending(closed))
+    step = (*_at_axes(machine), *_error(machine), *_sides(machine), *attempt, *_step(machine))
     return Iterate(
         state=(*map(_tried, joints), _LEFT, _ATTEMPT, _BEFORE, _NEAREST, _NEAREST_TURN),
         start=(*map(started, joints), sp.Integer(PASSES), _ZERO, _FIRST, _FIRST, _ZERO),
         step=tuple(s for s in step if isinstance(s, Let | Solve)),
         following=(
             *(_next(machine, j, starts[j]) for j in joints),
-            Select(_ANOTHER, Select(_is_scan(following), _ZERO, sp.Integer(PASSES)), _LEFT - 1),
-            following,
+            Select(_ANOTHER, Select(_is_scan(following), _ZERO, sp.Integer(PASSES)), _LEFT_NOW),
+            Select(_ENDS, sp.Integer(_SCAN_ENDS + 1), following),
             Select(sp.Or(_ANOTHER, _MIRRORS), _FIRST, real("error")),
             _NEAREST_NOW,
             _NEAREST_TURN_NOW,
         ),
-        done=sp.Or(_IS_MET, sp.And(_ANOTHER, sp.Gt(following, _SCAN_ENDS))),
+        done=sp.Or(_IS_MET, sp.And(_ANOTHER, sp.Gt(following, _SCAN_ENDS)), _ENDS),
         limit=3 * (PASSES + 1) + SCANNED,
         otherwise=Status.UNREACHABLE,
         note="steps of damped least squares on the closure, from one start after the other",
@@ -164,15 +170,24 @@ def _attempt(following: sp.Symbol) -> tuple[Let, ...]:
     """Whether another start is taken, which one, and what is free there."""
     nearer = flag("is_nearer")
     turn = Select(sp.Ge(following, _SCAN_ENDS), _NEAREST_TURN_NOW, _ZERO)
+    cost = Select(sp.Gt(real("error"), STALLED * _BEFORE), sp.Integer(COST_OF_A_STALL), _ONE)
     return (
         Let(_ANOTHER, sp.Le(_LEFT, 0)),
+        Let(_LEFT_NOW, _LEFT - cost),
         Let(following, _ATTEMPT + Select(_ANOTHER, _ONE, _ZERO)),
-        Let(_FREE, Select(sp.Gt(following, 0), NEARLY_FREE, FREE_ANGLE)),
+        Let(_FREE, Select(sp.Gt(following, 0), DOUBTFUL, FREE_ANGLE)),
         Let(nearer, sp.And(_is_scan(_ATTEMPT), sp.Lt(real("error"), _NEAREST))),
         Let(_NEAREST_NOW, Select(nearer, real("error"), _NEAREST)),
         Let(_NEAREST_TURN_NOW, Select(nearer, _turn_of(_ATTEMPT), _NEAREST_TURN)),
         Let(_FREE_TURN, Select(_is_scan(following), _turn_of(following), turn), "how far free angles are turned"),
     )
+
+
+def _ending(closed: Sequence[Let]) -> Let:
+    """The flag that ends all attempts: another start is wanted, but no angle is nearly free, so that it is the same."""
+    tests = {test for let in closed for test in let.value.atoms(sp.StrictGreaterThan, sp.LessThan)}
+    known = [sp.Gt(test.lhs, test.rhs) for test in tests if test.rhs.has(_FREE)]
+    return Let(_ENDS, sp.And(_ANOTHER, *known))
 
 
 def _is_scan(attempt: sp.Symbol) -> sp.Basic:

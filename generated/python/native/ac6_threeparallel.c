@@ -155,11 +155,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   const double closed_ahead_squared_q1 = (closed_distance_q1 + k->d4)*(closed_distance_q1 - k->d4);
   /* how far ahead of the axis the point is; negative: behind it */
   const double closed_ahead_q1 = -softkin_root(closed_ahead_squared_q1)*closed_sign_shoulder;
+  const double closed_wrist_z = goal_z - k->d6*goal_r33;
   /* A1: without a commanded turn, the value nearest to this */
   const double closed_open_a1 = k->single_a1 ? k->mid_a1 : given_ref_a1;
   const double closed_near_a1 = given_turn_a1 != 0
       ? 360.0*(given_turn_a1 > 0 ? given_turn_a1 - 1 : given_turn_a1) : closed_open_a1;
-  const double closed_wrist_z = goal_z - k->d6*goal_r33;
   /* A2: without a commanded turn, the value nearest to this */
   const double closed_open_a2 = k->single_a2 ? k->mid_a2 : given_ref_a2;
   const double closed_near_a2 = given_turn_a2 != 0
@@ -200,29 +200,29 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       r13_at_q6, r23_at_q6, r33_at_q6, r32_at_q5, error_1, error_2, sin_q2, z_at_q3, sin_q23, z_at_q4,
       z_at_q6, z, error_3, error_4, error_5, error_6, value_in_error, error, free_angle, nearest_turn_now,
       free_turn, closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1, closed_cos_q1,
-      closed_sin_q1, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1, cos_q1_times_one_by_machine_scale,
-      rate_1_2, z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4, rate_1_4, y_minus_y_at_q5, rate_1_5,
-      z_minus_z_at_q6, y_minus_y_at_q6, rate_1_6, product_in_damping, damping, product_1_1,
-      sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, rate_2_4, x_minus_x_at_q5, rate_2_5,
-      x_minus_x_at_q6, rate_2_6, product_1_2, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6, product_1_3,
-      rate_1_2_plus_rate_1_3_plus_rate_1_4, product_1_4, product_1_5, product_1_6, product_2_2, product_2_3,
-      rate_2_2_plus_rate_2_3_plus_rate_2_4, product_2_4, product_2_5, product_2_6, product_3_3,
+      closed_sin_q1, closed_r21_from_q1, closed_r22_from_q1, closed_radius_q6, closed_q6_radius_of_q5,
+      closed_cos_q5, closed_reference_a6, closed_along_q6, closed_length_q6, closed_cos_q6, closed_across_q6,
+      closed_sin_q6, closed_r31_from_q1_before_q6, closed_r31_from_q1_before_q56, closed_wrist_x_from_q1,
+      closed_r33_from_q1_before_q6, closed_wrist_z_from_q1, closed_reach, closed_axis_a1, rate_1_1, rate_2_1,
+      z_minus_d1, cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4,
+      rate_1_4, y_minus_y_at_q5, rate_1_5, z_minus_z_at_q6, y_minus_y_at_q6, rate_1_6, product_in_damping,
+      damping, product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, rate_2_4, x_minus_x_at_q5,
+      rate_2_5, x_minus_x_at_q6, rate_2_6, product_1_2, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6,
+      product_1_3, rate_1_2_plus_rate_1_3_plus_rate_1_4, product_1_4, product_1_5, product_1_6, product_2_2,
+      product_2_3, rate_2_2_plus_rate_2_3_plus_rate_2_4, product_2_4, product_2_5, product_2_6, product_3_3,
       rate_3_2_plus_rate_3_3_plus_rate_3_4, product_3_4, product_3_5, product_3_6, product_4_4, product_4_5,
       product_4_6, product_5_5, product_5_6, product_6_6, multiplier_1, multiplier_2, multiplier_3,
       multiplier_4, multiplier_5, multiplier_6, step_a1, sum_in_step_a2, step_a2, step_a3, step_a4, step_a5,
-      step_a6, step_length, shrinking, closed_r21_from_q1, closed_r22_from_q1, closed_radius_q6,
-      closed_q6_radius_of_q5, closed_cos_q5, closed_reference_a6, closed_along_q6, closed_length_q6,
-      closed_cos_q6, closed_across_q6, closed_sin_q6, closed_r31_from_q1_before_q6,
-      closed_r31_from_q1_before_q56, closed_wrist_x_from_q1, closed_r33_from_q1_before_q6,
-      closed_wrist_z_from_q1, closed_reach, closed_reference_a2, closed_one_less_cos_q3,
-      closed_one_plus_cos_q3, closed_cos_q3, closed_arm_along_q2, closed_sine_square_q3, closed_sin_q3,
-      closed_arm_across_q2, closed_direction_x_q2, closed_direction_y_q2, closed_angle_q2, closed_axis_a2,
-      closed_angle_q3, closed_axis_a3, closed_angle_with_q4, closed_axis_a4, closed_axis_a5, closed_axis_a6,
+      step_a6, step_length, shrinking, closed_reference_a2, closed_one_less_cos_q3, closed_one_plus_cos_q3,
+      closed_cos_q3, closed_arm_along_q2, closed_sine_square_q3, closed_sin_q3, closed_arm_across_q2,
+      closed_direction_x_q2, closed_direction_y_q2, closed_angle_q2, closed_axis_a2, closed_angle_q3,
+      closed_axis_a3, closed_angle_with_q4, closed_axis_a4, closed_axis_a5, closed_axis_a6,
       nearest_error_now, shared_quotient;
-  int next_attempt;
-  bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, mirrors, is_nearer;
+  int next_attempt, passes_left_now;
+  bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, is_nearer,
+      no_start_is_left, mirrors;
   for (int pass = 0;; pass += 1) {
-    if (pass == 243) {
+    if (pass == 183) {
       return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
     }
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
@@ -308,13 +308,12 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
     pose_is_met = pose_is_close && (!beside_elbow) && (!beside_shoulder) && (!beside_wrist);
     next_attempt = attempt + (another ? 1 : 0);
-    mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_wrist);
-    free_angle = next_attempt > 0 ? 1e-5 : 1e-11;
-    is_nearer = (attempt > 1) && (attempt < 122) && (error < nearest_error);
-    nearest_turn_now = is_nearer ? -3.0*(1 - attempt) : nearest_turn;
+    free_angle = next_attempt > 0 ? 0.01 : 1e-11;
+    is_nearer = (attempt > 1) && (attempt < 62) && (error < nearest_error);
+    nearest_turn_now = is_nearer ? -6.0*(1 - attempt) : nearest_turn;
     /* how far free angles are turned */
-    free_turn = (next_attempt > 1) && (next_attempt < 122) ? -3.0*(1 - next_attempt)
-        : (next_attempt >= 122 ? nearest_turn_now : 0.0);
+    free_turn = (next_attempt > 1) && (next_attempt < 62) ? -6.0*(1 - next_attempt)
+        : (next_attempt >= 62 ? nearest_turn_now : 0.0);
     closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
     free_angle_times_machine_scale = free_angle*k->machine_scale;
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
@@ -326,6 +325,37 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
         ? (closed_ahead_q1*closed_wrist_y + closed_wrist_x*k->d4)/closed_divisor_q1
         : sin(closed_reference_a1);
+    closed_r21_from_q1 = closed_cos_q1*goal_r21 - closed_sin_q1*goal_r11;
+    closed_r22_from_q1 = closed_cos_q1*goal_r22 - closed_sin_q1*goal_r12;
+    /* polar coordinates: the radius at angle q6 */
+    closed_radius_q6 = sqrt(closed_r21_from_q1*closed_r21_from_q1 + closed_r22_from_q1*closed_r22_from_q1);
+    closed_q6_radius_of_q5 = closed_radius_q6*closed_sign_wrist;
+    /* cosine and sine of q5 from the q6 radius and r22 equations */
+    closed_cos_q5 = closed_sin_q1*goal_r13 - closed_cos_q1*goal_r23;
+    closed_reference_a6 = SOFTKIN_DEGREE*(free_turn + given_ref_a6 - k->offset_a6);
+    /* polar coordinates: angle q6 from the r21 and r23 equations */
+    closed_along_q6 = -closed_r21_from_q1*closed_sign_wrist;
+    closed_length_q6 = closed_radius_q6 > free_angle ? closed_radius_q6 : 1.0;
+    /* at a singularity: the angle of the reference */
+    closed_cos_q6 = closed_radius_q6 > free_angle ? closed_along_q6/closed_length_q6
+        : cos(closed_reference_a6);
+    closed_across_q6 = closed_r22_from_q1*closed_sign_wrist;
+    closed_sin_q6 = closed_radius_q6 > free_angle ? closed_across_q6/closed_length_q6
+        : sin(closed_reference_a6);
+    closed_r31_from_q1_before_q6 = closed_cos_q6*goal_r31 - closed_sin_q6*goal_r32;
+    closed_r31_from_q1_before_q56 = closed_cos_q5*closed_r31_from_q1_before_q6
+        - closed_q6_radius_of_q5*goal_r33;
+    /* coordinate of the point that the remaining links must reach */
+    closed_wrist_x_from_q1 = closed_ahead_q1 - closed_r31_from_q1_before_q56*k->d5;
+    closed_r33_from_q1_before_q6 = closed_cos_q6*goal_r32 + closed_sin_q6*goal_r31;
+    /* coordinate of the point that the remaining links must reach */
+    closed_wrist_z_from_q1 = closed_wrist_z + closed_r33_from_q1_before_q6*k->d5 - k->d1;
+    /* distance that the remaining links must span */
+    closed_reach = sqrt(closed_wrist_x_from_q1*closed_wrist_x_from_q1
+        + closed_wrist_z_from_q1*closed_wrist_z_from_q1);
+    no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
+        && (closed_radius_q6 > free_angle) && (closed_reach > free_angle_times_machine_scale);
+    mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_wrist);
     closed_axis_a1 = softkin_on_turn(k->offset_a1
         + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
     rate_1_1 = -k->one_by_machine_scale*y;
@@ -412,34 +442,6 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3 + step_a4*step_a4
         + step_a5*step_a5 + step_a6*step_a6);
     shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
-    closed_r21_from_q1 = closed_cos_q1*goal_r21 - closed_sin_q1*goal_r11;
-    closed_r22_from_q1 = closed_cos_q1*goal_r22 - closed_sin_q1*goal_r12;
-    /* polar coordinates: the radius at angle q6 */
-    closed_radius_q6 = sqrt(closed_r21_from_q1*closed_r21_from_q1 + closed_r22_from_q1*closed_r22_from_q1);
-    closed_q6_radius_of_q5 = closed_radius_q6*closed_sign_wrist;
-    /* cosine and sine of q5 from the q6 radius and r22 equations */
-    closed_cos_q5 = closed_sin_q1*goal_r13 - closed_cos_q1*goal_r23;
-    closed_reference_a6 = SOFTKIN_DEGREE*(free_turn + given_ref_a6 - k->offset_a6);
-    /* polar coordinates: angle q6 from the r21 and r23 equations */
-    closed_along_q6 = -closed_r21_from_q1*closed_sign_wrist;
-    closed_length_q6 = closed_radius_q6 > free_angle ? closed_radius_q6 : 1.0;
-    /* at a singularity: the angle of the reference */
-    closed_cos_q6 = closed_radius_q6 > free_angle ? closed_along_q6/closed_length_q6
-        : cos(closed_reference_a6);
-    closed_across_q6 = closed_r22_from_q1*closed_sign_wrist;
-    closed_sin_q6 = closed_radius_q6 > free_angle ? closed_across_q6/closed_length_q6
-        : sin(closed_reference_a6);
-    closed_r31_from_q1_before_q6 = closed_cos_q6*goal_r31 - closed_sin_q6*goal_r32;
-    closed_r31_from_q1_before_q56 = closed_cos_q5*closed_r31_from_q1_before_q6
-        - closed_q6_radius_of_q5*goal_r33;
-    /* coordinate of the point that the remaining links must reach */
-    closed_wrist_x_from_q1 = closed_ahead_q1 - closed_r31_from_q1_before_q56*k->d5;
-    closed_r33_from_q1_before_q6 = closed_cos_q6*goal_r32 + closed_sin_q6*goal_r31;
-    /* coordinate of the point that the remaining links must reach */
-    closed_wrist_z_from_q1 = closed_wrist_z + closed_r33_from_q1_before_q6*k->d5 - k->d1;
-    /* distance that the remaining links must span */
-    closed_reach = sqrt(closed_wrist_x_from_q1*closed_wrist_x_from_q1
-        + closed_wrist_z_from_q1*closed_wrist_z_from_q1);
     closed_reference_a2 = SOFTKIN_DEGREE*(free_turn + given_ref_a2 - k->offset_a2);
     /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
     closed_one_less_cos_q3 = (k->a2_plus_a3 + closed_reach)*(k->a2_plus_a3 - closed_reach);
@@ -470,9 +472,10 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         + softkin_angle_of(closed_q6_radius_of_q5, closed_cos_q5)*SOFTKIN_RADIAN, closed_near_a5);
     closed_axis_a6 = softkin_on_turn(k->offset_a6
         + softkin_angle_of(closed_sin_q6, closed_cos_q6)*SOFTKIN_RADIAN, closed_near_a6);
+    passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     nearest_error_now = is_nearer ? error : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (pose_is_met || (another && (next_attempt > 122))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 62))) {
       break;
     }
     tried_a1 = (another ? closed_axis_a1
@@ -487,8 +490,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a6 = (another ? closed_axis_a6
         : (mirrors ? (beside_wrist ? 2.0*closed_axis_a6 - tried_a6 : tried_a6) : tried_a6
         + shared_quotient*step_a6));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 122) ? 0 : 40) : passes_left - 1);
-    attempt = next_attempt;
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 62) ? 0 : 40) : passes_left_now);
+    attempt = (no_start_is_left ? 63 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     nearest_error = nearest_error_now;
     nearest_turn = nearest_turn_now;

@@ -158,10 +158,6 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   const double closed_ahead_squared_q1 = (closed_distance_q1 + k->d3)*(closed_distance_q1 - k->d3);
   /* how far ahead of the axis the point is; negative: behind it */
   const double closed_ahead_q1 = softkin_root(closed_ahead_squared_q1)*closed_sign_arm;
-  /* A1: without a commanded turn, the value nearest to this */
-  const double closed_open_a1 = k->single_a1 ? k->mid_a1 : given_ref_a1;
-  const double closed_near_a1 = given_turn_a1 != 0
-      ? 360.0*(given_turn_a1 > 0 ? given_turn_a1 - 1 : given_turn_a1) : closed_open_a1;
   /* coordinate of the point that the remaining links must reach */
   const double closed_wrist_x_from_q1 = closed_ahead_q1 - k->a1;
   const double closed_wrist_z = goal_z - k->d6*goal_r33;
@@ -170,6 +166,10 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   /* distance that the remaining links must span */
   const double closed_reach = sqrt(closed_wrist_x_from_q1*closed_wrist_x_from_q1
       + closed_wrist_z_from_q1*closed_wrist_z_from_q1);
+  /* A1: without a commanded turn, the value nearest to this */
+  const double closed_open_a1 = k->single_a1 ? k->mid_a1 : given_ref_a1;
+  const double closed_near_a1 = given_turn_a1 != 0
+      ? 360.0*(given_turn_a1 > 0 ? given_turn_a1 - 1 : given_turn_a1) : closed_open_a1;
   /* A2: without a commanded turn, the value nearest to this */
   const double closed_open_a2 = k->single_a2 ? k->mid_a2 : given_ref_a2;
   const double closed_near_a2 = given_turn_a2 != 0
@@ -240,7 +240,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       r23_at_q5, r23_at_q6, r32_at_q4, r33_at_q5, r33_at_q6, r12_at_q6, r22_at_q6, r32_at_q6, error_1,
       error_2, cos_q2, z_at_q3, z_at_q4, z_at_q5, z, error_3, error_4, error_5, error_6, value_in_error,
       error, free_angle, nearest_turn_now, free_turn, closed_reference_a1, free_angle_times_machine_scale,
-      closed_divisor_q1, closed_cos_q1, closed_sin_q1, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1,
+      closed_divisor_q1, closed_cos_q1, closed_sin_q1, closed_r13_from_q1, closed_reference_a2,
+      closed_length_q2, closed_cos_q2, closed_sin_q2, closed_sin_q23, closed_cos_q23, closed_r33_from_q123,
+      closed_r23_from_q1, closed_radius_q4, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1,
       cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4,
       y_minus_y_at_q4, rate_1_4, z_minus_z_at_q5, y_minus_y_at_q5, rate_1_5, rate_1_6, product_in_damping,
       damping, product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, x_minus_x_at_q4, rate_2_4,
@@ -250,16 +252,15 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       product_3_4, product_3_5, product_3_6, product_4_4, product_4_5, product_4_6, product_5_5, product_5_6,
       product_6_6, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6,
       step_a1, sum_in_step_a2, step_a2, step_a3, step_a4, step_a5, step_a6, step_length, shrinking,
-      closed_reference_a2, closed_length_q2, closed_cos_q2, closed_sin_q2, closed_axis_a2,
-      closed_reference_a4, closed_r13_from_q1, closed_sin_q23, closed_cos_q23, closed_r33_from_q123,
-      closed_r23_from_q1, closed_radius_q4, closed_direction_x_q4, closed_direction_y_q4, closed_axis_a4,
+      closed_axis_a2, closed_reference_a4, closed_direction_x_q4, closed_direction_y_q4, closed_axis_a4,
       closed_r13_from_q123, closed_q4_radius_of_q5, closed_axis_a5, closed_r22_from_q1, closed_r12_from_q1,
       closed_r32_from_q123, closed_direction_x_q6, closed_r21_from_q1, closed_r11_from_q1,
       closed_r31_from_q123, closed_direction_y_q6, closed_axis_a6, nearest_error_now, shared_quotient;
-  int next_attempt;
-  bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, mirrors, is_nearer;
+  int next_attempt, passes_left_now;
+  bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, is_nearer,
+      no_start_is_left, mirrors;
   for (int pass = 0;; pass += 1) {
-    if (pass == 243) {
+    if (pass == 183) {
       return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
     }
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
@@ -350,13 +351,12 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
     pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow) && (!beside_hand);
     next_attempt = attempt + (another ? 1 : 0);
-    mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
-    free_angle = next_attempt > 0 ? 1e-5 : 1e-11;
-    is_nearer = (attempt > 1) && (attempt < 122) && (error < nearest_error);
-    nearest_turn_now = is_nearer ? -3.0*(1 - attempt) : nearest_turn;
+    free_angle = next_attempt > 0 ? 0.01 : 1e-11;
+    is_nearer = (attempt > 1) && (attempt < 62) && (error < nearest_error);
+    nearest_turn_now = is_nearer ? -6.0*(1 - attempt) : nearest_turn;
     /* how far free angles are turned */
-    free_turn = (next_attempt > 1) && (next_attempt < 122) ? -3.0*(1 - next_attempt)
-        : (next_attempt >= 122 ? nearest_turn_now : 0.0);
+    free_turn = (next_attempt > 1) && (next_attempt < 62) ? -6.0*(1 - next_attempt)
+        : (next_attempt >= 62 ? nearest_turn_now : 0.0);
     closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
     free_angle_times_machine_scale = free_angle*k->machine_scale;
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
@@ -368,6 +368,25 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
         ? (closed_ahead_q1*closed_wrist_y + closed_wrist_x*k->d3)/closed_divisor_q1
         : sin(closed_reference_a1);
+    closed_r13_from_q1 = closed_cos_q1*goal_r13 + closed_sin_q1*goal_r23;
+    closed_reference_a2 = SOFTKIN_DEGREE*(free_turn + given_ref_a2 - k->offset_a2);
+    closed_length_q2 = (closed_reach > free_angle_times_machine_scale) && (sum_in_closed_length_q2 > 0.0)
+        ? softkin_root(sum_in_closed_length_q2) : 1.0;
+    /* at a singularity: the angle of the reference */
+    closed_cos_q2 = closed_reach > free_angle_times_machine_scale ? closed_along_q2/closed_length_q2
+        : cos(closed_reference_a2);
+    closed_sin_q2 = closed_reach > free_angle_times_machine_scale ? closed_across_q2/closed_length_q2
+        : sin(closed_reference_a2);
+    closed_sin_q23 = closed_cos_q2*closed_sin_q3 + closed_cos_q3*closed_sin_q2;
+    closed_cos_q23 = closed_cos_q2*closed_cos_q3 - closed_sin_q2*closed_sin_q3;
+    closed_r33_from_q123 = closed_cos_q23*goal_r33 - closed_r13_from_q1*closed_sin_q23;
+    closed_r23_from_q1 = closed_cos_q1*goal_r23 - closed_sin_q1*goal_r13;
+    /* polar coordinates: the radius at angle q4 */
+    closed_radius_q4 = sqrt(closed_r23_from_q1*closed_r23_from_q1
+        + closed_r33_from_q123*closed_r33_from_q123);
+    no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
+        && (closed_radius_q4 > free_angle) && (closed_reach > free_angle_times_machine_scale);
+    mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
     closed_axis_a1 = softkin_on_turn(k->offset_a1
         + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
     rate_1_1 = -k->one_by_machine_scale*y;
@@ -463,25 +482,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3 + step_a4*step_a4
         + step_a5*step_a5 + step_a6*step_a6);
     shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
-    closed_reference_a2 = SOFTKIN_DEGREE*(free_turn + given_ref_a2 - k->offset_a2);
-    closed_length_q2 = (closed_reach > free_angle_times_machine_scale) && (sum_in_closed_length_q2 > 0.0)
-        ? softkin_root(sum_in_closed_length_q2) : 1.0;
-    /* at a singularity: the angle of the reference */
-    closed_cos_q2 = closed_reach > free_angle_times_machine_scale ? closed_along_q2/closed_length_q2
-        : cos(closed_reference_a2);
-    closed_sin_q2 = closed_reach > free_angle_times_machine_scale ? closed_across_q2/closed_length_q2
-        : sin(closed_reference_a2);
     closed_axis_a2 = softkin_on_turn(k->offset_a2
         + softkin_angle_of(closed_sin_q2, closed_cos_q2)*SOFTKIN_RADIAN, closed_near_a2);
     closed_reference_a4 = SOFTKIN_DEGREE*(free_turn + given_ref_a4 - k->offset_a4);
-    closed_r13_from_q1 = closed_cos_q1*goal_r13 + closed_sin_q1*goal_r23;
-    closed_sin_q23 = closed_cos_q2*closed_sin_q3 + closed_cos_q3*closed_sin_q2;
-    closed_cos_q23 = closed_cos_q2*closed_cos_q3 - closed_sin_q2*closed_sin_q3;
-    closed_r33_from_q123 = closed_cos_q23*goal_r33 - closed_r13_from_q1*closed_sin_q23;
-    closed_r23_from_q1 = closed_cos_q1*goal_r23 - closed_sin_q1*goal_r13;
-    /* polar coordinates: the radius at angle q4 */
-    closed_radius_q4 = sqrt(closed_r23_from_q1*closed_r23_from_q1
-        + closed_r33_from_q123*closed_r33_from_q123);
     /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
     closed_direction_x_q4 = closed_radius_q4 > free_angle ? -closed_r33_from_q123*closed_sign_hand
@@ -507,9 +510,10 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         - closed_direction_y_q4*closed_r31_from_q123;
     closed_axis_a6 = softkin_on_turn(k->offset_a6
         + softkin_angle_of(closed_direction_y_q6, closed_direction_x_q6)*SOFTKIN_RADIAN, closed_near_a6);
+    passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     nearest_error_now = is_nearer ? error : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (pose_is_met || (another && (next_attempt > 122))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 62))) {
       break;
     }
     tried_a1 = (another ? closed_axis_a1
@@ -524,8 +528,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         + shared_quotient*step_a4));
     tried_a5 = (another ? closed_axis_a5 : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
     tried_a6 = (another ? closed_axis_a6 : (mirrors ? tried_a6 : tried_a6 + shared_quotient*step_a6));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 122) ? 0 : 40) : passes_left - 1);
-    attempt = next_attempt;
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 62) ? 0 : 40) : passes_left_now);
+    attempt = (no_start_is_left ? 63 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     nearest_error = nearest_error_now;
     nearest_turn = nearest_turn_now;

@@ -107,10 +107,6 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   const double closed_ahead_squared_q1 = (closed_distance_q1 + k->d3)*(closed_distance_q1 - k->d3);
   /* how far ahead of the axis the point is; negative: behind it */
   const double closed_ahead_q1 = softkin_root(closed_ahead_squared_q1)*closed_sign_arm;
-  /* A1: without a commanded turn, the value nearest to this */
-  const double closed_open_a1 = k->single_a1 ? k->mid_a1 : given_ref_a1;
-  const double closed_near_a1 = given_turn_a1 != 0
-      ? 360.0*(given_turn_a1 > 0 ? given_turn_a1 - 1 : given_turn_a1) : closed_open_a1;
   /* coordinate of the point that the remaining links must reach */
   const double closed_wrist_x_from_q1 = closed_ahead_q1 - k->a1;
   /* coordinate of the point that the remaining links must reach */
@@ -118,6 +114,10 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   /* distance that the remaining links must span */
   const double closed_reach = sqrt(closed_wrist_x_from_q1*closed_wrist_x_from_q1
       + closed_wrist_z_from_q1*closed_wrist_z_from_q1);
+  /* A1: without a commanded turn, the value nearest to this */
+  const double closed_open_a1 = k->single_a1 ? k->mid_a1 : given_ref_a1;
+  const double closed_near_a1 = given_turn_a1 != 0
+      ? 360.0*(given_turn_a1 > 0 ? given_turn_a1 - 1 : given_turn_a1) : closed_open_a1;
   /* A2: without a commanded turn, the value nearest to this */
   const double closed_open_a2 = k->single_a2 ? k->mid_a2 : given_ref_a2;
   const double closed_near_a2 = given_turn_a2 != 0
@@ -162,17 +162,17 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   double q1, sin_q1, cos_q1, x_at_q2, q2, sin_q2, r13_at_q2, x_at_q3, q3, q2_plus_q3, cos_q23, r11_at_q23,
       sin_q23, r13_at_q23, x, y_at_q2, r23_at_q2, y_at_q3, r21_at_q23, r23_at_q23, y, branch_arm, sin_q3,
       cos_q3, branch_elbow, error_1, error_2, cos_q2, z_at_q3, z, error_3, error, free_angle,
-      nearest_turn_now, free_turn, closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1,
+      free_angle_times_machine_scale, nearest_turn_now, free_turn, closed_reference_a1, closed_divisor_q1,
       closed_cos_q1, closed_sin_q1, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1,
       cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, product_in_damping, damping,
       product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, product_1_2, rate_3_2, rate_3_3,
       product_1_3, product_2_2, product_2_3, product_3_3, multiplier_1, multiplier_2, multiplier_3, step_a1,
       step_a2, step_a3, step_length, shrinking, closed_reference_a2, closed_direction_x_q2,
       closed_direction_y_q2, closed_axis_a2, nearest_error_now, shared_quotient;
-  int next_attempt;
-  bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, mirrors, is_nearer;
+  int next_attempt, passes_left_now;
+  bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, no_start_is_left, mirrors, is_nearer;
   for (int pass = 0;; pass += 1) {
-    if (pass == 243) {
+    if (pass == 183) {
       return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
     }
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
@@ -215,15 +215,17 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
     pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow);
     next_attempt = attempt + (another ? 1 : 0);
-    mirrors = pose_is_close && (beside_arm || beside_elbow);
-    free_angle = next_attempt > 0 ? 1e-5 : 1e-11;
-    is_nearer = (attempt > 1) && (attempt < 122) && (error < nearest_error);
-    nearest_turn_now = is_nearer ? -3.0*(1 - attempt) : nearest_turn;
-    /* how far free angles are turned */
-    free_turn = (next_attempt > 1) && (next_attempt < 122) ? -3.0*(1 - next_attempt)
-        : (next_attempt >= 122 ? nearest_turn_now : 0.0);
-    closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
+    free_angle = next_attempt > 0 ? 0.01 : 1e-11;
     free_angle_times_machine_scale = free_angle*k->machine_scale;
+    no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
+        && (closed_reach > free_angle_times_machine_scale);
+    mirrors = pose_is_close && (beside_arm || beside_elbow);
+    is_nearer = (attempt > 1) && (attempt < 62) && (error < nearest_error);
+    nearest_turn_now = is_nearer ? -6.0*(1 - attempt) : nearest_turn;
+    /* how far free angles are turned */
+    free_turn = (next_attempt > 1) && (next_attempt < 62) ? -6.0*(1 - next_attempt)
+        : (next_attempt >= 62 ? nearest_turn_now : 0.0);
+    closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
         ? closed_distance_q1*closed_distance_q1 : 1.0;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
@@ -274,9 +276,10 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         : sin(closed_reference_a2);
     closed_axis_a2 = softkin_on_turn(k->offset_a2
         + softkin_angle_of(closed_direction_y_q2, closed_direction_x_q2)*SOFTKIN_RADIAN, closed_near_a2);
+    passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     nearest_error_now = is_nearer ? error : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (pose_is_met || (another && (next_attempt > 122))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 62))) {
       break;
     }
     tried_a1 = (another ? closed_axis_a1
@@ -286,8 +289,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a3 = (another ? closed_axis_a3
         : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
         + shared_quotient*step_a3));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 122) ? 0 : 40) : passes_left - 1);
-    attempt = next_attempt;
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 62) ? 0 : 40) : passes_left_now);
+    attempt = (no_start_is_left ? 63 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     nearest_error = nearest_error_now;
     nearest_turn = nearest_turn_now;

@@ -283,6 +283,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
         shoulder_offset, single_a1, single_a2, single_a3 = k.shoulder_offset, k.single_a1, k.single_a2, k.single_a3
         wrist_offset_x, wrist_offset_z = k.wrist_offset_x, k.wrist_offset_z
         closed_distance_a1 = sqrt(goal_x * goal_x + goal_y * goal_y)  # distance of the point from the axis of a1
+        closed_tool_z = given_point_z + wrist_offset_z  # commanded point, in the frame of the last moving joint
+        # coordinate of the point that the remaining links must reach
+        closed_wrist_z_from_a1 = goal_z - base_height - closed_tool_z
         # A1: without a commanded turn, the value nearest to this
         closed_open_a1 = mid_a1 if single_a1 else given_ref_a1
         closed_near_a1 = (
@@ -290,9 +293,6 @@ class Palletizer(OffsetKinematics, TwistChoice):
             if given_turn_a1 != 0
             else closed_open_a1
         )
-        closed_tool_z = given_point_z + wrist_offset_z  # commanded point, in the frame of the last moving joint
-        # coordinate of the point that the remaining links must reach
-        closed_wrist_z_from_a1 = goal_z - base_height - closed_tool_z
         # A2: without a commanded turn, the value nearest to this
         closed_open_a2 = mid_a2 if single_a2 else given_ref_a2
         closed_near_a2 = (
@@ -319,7 +319,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             9.0,
             0.0,
         )
-        for _ in range(243):
+        for _ in range(183):
             a1 = (tried_a1 - offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -366,19 +366,20 @@ class Palletizer(OffsetKinematics, TwistChoice):
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder)
             next_attempt = attempt + (1 if another else 0)
-            mirrors = pose_is_close and (beside_elbow or beside_shoulder)
-            free_angle = 1e-5 if next_attempt > 0 else 1e-11
-            is_nearer = (attempt > 1) and (attempt < 122) and (error < nearest_error)
-            nearest_turn_now = -3.0 * (1 - attempt) if is_nearer else nearest_turn
+            free_angle = 0.01 if next_attempt > 0 else 1e-11
+            is_nearer = (attempt > 1) and (attempt < 62) and (error < nearest_error)
+            nearest_turn_now = -6.0 * (1 - attempt) if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                -3.0 * (1 - next_attempt)
-                if (next_attempt > 1) and (next_attempt < 122)
-                else (nearest_turn_now if next_attempt >= 122 else 0.0)
+                -6.0 * (1 - next_attempt)
+                if (next_attempt > 1) and (next_attempt < 62)
+                else (nearest_turn_now if next_attempt >= 62 else 0.0)
             )
             closed_reference_a4 = DEGREE * (free_turn + given_ref_a4 - offset_a4)
             closed_cos_a4 = cos(closed_reference_a4)
             closed_sin_a4 = sin(closed_reference_a4)
+            # commanded point, in the frame of the last moving joint
+            closed_tool_x = wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
             # commanded point, in the frame of the last moving joint
             closed_tool_y = closed_cos_a4 * given_point_y + closed_sin_a4 * given_point_x
             # Pythagoras: square of the distance ahead of the axis
@@ -387,8 +388,20 @@ class Palletizer(OffsetKinematics, TwistChoice):
             closed_ahead_a1 = (
                 sqrt(closed_ahead_squared_a1) if closed_ahead_squared_a1 > 0.0 else 0.0
             ) * given_sigma_shoulder
-            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_x_from_a1 = closed_ahead_a1 - closed_tool_x - shoulder_offset
+            # distance that the remaining links must span
+            closed_reach = sqrt(
+                closed_wrist_x_from_a1 * closed_wrist_x_from_a1 + closed_wrist_z_from_a1 * closed_wrist_z_from_a1
+            )
             free_angle_times_machine_scale = free_angle * machine_scale
+            no_start_is_left = (
+                another
+                and (closed_distance_a1 > free_angle_times_machine_scale)
+                and (closed_reach > free_angle_times_machine_scale)
+            )
+            mirrors = pose_is_close and (beside_elbow or beside_shoulder)
+            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
             closed_divisor_a1 = (
                 closed_distance_a1 * closed_distance_a1 if closed_distance_a1 > free_angle_times_machine_scale else 1.0
             )
@@ -444,14 +457,6 @@ class Palletizer(OffsetKinematics, TwistChoice):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
-            # commanded point, in the frame of the last moving joint
-            closed_tool_x = wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
-            # coordinate of the point that the remaining links must reach
-            closed_wrist_x_from_a1 = closed_ahead_a1 - closed_tool_x - shoulder_offset
-            # distance that the remaining links must span
-            closed_reach = sqrt(
-                closed_wrist_x_from_a1 * closed_wrist_x_from_a1 + closed_wrist_z_from_a1 * closed_wrist_z_from_a1
-            )
             closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - offset_a2)
             # law of cosines for a3_from_a2 (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
             closed_one_less_cos_a3_from_a2 = (closed_reach + link_length_1_minus_link_length_2) * (
@@ -493,9 +498,10 @@ class Palletizer(OffsetKinematics, TwistChoice):
             closed_axis_a3 = nearest_period(
                 offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) * RADIAN, closed_near_a3
             )
+            passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if pose_is_met or (another and (next_attempt > 122)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 62)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -509,8 +515,8 @@ class Palletizer(OffsetKinematics, TwistChoice):
             tried_a2 = closed_axis_a2 if another else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
             tried_a3 = closed_axis_a3 if another else (tried_a3 if mirrors else tried_a3 + shared_quotient * step_a3)
             tried_a4 = given_ref_a4 if another else tried_a4
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 122) else 40) if another else passes_left - 1
-            attempt = next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 62) else 40) if another else passes_left_now
+            attempt = 63 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now

@@ -24,9 +24,9 @@ counted together):
     forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
     inverse: 46 additions, 39 multiplications, 7 divisions, 4 square roots, 3 sines
     inverse, all 4 branches: 161 additions, 118 multiplications, 20 divisions, 9 square roots, 10 sines
-    a branch at a singular pose, in addition: 21663 additions, 30890 multiplications, 1947 divisions, 490
-    square roots, 3407 sines
-    steps of damped least squares on the closure, from one start after the other: at most 243 passes, all of
+    a branch at a singular pose, in addition: 16323 additions, 23453 multiplications, 1467 divisions, 370
+    square roots, 2567 sines
+    steps of damped least squares on the closure, from one start after the other: at most 183 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -96,7 +96,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr c6562f6a9450f4e4"
+    KEY = "pos_rrr d568fb7599356f89"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -241,18 +241,18 @@ class PosRRR(OffsetKinematics):
         closed_ahead_squared_q1 = (closed_distance_q1 + d3) * (closed_distance_q1 - d3)
         # how far ahead of the axis the point is; negative: behind it
         closed_ahead_q1 = (sqrt(closed_ahead_squared_q1) if closed_ahead_squared_q1 > 0.0 else 0.0) * given_sigma_arm
+        closed_wrist_x_from_q1 = closed_ahead_q1 - a1  # coordinate of the point that the remaining links must reach
+        closed_wrist_z_from_q1 = goal_z - d1  # coordinate of the point that the remaining links must reach
+        # distance that the remaining links must span
+        closed_reach = sqrt(
+            closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+        )
         # A1: without a commanded turn, the value nearest to this
         closed_open_a1 = mid_a1 if single_a1 else given_ref_a1
         closed_near_a1 = (
             360.0 * (given_turn_a1 - 1 if given_turn_a1 > 0 else given_turn_a1)
             if given_turn_a1 != 0
             else closed_open_a1
-        )
-        closed_wrist_x_from_q1 = closed_ahead_q1 - a1  # coordinate of the point that the remaining links must reach
-        closed_wrist_z_from_q1 = goal_z - d1  # coordinate of the point that the remaining links must reach
-        # distance that the remaining links must span
-        closed_reach = sqrt(
-            closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
         )
         # A2: without a commanded turn, the value nearest to this
         closed_open_a2 = mid_a2 if single_a2 else given_ref_a2
@@ -303,7 +303,7 @@ class PosRRR(OffsetKinematics):
             9.0,
             0.0,
         )
-        for _ in range(243):
+        for _ in range(183):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -344,18 +344,23 @@ class PosRRR(OffsetKinematics):
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
             next_attempt = attempt + (1 if another else 0)
+            free_angle = 0.01 if next_attempt > 0 else 1e-11
+            free_angle_times_machine_scale = free_angle * machine_scale
+            no_start_is_left = (
+                another
+                and (closed_distance_q1 > free_angle_times_machine_scale)
+                and (closed_reach > free_angle_times_machine_scale)
+            )
             mirrors = pose_is_close and (beside_arm or beside_elbow)
-            free_angle = 1e-5 if next_attempt > 0 else 1e-11
-            is_nearer = (attempt > 1) and (attempt < 122) and (error < nearest_error)
-            nearest_turn_now = -3.0 * (1 - attempt) if is_nearer else nearest_turn
+            is_nearer = (attempt > 1) and (attempt < 62) and (error < nearest_error)
+            nearest_turn_now = -6.0 * (1 - attempt) if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                -3.0 * (1 - next_attempt)
-                if (next_attempt > 1) and (next_attempt < 122)
-                else (nearest_turn_now if next_attempt >= 122 else 0.0)
+                -6.0 * (1 - next_attempt)
+                if (next_attempt > 1) and (next_attempt < 62)
+                else (nearest_turn_now if next_attempt >= 62 else 0.0)
             )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
-            free_angle_times_machine_scale = free_angle * machine_scale
             closed_divisor_q1 = (
                 closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
             )
@@ -422,9 +427,10 @@ class PosRRR(OffsetKinematics):
             closed_axis_a2 = nearest_period(
                 offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
             )
+            passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if pose_is_met or (another and (next_attempt > 122)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 62)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -445,8 +451,8 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 122) else 40) if another else passes_left - 1
-            attempt = next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 62) else 40) if another else passes_left_now
+            attempt = 63 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
@@ -490,6 +496,7 @@ class PosRRR(OffsetKinematics):
         offset_a2, offset_a3, one_by_machine_scale = k.offset_a2, k.offset_a3, k.one_by_machine_scale
         single_a1, single_a2, single_a3 = k.single_a1, k.single_a2, k.single_a3
         closed_distance_q1 = sqrt(goal_x * goal_x + goal_y * goal_y)  # distance of the point from the axis of q1
+        closed_wrist_z_from_q1 = goal_z - d1  # coordinate of the point that the remaining links must reach
         # A1: without a commanded turn, the value nearest to this
         closed_open_a1 = mid_a1 if single_a1 else given_ref_a1
         closed_near_a1 = (
@@ -497,7 +504,6 @@ class PosRRR(OffsetKinematics):
             if given_turn_a1 != 0
             else closed_open_a1
         )
-        closed_wrist_z_from_q1 = goal_z - d1  # coordinate of the point that the remaining links must reach
         # A2: without a commanded turn, the value nearest to this
         closed_open_a2 = mid_a2 if single_a2 else given_ref_a2
         closed_near_a2 = (
@@ -567,7 +573,7 @@ class PosRRR(OffsetKinematics):
             9.0,
             0.0,
         )
-        for _ in range(243):
+        for _ in range(183):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -611,18 +617,23 @@ class PosRRR(OffsetKinematics):
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
             next_attempt = attempt + (1 if another else 0)
+            free_angle = 0.01 if next_attempt > 0 else 1e-11
+            free_angle_times_machine_scale = free_angle * machine_scale
+            no_start_is_left = (
+                another
+                and (closed_distance_q1 > free_angle_times_machine_scale)
+                and (closed_reach > free_angle_times_machine_scale)
+            )
             mirrors = pose_is_close and (beside_arm or beside_elbow)
-            free_angle = 1e-5 if next_attempt > 0 else 1e-11
-            is_nearer = (attempt > 1) and (attempt < 122) and (error < nearest_error)
-            nearest_turn_now = -3.0 * (1 - attempt) if is_nearer else nearest_turn
+            is_nearer = (attempt > 1) and (attempt < 62) and (error < nearest_error)
+            nearest_turn_now = -6.0 * (1 - attempt) if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                -3.0 * (1 - next_attempt)
-                if (next_attempt > 1) and (next_attempt < 122)
-                else (nearest_turn_now if next_attempt >= 122 else 0.0)
+                -6.0 * (1 - next_attempt)
+                if (next_attempt > 1) and (next_attempt < 62)
+                else (nearest_turn_now if next_attempt >= 62 else 0.0)
             )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
-            free_angle_times_machine_scale = free_angle * machine_scale
             closed_divisor_q1 = (
                 closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
             )
@@ -689,9 +700,10 @@ class PosRRR(OffsetKinematics):
             closed_axis_a2 = nearest_period(
                 offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
             )
+            passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if pose_is_met or (another and (next_attempt > 122)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 62)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -712,8 +724,8 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 122) else 40) if another else passes_left - 1
-            attempt = next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 62) else 40) if another else passes_left_now
+            attempt = 63 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now

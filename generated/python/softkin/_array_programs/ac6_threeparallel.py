@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 423
+    VALUES = 425
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -87,12 +87,12 @@ class ArrayPrograms(Programs):
         closed_ahead_squared_q1 = (closed_distance_q1 + k.d4) * (closed_distance_q1 - k.d4)
         # how far ahead of the axis the point is; negative: behind it
         closed_ahead_q1 = -root(closed_ahead_squared_q1) * given_sigma_shoulder
+        closed_wrist_z = goal_z - k.d6 * goal_r33
         # A1: without a commanded turn, the value nearest to this
         closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
         closed_near_a1 = select(
             given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
         )
-        closed_wrist_z = goal_z - k.d6 * goal_r33
         # A2: without a commanded turn, the value nearest to this
         closed_open_a2 = select(k.single_a2, k.mid_a2, given_ref_a2)
         closed_near_a2 = select(
@@ -132,7 +132,7 @@ class ArrayPrograms(Programs):
             nearest_error,
             nearest_turn,
         ) = initial(start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 40, 0, 9.0, 9.0, 0.0)
-        for _ in range(243):
+        for _ in range(183):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -254,15 +254,14 @@ class ArrayPrograms(Programs):
                 pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder)) & (opposite(beside_wrist))
             )
             next_attempt = attempt + select(another, 1, 0)
-            mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_wrist)
-            free_angle = select(next_attempt > 0, 1e-5, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 122) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -3.0 * (1 - attempt), nearest_turn)
+            free_angle = select(next_attempt > 0, 0.01, 1e-11)
+            is_nearer = (attempt > 1) & (attempt < 62) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -6.0 * (1 - attempt), nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 122),
-                -3.0 * (1 - next_attempt),
-                select(next_attempt >= 122, nearest_turn_now, 0.0),
+                (next_attempt > 1) & (next_attempt < 62),
+                -6.0 * (1 - next_attempt),
+                select(next_attempt >= 62, nearest_turn_now, 0.0),
             )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
             free_angle_times_machine_scale = free_angle * k.machine_scale
@@ -280,6 +279,45 @@ class ArrayPrograms(Programs):
                 (closed_ahead_q1 * closed_wrist_y + closed_wrist_x * k.d4) / closed_divisor_q1,
                 sin(closed_reference_a1),
             )
+            closed_r21_from_q1 = closed_cos_q1 * goal_r21 - closed_sin_q1 * goal_r11
+            closed_r22_from_q1 = closed_cos_q1 * goal_r22 - closed_sin_q1 * goal_r12
+            # polar coordinates: the radius at angle q6
+            closed_radius_q6 = sqrt(closed_r21_from_q1 * closed_r21_from_q1 + closed_r22_from_q1 * closed_r22_from_q1)
+            closed_q6_radius_of_q5 = given_sigma_wrist * closed_radius_q6
+            # cosine and sine of q5 from the q6 radius and r22 equations
+            closed_cos_q5 = closed_sin_q1 * goal_r13 - closed_cos_q1 * goal_r23
+            closed_reference_a6 = DEGREE * (free_turn + given_ref_a6 - k.offset_a6)
+            # polar coordinates: angle q6 from the r21 and r23 equations
+            closed_along_q6 = -given_sigma_wrist * closed_r21_from_q1
+            closed_length_q6 = select(closed_radius_q6 > free_angle, closed_radius_q6, 1.0)
+            # at a singularity: the angle of the reference
+            closed_cos_q6 = select(
+                closed_radius_q6 > free_angle, closed_along_q6 / closed_length_q6, cos(closed_reference_a6)
+            )
+            closed_across_q6 = given_sigma_wrist * closed_r22_from_q1
+            closed_sin_q6 = select(
+                closed_radius_q6 > free_angle, closed_across_q6 / closed_length_q6, sin(closed_reference_a6)
+            )
+            closed_r31_from_q1_before_q6 = closed_cos_q6 * goal_r31 - closed_sin_q6 * goal_r32
+            closed_r31_from_q1_before_q56 = (
+                closed_cos_q5 * closed_r31_from_q1_before_q6 - closed_q6_radius_of_q5 * goal_r33
+            )
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_x_from_q1 = closed_ahead_q1 - closed_r31_from_q1_before_q56 * k.d5
+            closed_r33_from_q1_before_q6 = closed_cos_q6 * goal_r32 + closed_sin_q6 * goal_r31
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_z_from_q1 = closed_wrist_z + closed_r33_from_q1_before_q6 * k.d5 - k.d1
+            # distance that the remaining links must span
+            closed_reach = sqrt(
+                closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+            )
+            no_start_is_left = (
+                another
+                & (closed_distance_q1 > free_angle_times_machine_scale)
+                & (closed_radius_q6 > free_angle)
+                & (closed_reach > free_angle_times_machine_scale)
+            )
+            mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_wrist)
             closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
             rate_1_1 = -k.one_by_machine_scale * y
             rate_2_1 = k.one_by_machine_scale * x
@@ -417,38 +455,6 @@ class ArrayPrograms(Programs):
                 + step_a6 * step_a6
             )
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            closed_r21_from_q1 = closed_cos_q1 * goal_r21 - closed_sin_q1 * goal_r11
-            closed_r22_from_q1 = closed_cos_q1 * goal_r22 - closed_sin_q1 * goal_r12
-            # polar coordinates: the radius at angle q6
-            closed_radius_q6 = sqrt(closed_r21_from_q1 * closed_r21_from_q1 + closed_r22_from_q1 * closed_r22_from_q1)
-            closed_q6_radius_of_q5 = given_sigma_wrist * closed_radius_q6
-            # cosine and sine of q5 from the q6 radius and r22 equations
-            closed_cos_q5 = closed_sin_q1 * goal_r13 - closed_cos_q1 * goal_r23
-            closed_reference_a6 = DEGREE * (free_turn + given_ref_a6 - k.offset_a6)
-            # polar coordinates: angle q6 from the r21 and r23 equations
-            closed_along_q6 = -given_sigma_wrist * closed_r21_from_q1
-            closed_length_q6 = select(closed_radius_q6 > free_angle, closed_radius_q6, 1.0)
-            # at a singularity: the angle of the reference
-            closed_cos_q6 = select(
-                closed_radius_q6 > free_angle, closed_along_q6 / closed_length_q6, cos(closed_reference_a6)
-            )
-            closed_across_q6 = given_sigma_wrist * closed_r22_from_q1
-            closed_sin_q6 = select(
-                closed_radius_q6 > free_angle, closed_across_q6 / closed_length_q6, sin(closed_reference_a6)
-            )
-            closed_r31_from_q1_before_q6 = closed_cos_q6 * goal_r31 - closed_sin_q6 * goal_r32
-            closed_r31_from_q1_before_q56 = (
-                closed_cos_q5 * closed_r31_from_q1_before_q6 - closed_q6_radius_of_q5 * goal_r33
-            )
-            # coordinate of the point that the remaining links must reach
-            closed_wrist_x_from_q1 = closed_ahead_q1 - closed_r31_from_q1_before_q56 * k.d5
-            closed_r33_from_q1_before_q6 = closed_cos_q6 * goal_r32 + closed_sin_q6 * goal_r31
-            # coordinate of the point that the remaining links must reach
-            closed_wrist_z_from_q1 = closed_wrist_z + closed_r33_from_q1_before_q6 * k.d5 - k.d1
-            # distance that the remaining links must span
-            closed_reach = sqrt(
-                closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
-            )
             closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
             # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
             closed_one_less_cos_q3 = (k.a2_plus_a3 + closed_reach) * (k.a2_plus_a3 - closed_reach)
@@ -485,9 +491,10 @@ class ArrayPrograms(Programs):
                 k.offset_a5 + atan2(closed_q6_radius_of_q5, closed_cos_q5) / DEGREE, closed_near_a5
             )
             closed_axis_a6 = nearest_period(k.offset_a6 + atan2(closed_sin_q6, closed_cos_q6) / DEGREE, closed_near_a6)
+            passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = pose_is_met | (another & (next_attempt > 122))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 62))
             if settled(done, status):
                 break
             (
@@ -548,8 +555,8 @@ class ArrayPrograms(Programs):
                             tried_a6 + shared_quotient * step_a6,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 122), 0, 40), passes_left - 1),
-                    next_attempt,
+                    select(another, select((next_attempt > 1) & (next_attempt < 62), 0, 40), passes_left_now),
+                    select(no_start_is_left, 63, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 454
+    VALUES = 456
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -87,11 +87,6 @@ class ArrayPrograms(Programs):
         closed_ahead_squared_q1 = (closed_distance_q1 + k.d3) * (closed_distance_q1 - k.d3)
         # how far ahead of the axis the point is; negative: behind it
         closed_ahead_q1 = root(closed_ahead_squared_q1) * given_sigma_arm
-        # A1: without a commanded turn, the value nearest to this
-        closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
-        closed_near_a1 = select(
-            given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
-        )
         # coordinate of the point that the remaining links must reach
         closed_wrist_x_from_q1 = closed_ahead_q1 - k.a1
         closed_wrist_z = goal_z - k.d6 * goal_r33
@@ -100,6 +95,11 @@ class ArrayPrograms(Programs):
         # distance that the remaining links must span
         closed_reach = sqrt(
             closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+        )
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
+        closed_near_a1 = select(
+            given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
         )
         # A2: without a commanded turn, the value nearest to this
         closed_open_a2 = select(k.single_a2, k.mid_a2, given_ref_a2)
@@ -161,7 +161,7 @@ class ArrayPrograms(Programs):
             nearest_error,
             nearest_turn,
         ) = initial(start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 40, 0, 9.0, 9.0, 0.0)
-        for _ in range(243):
+        for _ in range(183):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -286,15 +286,14 @@ class ArrayPrograms(Programs):
             pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow)) & (opposite(beside_hand))
             next_attempt = attempt + select(another, 1, 0)
-            mirrors = pose_is_close & (beside_arm | beside_elbow | beside_hand)
-            free_angle = select(next_attempt > 0, 1e-5, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 122) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -3.0 * (1 - attempt), nearest_turn)
+            free_angle = select(next_attempt > 0, 0.01, 1e-11)
+            is_nearer = (attempt > 1) & (attempt < 62) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -6.0 * (1 - attempt), nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 122),
-                -3.0 * (1 - next_attempt),
-                select(next_attempt >= 122, nearest_turn_now, 0.0),
+                (next_attempt > 1) & (next_attempt < 62),
+                -6.0 * (1 - next_attempt),
+                select(next_attempt >= 62, nearest_turn_now, 0.0),
             )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
             free_angle_times_machine_scale = free_angle * k.machine_scale
@@ -312,6 +311,39 @@ class ArrayPrograms(Programs):
                 (closed_ahead_q1 * closed_wrist_y + closed_wrist_x * k.d3) / closed_divisor_q1,
                 sin(closed_reference_a1),
             )
+            closed_r13_from_q1 = closed_cos_q1 * goal_r13 + closed_sin_q1 * goal_r23
+            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
+            closed_length_q2 = select(
+                (closed_reach > free_angle_times_machine_scale) & (sum_in_closed_length_q2 > 0.0),
+                root(sum_in_closed_length_q2),
+                1.0,
+            )
+            # at a singularity: the angle of the reference
+            closed_cos_q2 = select(
+                closed_reach > free_angle_times_machine_scale,
+                closed_along_q2 / closed_length_q2,
+                cos(closed_reference_a2),
+            )
+            closed_sin_q2 = select(
+                closed_reach > free_angle_times_machine_scale,
+                closed_across_q2 / closed_length_q2,
+                sin(closed_reference_a2),
+            )
+            closed_sin_q23 = closed_cos_q2 * closed_sin_q3 + closed_cos_q3 * closed_sin_q2
+            closed_cos_q23 = closed_cos_q2 * closed_cos_q3 - closed_sin_q2 * closed_sin_q3
+            closed_r33_from_q123 = closed_cos_q23 * goal_r33 - closed_r13_from_q1 * closed_sin_q23
+            closed_r23_from_q1 = closed_cos_q1 * goal_r23 - closed_sin_q1 * goal_r13
+            # polar coordinates: the radius at angle q4
+            closed_radius_q4 = sqrt(
+                closed_r23_from_q1 * closed_r23_from_q1 + closed_r33_from_q123 * closed_r33_from_q123
+            )
+            no_start_is_left = (
+                another
+                & (closed_distance_q1 > free_angle_times_machine_scale)
+                & (closed_radius_q4 > free_angle)
+                & (closed_reach > free_angle_times_machine_scale)
+            )
+            mirrors = pose_is_close & (beside_arm | beside_elbow | beside_hand)
             closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
             rate_1_1 = -k.one_by_machine_scale * y
             rate_2_1 = k.one_by_machine_scale * x
@@ -482,34 +514,8 @@ class ArrayPrograms(Programs):
                 + step_a6 * step_a6
             )
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
-            closed_length_q2 = select(
-                (closed_reach > free_angle_times_machine_scale) & (sum_in_closed_length_q2 > 0.0),
-                root(sum_in_closed_length_q2),
-                1.0,
-            )
-            # at a singularity: the angle of the reference
-            closed_cos_q2 = select(
-                closed_reach > free_angle_times_machine_scale,
-                closed_along_q2 / closed_length_q2,
-                cos(closed_reference_a2),
-            )
-            closed_sin_q2 = select(
-                closed_reach > free_angle_times_machine_scale,
-                closed_across_q2 / closed_length_q2,
-                sin(closed_reference_a2),
-            )
             closed_axis_a2 = nearest_period(k.offset_a2 + atan2(closed_sin_q2, closed_cos_q2) / DEGREE, closed_near_a2)
             closed_reference_a4 = DEGREE * (free_turn + given_ref_a4 - k.offset_a4)
-            closed_r13_from_q1 = closed_cos_q1 * goal_r13 + closed_sin_q1 * goal_r23
-            closed_sin_q23 = closed_cos_q2 * closed_sin_q3 + closed_cos_q3 * closed_sin_q2
-            closed_cos_q23 = closed_cos_q2 * closed_cos_q3 - closed_sin_q2 * closed_sin_q3
-            closed_r33_from_q123 = closed_cos_q23 * goal_r33 - closed_r13_from_q1 * closed_sin_q23
-            closed_r23_from_q1 = closed_cos_q1 * goal_r23 - closed_sin_q1 * goal_r13
-            # polar coordinates: the radius at angle q4
-            closed_radius_q4 = sqrt(
-                closed_r23_from_q1 * closed_r23_from_q1 + closed_r33_from_q123 * closed_r33_from_q123
-            )
             # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
             closed_direction_x_q4 = select(
@@ -542,9 +548,10 @@ class ArrayPrograms(Programs):
             closed_axis_a6 = nearest_period(
                 k.offset_a6 + atan2(closed_direction_y_q6, closed_direction_x_q6) / DEGREE, closed_near_a6
             )
+            passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = pose_is_met | (another & (next_attempt > 122))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 62))
             if settled(done, status):
                 break
             (
@@ -605,8 +612,8 @@ class ArrayPrograms(Programs):
                     ),
                     select(another, closed_axis_a5, select(mirrors, tried_a5, tried_a5 + shared_quotient * step_a5)),
                     select(another, closed_axis_a6, select(mirrors, tried_a6, tried_a6 + shared_quotient * step_a6)),
-                    select(another, select((next_attempt > 1) & (next_attempt < 122), 0, 40), passes_left - 1),
-                    next_attempt,
+                    select(another, select((next_attempt > 1) & (next_attempt < 62), 0, 40), passes_left_now),
+                    select(no_start_is_left, 63, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,

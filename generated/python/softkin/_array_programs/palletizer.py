@@ -37,7 +37,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 248
+    VALUES = 250
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def meet_point(self, given: Values, status: Codes) -> Values:
@@ -65,14 +65,14 @@ class ArrayPrograms(Programs):
         ) = given
         k = self.constants
         closed_distance_a1 = sqrt(goal_x * goal_x + goal_y * goal_y)  # distance of the point from the axis of a1
+        closed_tool_z = given_point_z + k.wrist_offset_z  # commanded point, in the frame of the last moving joint
+        # coordinate of the point that the remaining links must reach
+        closed_wrist_z_from_a1 = goal_z - k.base_height - closed_tool_z
         # A1: without a commanded turn, the value nearest to this
         closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
         closed_near_a1 = select(
             given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
         )
-        closed_tool_z = given_point_z + k.wrist_offset_z  # commanded point, in the frame of the last moving joint
-        # coordinate of the point that the remaining links must reach
-        closed_wrist_z_from_a1 = goal_z - k.base_height - closed_tool_z
         # A2: without a commanded turn, the value nearest to this
         closed_open_a2 = select(k.single_a2, k.mid_a2, given_ref_a2)
         closed_near_a2 = select(
@@ -87,7 +87,7 @@ class ArrayPrograms(Programs):
         tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before, nearest_error, nearest_turn = (
             initial(start_a1, start_a2, start_a3, start_a4, 40, 0, 9.0, 9.0, 0.0)
         )
-        for _ in range(243):
+        for _ in range(183):
             a1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -134,27 +134,40 @@ class ArrayPrograms(Programs):
             pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
             pose_is_met = pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder))
             next_attempt = attempt + select(another, 1, 0)
-            mirrors = pose_is_close & (beside_elbow | beside_shoulder)
-            free_angle = select(next_attempt > 0, 1e-5, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 122) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -3.0 * (1 - attempt), nearest_turn)
+            free_angle = select(next_attempt > 0, 0.01, 1e-11)
+            is_nearer = (attempt > 1) & (attempt < 62) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -6.0 * (1 - attempt), nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 122),
-                -3.0 * (1 - next_attempt),
-                select(next_attempt >= 122, nearest_turn_now, 0.0),
+                (next_attempt > 1) & (next_attempt < 62),
+                -6.0 * (1 - next_attempt),
+                select(next_attempt >= 62, nearest_turn_now, 0.0),
             )
             closed_reference_a4 = DEGREE * (free_turn + given_ref_a4 - k.offset_a4)
             closed_cos_a4 = cos(closed_reference_a4)
             closed_sin_a4 = sin(closed_reference_a4)
+            # commanded point, in the frame of the last moving joint
+            closed_tool_x = k.wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
             # commanded point, in the frame of the last moving joint
             closed_tool_y = closed_cos_a4 * given_point_y + closed_sin_a4 * given_point_x
             # Pythagoras: square of the distance ahead of the axis
             closed_ahead_squared_a1 = (closed_distance_a1 + closed_tool_y) * (closed_distance_a1 - closed_tool_y)
             # how far ahead of the axis the point is; negative: behind it
             closed_ahead_a1 = root(closed_ahead_squared_a1) * given_sigma_shoulder
-            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_x_from_a1 = closed_ahead_a1 - closed_tool_x - k.shoulder_offset
+            # distance that the remaining links must span
+            closed_reach = sqrt(
+                closed_wrist_x_from_a1 * closed_wrist_x_from_a1 + closed_wrist_z_from_a1 * closed_wrist_z_from_a1
+            )
             free_angle_times_machine_scale = free_angle * k.machine_scale
+            no_start_is_left = (
+                another
+                & (closed_distance_a1 > free_angle_times_machine_scale)
+                & (closed_reach > free_angle_times_machine_scale)
+            )
+            mirrors = pose_is_close & (beside_elbow | beside_shoulder)
+            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
             closed_divisor_a1 = select(
                 closed_distance_a1 > free_angle_times_machine_scale, closed_distance_a1 * closed_distance_a1, 1.0
             )
@@ -208,14 +221,6 @@ class ArrayPrograms(Programs):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            # commanded point, in the frame of the last moving joint
-            closed_tool_x = k.wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
-            # coordinate of the point that the remaining links must reach
-            closed_wrist_x_from_a1 = closed_ahead_a1 - closed_tool_x - k.shoulder_offset
-            # distance that the remaining links must span
-            closed_reach = sqrt(
-                closed_wrist_x_from_a1 * closed_wrist_x_from_a1 + closed_wrist_z_from_a1 * closed_wrist_z_from_a1
-            )
             closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
             # law of cosines for a3_from_a2 (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
             closed_one_less_cos_a3_from_a2 = (closed_reach + k.link_length_1_minus_link_length_2) * (
@@ -255,9 +260,10 @@ class ArrayPrograms(Programs):
             closed_axis_a3 = nearest_period(
                 k.offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) / DEGREE, closed_near_a3
             )
+            passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = pose_is_met | (another & (next_attempt > 122))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 62))
             if settled(done, status):
                 break
             tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before, nearest_error, nearest_turn = (
@@ -291,8 +297,8 @@ class ArrayPrograms(Programs):
                             another, closed_axis_a3, select(mirrors, tried_a3, tried_a3 + shared_quotient * step_a3)
                         ),
                         select(another, given_ref_a4, tried_a4),
-                        select(another, select((next_attempt > 1) & (next_attempt < 122), 0, 40), passes_left - 1),
-                        next_attempt,
+                        select(another, select((next_attempt > 1) & (next_attempt < 62), 0, 40), passes_left_now),
+                        select(no_start_is_left, 63, next_attempt),
                         select(another | mirrors, 9.0, error),
                         nearest_error_now,
                         nearest_turn_now,

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 401
+    VALUES = 405
     JACOBIAN_ROWS = (0, 1, 2)
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
@@ -66,17 +66,17 @@ class ArrayPrograms(Programs):
         closed_ahead_squared_q1 = (closed_distance_q1 + k.d3) * (closed_distance_q1 - k.d3)
         # how far ahead of the axis the point is; negative: behind it
         closed_ahead_q1 = root(closed_ahead_squared_q1) * given_sigma_arm
-        # A1: without a commanded turn, the value nearest to this
-        closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
-        closed_near_a1 = select(
-            given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
-        )
         # coordinate of the point that the remaining links must reach
         closed_wrist_x_from_q1 = closed_ahead_q1 - k.a1
         closed_wrist_z_from_q1 = goal_z - k.d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
         closed_reach = sqrt(
             closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+        )
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
+        closed_near_a1 = select(
+            given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
         )
         # A2: without a commanded turn, the value nearest to this
         closed_open_a2 = select(k.single_a2, k.mid_a2, given_ref_a2)
@@ -109,7 +109,7 @@ class ArrayPrograms(Programs):
         tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = initial(
             start_a1, start_a2, start_a3, 40, 0, 9.0, 9.0, 0.0
         )
-        for _ in range(243):
+        for _ in range(183):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -150,18 +150,23 @@ class ArrayPrograms(Programs):
             pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow))
             next_attempt = attempt + select(another, 1, 0)
+            free_angle = select(next_attempt > 0, 0.01, 1e-11)
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            no_start_is_left = (
+                another
+                & (closed_distance_q1 > free_angle_times_machine_scale)
+                & (closed_reach > free_angle_times_machine_scale)
+            )
             mirrors = pose_is_close & (beside_arm | beside_elbow)
-            free_angle = select(next_attempt > 0, 1e-5, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 122) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -3.0 * (1 - attempt), nearest_turn)
+            is_nearer = (attempt > 1) & (attempt < 62) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -6.0 * (1 - attempt), nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 122),
-                -3.0 * (1 - next_attempt),
-                select(next_attempt >= 122, nearest_turn_now, 0.0),
+                (next_attempt > 1) & (next_attempt < 62),
+                -6.0 * (1 - next_attempt),
+                select(next_attempt >= 62, nearest_turn_now, 0.0),
             )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
-            free_angle_times_machine_scale = free_angle * k.machine_scale
             closed_divisor_q1 = select(
                 closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
             )
@@ -226,9 +231,10 @@ class ArrayPrograms(Programs):
             closed_axis_a2 = nearest_period(
                 k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
             )
+            passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = pose_is_met | (another & (next_attempt > 122))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 62))
             if settled(done, status):
                 break
             tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = advanced(
@@ -254,8 +260,8 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 122), 0, 40), passes_left - 1),
-                    next_attempt,
+                    select(another, select((next_attempt > 1) & (next_attempt < 62), 0, 40), passes_left_now),
+                    select(no_start_is_left, 63, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,
@@ -290,12 +296,12 @@ class ArrayPrograms(Programs):
         ) = given
         k = self.constants
         closed_distance_q1 = sqrt(goal_x * goal_x + goal_y * goal_y)  # distance of the point from the axis of q1
+        closed_wrist_z_from_q1 = goal_z - k.d1  # coordinate of the point that the remaining links must reach
         # A1: without a commanded turn, the value nearest to this
         closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
         closed_near_a1 = select(
             given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
         )
-        closed_wrist_z_from_q1 = goal_z - k.d1  # coordinate of the point that the remaining links must reach
         # A2: without a commanded turn, the value nearest to this
         closed_open_a2 = select(k.single_a2, k.mid_a2, given_ref_a2)
         closed_near_a2 = select(
@@ -348,7 +354,7 @@ class ArrayPrograms(Programs):
         tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = initial(
             start_a1, start_a2, start_a3, 40, 0, 9.0, 9.0, 0.0
         )
-        for _ in range(243):
+        for _ in range(183):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -392,18 +398,23 @@ class ArrayPrograms(Programs):
             pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow))
             next_attempt = attempt + select(another, 1, 0)
+            free_angle = select(next_attempt > 0, 0.01, 1e-11)
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            no_start_is_left = (
+                another
+                & (closed_distance_q1 > free_angle_times_machine_scale)
+                & (closed_reach > free_angle_times_machine_scale)
+            )
             mirrors = pose_is_close & (beside_arm | beside_elbow)
-            free_angle = select(next_attempt > 0, 1e-5, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 122) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -3.0 * (1 - attempt), nearest_turn)
+            is_nearer = (attempt > 1) & (attempt < 62) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -6.0 * (1 - attempt), nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 122),
-                -3.0 * (1 - next_attempt),
-                select(next_attempt >= 122, nearest_turn_now, 0.0),
+                (next_attempt > 1) & (next_attempt < 62),
+                -6.0 * (1 - next_attempt),
+                select(next_attempt >= 62, nearest_turn_now, 0.0),
             )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
-            free_angle_times_machine_scale = free_angle * k.machine_scale
             closed_divisor_q1 = select(
                 closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
             )
@@ -468,9 +479,10 @@ class ArrayPrograms(Programs):
             closed_axis_a2 = nearest_period(
                 k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
             )
+            passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = pose_is_met | (another & (next_attempt > 122))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 62))
             if settled(done, status):
                 break
             tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = advanced(
@@ -496,8 +508,8 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 122), 0, 40), passes_left - 1),
-                    next_attempt,
+                    select(another, select((next_attempt > 1) & (next_attempt < 62), 0, 40), passes_left_now),
+                    select(no_start_is_left, 63, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,
