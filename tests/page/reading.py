@@ -253,7 +253,7 @@ def _run(lines: list[ET.Element], depth: int, known: dict[str, Value]) -> None:
     while place < len(lines):
         line = lines[place]
         place += 1
-        if has_class(line, "refuse"):
+        if has_class(line, "refuse") or has_class(line, "call"):
             continue
         if not has_class(line, "where"):
             (name,) = names_of([line])
