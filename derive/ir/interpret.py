@@ -259,7 +259,8 @@ def _loop(loop: Iterate) -> _Step:
                 break
             following: list[Array] = [np.asarray(value(known), declared) for value, declared in followings]
             known.update({n: np.where(done, known[n], v) for n, v in zip(names, following, strict=True)})
-        _require(done, loop.otherwise, status)
+        if loop.otherwise is not None:
+            _require(done, loop.otherwise, status)
 
     return iterate
 

@@ -98,7 +98,8 @@ class Solve:
 
 @dataclass(frozen=True)
 class Iterate:
-    """Repeat `step` from `start` until `done` holds, at most `limit` times; else the status is `otherwise`.
+    """Repeat `step` from `start` until `done` holds, at most `limit` times; else the status is `otherwise`, if there is
+    one.
 
     Every pass evaluates the step at the state. Then the loop ends, or the state becomes `following`. So the names of
     the step are bound behind the loop, too, and belong to the final state.
@@ -111,7 +112,7 @@ class Iterate:
     """Each may read its own state and the names of the step, but no other state: the order of assignment is free."""
     done: Boolean
     limit: int
-    otherwise: Status
+    otherwise: Status | None
     note: str = ""
     reason: Reason | None = None
     """The reason given to a caller where `done` never holds; it has no amount."""
@@ -237,6 +238,12 @@ class Program:
         for output in self.outputs:
             used |= names_in(output.value)
         return frozenset(used) - set(self.bound())
+
+    @property
+    def refuses(self) -> bool:
+        """Whether a statement may end the program."""
+        loops = (s for s in self.body if isinstance(s, Iterate))
+        return any(isinstance(s, Require | Call) for s in self.body) or any(s.otherwise is not None for s in loops)
 
 
 def binds(statement: Statement) -> tuple[sp.Symbol, ...]:

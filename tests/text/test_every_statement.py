@@ -203,6 +203,8 @@ def the_tests(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) -> Ite
     yield partial(test_singular_poses.test_a_point_on_the_axis_of_a_link_cannot_be_aimed, serial_pairs[:3])
     yield partial(test_singular_poses.test_a_point_beside_the_first_axis_of_a_stretched_arm, serial_pairs[:3])
     yield partial(test_singular_poses.test_a_point_far_off_the_flange_is_out_of_reach, serial_pairs[:3])
+    if mechanism.name in test_singular_poses.OF_TWO_LINKS:
+        yield partial(test_singular_poses.test_a_point_inside_the_shortest_reach, mechanism.name)
     yield partial(test_limits.test_a_turn_that_refuses_is_told_with_the_one_inside, serial_pairs)
     yield partial(test_initialise.test_every_parameter_is_checked, serial_pairs[-1:])
     yield partial(test_limits.test_every_limit_refuses_alone, serial_pairs)

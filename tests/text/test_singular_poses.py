@@ -10,8 +10,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from tests.catalogue.machines import bare_machine
+from derive.description.mechanism import Role
+from tests.catalogue.machines import bare_machine, machine
 from tests.catalogue.test_offset import beside_the_first_axis, on_the_axis, turns_the_flange
+from tests.mechanisms import named
 from tests.text.closeness import asked, assert_same
 from tests.text.comparisons import COMPARISONS
 from tests.text.comparisons.offsets import point_at
@@ -20,6 +22,8 @@ from tests.text.controller import OK, UNREACHABLE
 from tests.text.samples import NO_TURN, Sample, coinciding, near
 from tests.text.serial_pairs import SerialPair, serial_pair
 
+OF_TWO_LINKS = ("Kin_Pos_RRR", "Softkin_Palletizer")
+"""Arms whose required lengths are two links."""
 MACHINES = ("equal", "random 1")
 """With equal links every singular pose exists; with random offsets none of them is at a round number."""
 METHODS = ("AxesToCartesian", "CartesianToAxes", "AxesToOrientation", "IsSingularity", "Jacobian")
@@ -111,6 +115,26 @@ def test_a_point_far_off_the_flange_is_out_of_reach(serial_pairs: tuple[SerialPa
             assert_same(found, (status, expected), one, offset)
             refused += status == UNREACHABLE
         assert refused > 0 or not one.machine.has_a_reach
+
+
+@pytest.mark.parametrize("name", OF_TWO_LINKS)
+def test_a_point_inside_the_shortest_reach(name: str) -> None:
+    """Above the shoulder of an arm with two links that are nearly equal: two angles of the start are nearly free, and
+    the steps on the closure meet nothing from any.
+    """
+    mechanism = named(name)
+    links = [p.name for p in mechanism.parameters if p.role is Role.LENGTH]
+    one = serial_pair(machine(mechanism, "two links", {n: 250.0 + k for k, n in enumerate(links)}))
+    arms = product((0.0,), (0.0, 180.0), (0.0, 180.0))
+    flanges = [one.robot.forward((*arm, *one.machine.closure.offsets[3:]))[0].position for arm in arms]
+    x, y, z = np.mean(flanges, axis=0).tolist()
+    for above in (0.3, -0.3):
+        place, asking = (x, y, z + above), (0,) * len(one.robot.DEFAULT_CONFIGURATION)
+        reference = one.regular[0].axes
+        assert asked(one.robot.inverse_offset, place, (0.0, 0.0, 0.0), asking, reference)[0] == UNREACHABLE
+        assert_same(
+            one.controller.inverse_offset(place, (0.0, 0.0, 0.0), asking, reference), (UNREACHABLE, None), one, place
+        )
 
 
 def fixed_points(one: SerialPair, sample: Sample) -> Iterator[tuple[float, ...]]:

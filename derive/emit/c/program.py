@@ -158,8 +158,9 @@ class Body:
         step = [name for s in loop.step for name in binds(s)]
         start = zip(loop.state, self._values(loop, loop.start), strict=True)
         following = zip(names_of(loop.state), self._values(loop, loop.following), strict=True)
+        refusal = "" if loop.otherwise is None else self.refusals.of_loop(loop.otherwise, loop)
         inner = [
-            *block(f"if (pass == {loop.limit})", [self.refusals.of_loop(loop)]),
+            *(block(f"if (pass == {loop.limit})", [refusal]) if refusal else []),
             *(line for s in loop.step for line in self._step(s)),
             *block(f"if ({self.refusals.condition([loop.done])})", ["break;"]),
             *(f"{name} = {value};" for name, value in following),
@@ -168,7 +169,7 @@ class Body:
             *comment(loop.note),
             *(f"{type_of(name)} {spelled(name.name)} = {value};" for name, value in start),
             *declarations(step),
-            *block("for (int pass = 0;; pass += 1)", inner),
+            *block(f"for (int pass = 0;{'' if refusal else f' pass < {loop.limit}'}; pass += 1)", inner),
         ]
 
     def _step(self, statement: Let | Solve) -> list[str]:

@@ -32,9 +32,9 @@ class Refusals:
             return [*notes, *block(head, [f"return {refused(requires[0].otherwise, '')};"])]
         return [*notes, *(line for check in self.reasons.checks(requires) for line in self._check(check))]
 
-    def of_loop(self, loop: Iterate) -> str:
+    def of_loop(self, outcome: Status, loop: Iterate) -> str:
         """The line that refuses where a loop is never left: a reason without an amount."""
-        return f"return {refused(loop.otherwise, '' if loop.reason is None else self.reasons.loop(loop))};"
+        return f"return {refused(outcome, '' if loop.reason is None else self.reasons.loop(loop))};"
 
     def of_call(self, call: Call, outcome: str) -> str:
         """The line that refuses where a shared program does."""

@@ -110,8 +110,9 @@ class _Body:
         start = zip(names_of(loop.state), self._values(loop, loop.start), strict=True)
         following = zip(names_of(loop.state), self._values(loop, loop.following), strict=True)
         done = condition_of([loop.done])
+        refusal = "" if loop.otherwise is None else self.refusals.of_loop(loop.otherwise, loop)
         inner = [
-            *block(f"if (pass === {loop.limit})", [self.refusals.of_loop(loop)]),
+            *(block(f"if (pass === {loop.limit})", [refusal]) if refusal else []),
             *(line for s in loop.step for line in self._step(s)),
             f"if ({done}) break;",
             *(f"{name} = {value};" for name, value in following),
@@ -120,7 +121,7 @@ class _Body:
             *comment(loop.note),
             f"let {', '.join(f'{name} = {value}' for name, value in start)};",
             f"let {', '.join(names_of(step))};",
-            *block("for (let pass = 0; ; pass += 1)", inner),
+            *block(f"for (let pass = 0; {'' if refusal else f'pass < {loop.limit}'}; pass += 1)", inner),
         ]
 
     def _step(self, statement: Let | Solve) -> list[str]:

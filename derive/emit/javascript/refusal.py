@@ -11,7 +11,7 @@ from derive.emit.braces import block, indented
 from derive.emit.conditions import parts_of, sized
 from derive.emit.javascript.layout import comment
 from derive.emit.javascript.printer import PRINTER, status, text
-from derive.ir.program import Call, Iterate, Require
+from derive.ir.program import Call, Iterate, Require, Status
 from derive.ir.reason import OtherTurn
 from derive.report.reasons import Check, Reasons
 
@@ -31,10 +31,10 @@ class Refusals:
             return [*notes, *block(head, [f"return refuse({status(requires[0].otherwise)});"])]
         return [*notes, *(line for check in self.reasons.checks(requires) for line in self._check(check))]
 
-    def of_loop(self, loop: Iterate) -> str:
+    def of_loop(self, outcome: Status, loop: Iterate) -> str:
         """The line that refuses where a loop is never left: a reason without an amount."""
         reason = "" if loop.reason is None else f", {text(self.reasons.loop(loop))}"
-        return f"return refuse({status(loop.otherwise)}{reason});"
+        return f"return refuse({status(outcome)}{reason});"
 
     def of_call(self, call: Call, found: str) -> str:
         """The line that refuses where a shared program does."""

@@ -36,13 +36,9 @@ def _head(loop: Iterate, start: str) -> list[str]:
 
 
 def scalar_end(loop: Iterate, done: str, refusal: str, printer: ScalarPrinter) -> list[str]:
-    """The lines that leave the loop, or prepare the next pass; a loop that is never left refuses."""
-    return [
-        *_indented([f"if {done}:", "    break"]),
-        *_indented(_assignments(loop, printer)),
-        "else:",
-        f"    {refusal}",
-    ]
+    """The lines that leave the loop, or prepare the next pass; a loop that is never left may refuse."""
+    otherwise = [] if loop.otherwise is None else ["else:", f"    {refusal}"]
+    return [*_indented([f"if {done}:", "    break"]), *_indented(_assignments(loop, printer)), *otherwise]
 
 
 def array_end(loop: Iterate, printer: ScalarPrinter) -> list[str]:
@@ -54,7 +50,7 @@ def array_end(loop: Iterate, printer: ScalarPrinter) -> list[str]:
         *_indented(
             [f"{state} = advanced(", "    done,", f"    ({state}),", "    (", *_indented(following, 2), "    ),", ")"]
         ),
-        f"require(status, done, Status.{loop.otherwise.name})",
+        *([] if loop.otherwise is None else [f"require(status, done, Status.{loop.otherwise.name})"]),
     ]
 
 

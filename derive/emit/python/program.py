@@ -93,7 +93,8 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
             lines += refusals.lines(same)
         elif isinstance(item, Iterate):
             lines += [*scalar_head(item, printer), *step_lines(item, printer)]
-            lines += scalar_end(item, conjunction([item.done]), refusals.of_loop(item), printer)
+            refusal = "" if item.otherwise is None else refusals.of_loop(item.otherwise, item)
+            lines += scalar_end(item, conjunction([item.done]), refusal, printer)
         elif isinstance(item, Call):
             lines += python_calls.scalar_lines(item, printer, refusals.of_call(item))
         elif isinstance(item, FindRoot):

@@ -35,9 +35,9 @@ class Refusals:
         head = _unless([r.condition for r in requires])
         return [*_notes(requires), head, f"    return {self.answer(requires[0].otherwise)}"]
 
-    def of_loop(self, loop: Iterate) -> str:
+    def of_loop(self, status: Status, loop: Iterate) -> str:
         """The line that refuses where a loop is never left."""
-        return f"return {self.answer(loop.otherwise)}"
+        return f"return {self.answer(status)}"
 
     def of_call(self, call: Call) -> str:
         """The line with which a caller refuses where a shared program does: by passing it on, or with its own."""
@@ -56,9 +56,9 @@ class Explained(Refusals):
             return self._between(limits)
         return [*_notes(requires), *(line for check in self.reasons.checks(requires) for line in self._lines(check))]
 
-    def of_loop(self, loop: Iterate) -> str:
+    def of_loop(self, status: Status, loop: Iterate) -> str:
         """The line that refuses where a loop is never left: a reason without an amount."""
-        return self._refused(loop.otherwise, self.reasons.loop(loop))
+        return self._refused(status, self.reasons.loop(loop))
 
     def of_call(self, call: Call) -> str:
         """The line with which a caller refuses where a shared program does, which gives no reason itself."""

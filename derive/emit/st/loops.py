@@ -21,7 +21,8 @@ def declarations(body: Iterable[Statement]) -> tuple[str, ...]:
     loops = [s for s in body if isinstance(s, Iterate)]
     systems = [s for s in body if isinstance(s, Solve)] + [i for s in loops for i in s.step if isinstance(i, Solve)]
     found = tuple(f"{name} : ARRAY[1..6, 1..6] OF LREAL;" for name in (_MATRIX, _RIGHT)) if systems else ()
-    return (*found, *((f"{_PASS} : INT;", f"{_CONVERGED} : BOOL;") if loops else ()))
+    passes = (f"{_PASS} : INT;",) if loops else ()
+    return (*found, *passes, *((f"{_CONVERGED} : BOOL;",) if any(s.otherwise is not None for s in loops) else ()))
 
 
 def solve_lines(system: Solve, printer: StructuredText) -> Iterator[str]:
@@ -54,18 +55,19 @@ def kept(body: Sequence[Statement]) -> dict[str, str]:
 
 
 def loop_lines(loop: Iterate, step: Sequence[str], printer: StructuredText, refusal: Sequence[str]) -> Iterator[str]:
-    """The lines of an iteration: the start, the bounded loop with the step, and the refusal if it does not converge."""
+    """The lines of an iteration: the start, the bounded loop with the step, and what refuses without convergence."""
     yield from _assigned(loop.state, loop.start, printer)
-    yield f"{_CONVERGED} := FALSE;"
+    if refusal:
+        yield f"{_CONVERGED} := FALSE;"
     yield f"FOR {_PASS} := 1 TO {loop.limit} DO"
     yield from indented(step)
     parts = [printer.print(part) for part in sp.ordered(sp.And.make_args(loop.done))]
-    yield from indented([*conjunction("IF ", parts, " THEN"), *indented([f"{_CONVERGED} := TRUE;", "EXIT;"]), "END_IF"])
+    leave = [f"{_CONVERGED} := TRUE;", "EXIT;"] if refusal else ["EXIT;"]
+    yield from indented([*conjunction("IF ", parts, " THEN"), *indented(leave), "END_IF"])
     yield from indented(list(_assigned(loop.state, loop.following, printer)))
     yield "END_FOR"
-    yield f"IF NOT {_CONVERGED} THEN"
-    yield from indented(refusal)
-    yield "END_IF"
+    if refusal:
+        yield from (f"IF NOT {_CONVERGED} THEN", *indented(refusal), "END_IF")
 
 
 def _assigned(names: Sequence[sp.Symbol], values: Sequence[sp.Expr], printer: StructuredText) -> Iterator[str]:

@@ -94,7 +94,8 @@ def _body(body: Sequence[Item], printer: StructuredText, refusal: Refusal, width
             continue
         if isinstance(first, Iterate):
             step = list(_body(first.step, printer, refusal, width - INSIDE))
-            lines = list(loop_lines(first, step, printer, refusal.of_loop(first)))
+            refused = () if first.otherwise is None else refusal.of_loop(first.otherwise, first)
+            lines = list(loop_lines(first, step, printer, refused))
             yield from ("", *commented(lines, respelled(first.note, printer.names)), "")
             continue
         lets = [s for s in statements if isinstance(s, Let)]

@@ -34,9 +34,9 @@ class Refusal:
         """The lines that refuse with a status."""
         return self.answering(self.errors[status.name])
 
-    def of_loop(self, loop: Iterate) -> tuple[str, ...]:
+    def of_loop(self, status: Status, loop: Iterate) -> tuple[str, ...]:
         """The lines that refuse where a loop is never left."""
-        return self.of(loop.otherwise)
+        return self.of(status)
 
     def of_call(self, call: Call, outcome: str) -> tuple[str, ...]:
         """The lines that refuse where a shared program does: they pass on its error, or have their own."""
@@ -86,9 +86,9 @@ class Explained(Refusal):
         own = self.reasons.call(call)
         return self.answering(outcome) if own is None else self._because(own[1], own[0])
 
-    def of_loop(self, loop: Iterate) -> tuple[str, ...]:
+    def of_loop(self, status: Status, loop: Iterate) -> tuple[str, ...]:
         """The lines that refuse where a loop is never left."""
-        return self._because(self.reasons.loop(loop), loop.otherwise)
+        return self._because(self.reasons.loop(loop), status)
 
     def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
         """The lines that refuse, for each reason separately."""

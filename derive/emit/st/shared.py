@@ -67,7 +67,8 @@ def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterato
         *indented(refusal.of_call(call, OUTCOME)),
         "END_IF",
     ]
-    lines = [*_packed(f"{OUTCOME} := {method_name(call.program)}(", arguments, results), *refused]
+    packed_call = _packed(f"{OUTCOME} := {method_name(call.program)}(", arguments, results)
+    lines = [*packed_call, *(refused if call.program.refuses else ())]
     if not call.is_conditional:
         yield from lines
         return

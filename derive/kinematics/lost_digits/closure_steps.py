@@ -161,7 +161,7 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
         ),
         done=sp.Or(_IS_MET, sp.And(_ANOTHER, sp.Gt(following, _SCAN_ENDS)), _ENDS),
         limit=3 * (PASSES + 1) + SCANNED,
-        otherwise=Status.UNREACHABLE,
+        otherwise=None,
         note="steps of damped least squares on the closure, from one start after the other",
     )
 

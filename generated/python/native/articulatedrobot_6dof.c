@@ -135,6 +135,7 @@ static const int DISTANCE_AXES[] = {0, 1, 2, 3, 4, 5};
 /* The axes that meet a pose, found by steps on the closure, and whether they do. */
 static softkin_status find_meet_pose(const void *machine, const double *given, double *found,
     softkin_refusal *why) {
+  (void)why;
   const articulatedrobot_6dof_machine *k = machine;
   const double given_ref_a1 = given[0], given_ref_a2 = given[1], given_ref_a3 = given[2],
       given_ref_a4 = given[3], given_ref_a5 = given[4], given_ref_a6 = given[5], goal_r11 = given[15],
@@ -259,10 +260,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int next_attempt, passes_left_now;
   bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, is_nearer,
       no_start_is_left, mirrors;
-  for (int pass = 0;; pass += 1) {
-    if (pass == 183) {
-      return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
-    }
+  for (int pass = 0; pass < 183; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);

@@ -94,6 +94,7 @@ static const int DISTANCE_AXES[] = {0, 1, 2};
 /* The axes that meet a pose, found by steps on the closure, and whether they do. */
 static softkin_status find_meet_pose(const void *machine, const double *given, double *found,
     softkin_refusal *why) {
+  (void)why;
   const pos_rrr_machine *k = machine;
   const double given_ref_a1 = given[0], given_ref_a2 = given[1], given_ref_a3 = given[2], goal_x = given[8],
       goal_y = given[9], goal_z = given[10], start_a1 = given[11], start_a2 = given[12], start_a3 = given[13];
@@ -171,10 +172,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       closed_direction_y_q2, closed_axis_a2, nearest_error_now, shared_quotient;
   int next_attempt, passes_left_now;
   bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, no_start_is_left, mirrors, is_nearer;
-  for (int pass = 0;; pass += 1) {
-    if (pass == 183) {
-      return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
-    }
+  for (int pass = 0; pass < 183; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);

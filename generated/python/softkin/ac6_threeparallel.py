@@ -104,7 +104,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel b314f62e5fdb0843"
+    KEY = "ac6_threeparallel ea175b22c32b1440"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -778,8 +778,6 @@ class Ac6ThreeParallel(Mechanism):
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
-        else:
-            return Status.UNREACHABLE
         chosen_a1 = tried_a1
         if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
             chosen_a1 = nearest_period(chosen_a1, closed_near_a1)

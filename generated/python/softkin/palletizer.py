@@ -520,8 +520,6 @@ class Palletizer(OffsetKinematics, TwistChoice):
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
-        else:
-            return Status.UNREACHABLE
         chosen_a1 = tried_a1
         if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
             chosen_a1 = nearest_period(chosen_a1, closed_near_a1)

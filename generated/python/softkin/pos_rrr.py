@@ -96,7 +96,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr d568fb7599356f89"
+    KEY = "pos_rrr bed77ab54538bbc4"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -456,8 +456,6 @@ class PosRRR(OffsetKinematics):
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
-        else:
-            return Status.UNREACHABLE
         chosen_a1 = tried_a1
         if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
             chosen_a1 = nearest_period(chosen_a1, closed_near_a1)
@@ -729,8 +727,6 @@ class PosRRR(OffsetKinematics):
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
-        else:
-            return Status.UNREACHABLE
         chosen_a1 = tried_a1
         if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
             chosen_a1 = nearest_period(chosen_a1, closed_near_a1)

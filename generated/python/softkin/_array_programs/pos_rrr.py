@@ -267,7 +267,6 @@ class ArrayPrograms(Programs):
                     nearest_turn_now,
                 ),
             )
-        require(status, done, Status.UNREACHABLE)
         chosen_a1 = nearest_period(tried_a1, closed_near_a1)
         chosen_a2 = nearest_period(tried_a2, closed_near_a2)
         chosen_a3 = nearest_period(tried_a3, closed_near_a3)
@@ -515,7 +514,6 @@ class ArrayPrograms(Programs):
                     nearest_turn_now,
                 ),
             )
-        require(status, done, Status.UNREACHABLE)
         chosen_a1 = nearest_period(tried_a1, closed_near_a1)
         chosen_a2 = nearest_period(tried_a2, closed_near_a2)
         chosen_a3 = nearest_period(tried_a3, closed_near_a3)
