@@ -65,15 +65,17 @@ def normal_factors(arm: Arm, *, about_z: bool) -> tuple[Factor, ...]:
 
 
 def _way(arm: Arm, frame: Array, turns: Turns, between: Array, before: int | None) -> list[Factor]:
-    """The shifts and turns to the next line: the shifts where they are fewest, and as early as they may be.
+    """The shifts and turns to the next line: the shifts where they are fewest. Of several such places it is the one
+    behind a turn about the line before, which is then a part of the turn there; else the first one.
 
-    before: the letter of the line before. A turn about it is a part of the turn there.
+    before: the letter of the line before.
     """
-    own = turns[:1] if turns and turns[0][0] == before else ()
-    middle, end = (frame @ product(some) for some in (own, turns))
-    first, second = (_shifts(arm, other.T @ between) for other in (middle, end))
-    head, tail = _turns(own), _turns(turns[len(own) :])
-    return [*head, *first, *tail] if len(first) <= len(second) else [*head, *tail, *second]
+    own = 1 if turns and turns[0][0] == before else 0
+    ways = []
+    for count in dict.fromkeys((own, len(turns), 0)):
+        shifts = _shifts(arm, (frame @ product(turns[:count])).T @ between)
+        ways.append([*_turns(turns[:count]), *shifts, *_turns(turns[count:])])
+    return min(ways, key=len)
 
 
 def _shifts(arm: Arm, vector: Array) -> list[Factor]:

@@ -239,8 +239,8 @@ def _positive(described: Mechanism, named: Symbols, machine: Mechanism, labels: 
     """
     stated = [*described.positive, *(b.largest - sp.Abs(b.value) for b in described.bounds)]
     left = [term(sp.sympify(e), named) for e in stated]
-    own = machine.positive[len(described.positive) :]  # lengths of rods that joints change: these are positive as such
-    left += [term(sp.sympify(e), labels) for e in own]
+    rods = {rod.length for rod in machine.rods}  # those that joints change are positive as such; nothing else is added
+    left += [term(sp.sympify(e), labels) for e in machine.positive if e in rods]
     if machine.assembly is None:
         return left
     owner, symbols = (machine, labels) if described.assembly is None else (described, named)

@@ -218,7 +218,8 @@ def test_an_interface_is_an_entry_of_the_project() -> None:
     root = parse(ROOT / "scara/Softkin_Scara2_Z.xml")
     interface = _only(root, "p:addData/p:data[@name='http://www.3s-software.com/plcopenxml/interface']/p:Interface")
     methods = {m.attrib["name"]: m for m in interface.iterfind("{*}Methods/{*}Method")}
-    assert list(methods) == ["Diagnose", "Jacobian", "AxisVelocities", "Margins", "InitializeReason"]
+    at_axes = ["Jacobian", "AxisVelocities", "Margins"]
+    assert list(methods) == ["Diagnose", *at_axes, *[f"{name}From" for name in at_axes], "InitializeReason"]
     assert not list(interface.iter("{*}body"))
     sections = {name: [_local(e) for e in _only(m, "p:interface")] for name, m in methods.items()}
     assert sections["Margins"] == ["returnType", "inOutVars", "inOutVars", "outputVars"]

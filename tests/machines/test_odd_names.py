@@ -15,6 +15,7 @@ from softkin import KinematicsError, Status
 from derive.description.mechanism import Mechanism
 from derive.description.validate import validate
 from derive.emit.python.entries import OF_CLASS
+from derive.emit.softmotion.description import literal
 from derive.emit.softmotion.inputs import wanted_name
 from derive.form.inner_names import with_symbols
 from derive.kinematics.build import build
@@ -99,10 +100,10 @@ def test_every_input_is_called_as_a_user_expects(name: str) -> None:
     assert [p.name for p in type(machine.made.robot).PARAMETERS][: len(expected)] == expected
     notes = machine.made.built.notes()
     assert len(notes) == len(odd.python) + len([n for n in odd.text if n in odd.names.values()])
-    texts = {"Python": _module(machine), "Structured Text": machine.made.built.parts["st"]["text"]}
+    python, block = (" ".join(text.split()) for text in (_module(machine), machine.made.built.parts["st"]["text"]))
     for note in notes:
         language, sentence = note.split(": ", 1)
-        assert sentence in " ".join(texts[language].split())
+        assert sentence in python if language == "Python" else literal(sentence) in block
 
 
 def _module(machine: Both) -> str:

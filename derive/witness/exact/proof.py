@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -11,7 +10,7 @@ from random import Random
 
 import sympy as sp
 
-from derive.description.amounts import in_radians, number_in, with_right_angles
+from derive.description.amounts import number_in, with_right_angles
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role, Turning
 from derive.geometry.frames import Motion
 from derive.ir.program import Program
@@ -25,7 +24,6 @@ from derive.witness.exact.values import ZERO, Angles, Fractional, NotAlgebraic, 
 TRIALS = 3
 _DRAWS = 4000
 """Draws, most of which end at the first number without a root."""
-_ROUNDING = 1e-14
 _LARGEST = 10**9
 """The largest multiple of which angles are drawn."""
 _TRIED = 4096
@@ -56,10 +54,12 @@ class Trial:
         """The joint values of the description."""
         return self._joints(self.described, axes, self.own)
 
-    def machine_joints(self) -> dict[str, Value]:
-        """The planted joint values of the machine, which may have other gears: nothing is measured by them."""
-        numbers = {name: _as_number(value) for name, value in self.inputs.items()}
-        return self._joints(self.kin.mechanism, self.axes, numbers)
+    def machine_values(self) -> dict[str, Value]:
+        """The values of the machine's own symbols, whose joints may have other gears: nothing is measured by them."""
+        fixed = [p for p in self.kin.mechanism.parameters if p.fixed is not None]
+        known = {name: _as_number(value) for name, value in self.inputs.items()}
+        known |= {p.name: evaluated([p.fixed], {}, self.angles, self.degree)[0] for p in fixed}
+        return known | self._joints(self.kin.mechanism, self.axes, known)
 
     def _joints(self, of: Mechanism, axes: Mapping[str, Value], known: Mapping[str, Value]) -> dict[str, Value]:
         motors: dict[str, Value] = {}
@@ -76,7 +76,7 @@ class Trial:
         """The closure of the description: zeros where it holds."""
         joints = self.joints(axes)
         if self.described.chain is not None:
-            frame = frame_of(self, joints)
+            frame = self.frame(self.described, {**self.own, **joints})
             return [(frame[n].number - pose[n].number) % PRIME for n in self.commanded()]
         stated = [sp.sympify(e) for e in self.described.equations]
         if self.described.heading is not None:
@@ -84,6 +84,28 @@ class Trial:
             stated += [sp.cos(heading) - ROTATION_ENTRIES[0], sp.sin(heading) - ROTATION_ENTRIES[3]]
         values = evaluated(stated, {**self.own, **joints, **pose}, self.angles, self.degree)
         return [v.number for v in values]
+
+    def frame(self, of: Mechanism, known: Mapping[str, Value]) -> dict[str, Value]:
+        """The frame at the end of a chain, multiplied out factor by factor."""
+        assert of.chain is not None
+        amounts = evaluated([f.amount for f in of.chain.factors], known, self.angles, self.degree)
+        position, columns = [0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        half_a_turn = self.degree * fraction(Fraction(180))
+        for factor, amount in zip(of.chain.factors, amounts, strict=True):
+            if factor.motion is Motion.SHIFT:
+                column = columns[factor.axis]
+                position = [(p + c * amount.number) % PRIME for p, c in zip(position, column, strict=True)]
+                continue
+            angle = amount if factor.motion is Motion.TURN else amount * half_a_turn
+            columns = _turned(columns, factor.axis, self.angles.pair(angle))
+        rows = [columns[k][i] for i in range(3) for k in range(3)]
+        return {name: Value(number) for name, number in zip(_POSE, (*position, *rows), strict=True)}
+
+    def is_rounded(self) -> bool:
+        """Whether the machine has decimals in place of oblique numbers of the description: coordinates between oblique
+        axes, and their angles. It is then not the same machine but for rounding, which is measured in real numbers.
+        """
+        return _is_oblique(self.described) and self.frame(self.kin.mechanism, self.machine_values()) != self.pose
 
     def commanded(self) -> tuple[str, ...]:
         """The entries of the pose that a chain must meet."""
@@ -93,23 +115,6 @@ class Trial:
         column = ("r13", "r23", "r33")
         is_column = turning in (Turning.DIRECTION, Turning.PITCH)
         return (*self.described.task.position, *(column if is_column else _POSE[3:]))
-
-
-def frame_of(trial: Trial, joints: Mapping[str, Value]) -> dict[str, Value]:
-    """The frame at the end of the chain of the description, multiplied out factor by factor."""
-    assert trial.described.chain is not None
-    factors = trial.described.chain.factors
-    amounts = evaluated([f.amount for f in factors], {**trial.own, **joints}, trial.angles, trial.degree)
-    position, columns = [0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-    half_a_turn = trial.degree * fraction(Fraction(180))
-    for factor, amount in zip(factors, amounts, strict=True):
-        if factor.motion is Motion.SHIFT:
-            position = [(p + c * amount.number) % PRIME for p, c in zip(position, columns[factor.axis], strict=True)]
-            continue
-        angle = amount if factor.motion is Motion.TURN else amount * half_a_turn
-        columns = _turned(columns, factor.axis, trial.angles.pair(angle))
-    rows = [columns[k][i] for i in range(3) for k in range(3)]
-    return {name: Value(number) for name, number in zip(_POSE, (*position, *rows), strict=True)}
 
 
 def _turned(columns: Columns, axis: int, pair: Pair) -> Columns:
@@ -127,12 +132,12 @@ def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
     """
     if kin.mechanism.search is not None:
         return Exact(0, "its roots are searched along a joint")
-    if _rounds_angles(kin.mechanism, described):
-        return Exact(0, "angles between its oblique axes are decimal numbers that the description does not hold")
     described, rng, found, multiple = with_right_angles(described), Random(20260), 0, 1
     for _ in range(_DRAWS):
         try:
             trial = drawn(kin, described, rng, multiple)
+            if trial.is_rounded():
+                return Exact(0, "between its oblique axes are decimal numbers that the description does not hold")
             _check_forward(trial)
             _check_inverse(trial)
         except NoRoot:
@@ -150,20 +155,15 @@ def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
     return Exact(0, "too few random numbers have all the roots that it takes")
 
 
-def _rounds_angles(machine: Mechanism, described: Mechanism) -> bool:
-    """Whether the machine has a fixed angle that is none of the description, but for right angles: it was computed, and
-    has so many digits.
-    """
-    if described.chain is None:
-        return False
-    stated = [in_radians(number_in(f.amount)) for f in described.chain.factors if f.motion is Motion.TURN]
-    fixed = [math.radians(p.nominal) for p in machine.parameters if p.fixed is not None and p.role is Role.ANGLE]
-    return not all(any(_is_right(v + w) or _is_right(v - w) for w in stated) for v in fixed)
-
-
-def _is_right(angle: float) -> bool:
-    """Whether an angle in radians is a multiple of 90°."""
-    return abs(math.remainder(angle, math.pi / 2)) < _ROUNDING
+def _is_oblique(described: Mechanism) -> bool:
+    """Whether a chain has a fixed turn that is no right angle, or a number in a shift that is no fraction."""
+    for factor in described.chain.factors if described.chain is not None else ():
+        if factor.motion is Motion.TURN and not (2 * number_in(factor.amount) / sp.pi).is_Integer:
+            return True
+        odd = sp.sympify(factor.amount).atoms(sp.Function, sp.Pow) if factor.motion is Motion.SHIFT else ()
+        if any(a.is_number and a.as_base_exp()[0] != sp.pi for a in odd):
+            return True
+    return False
 
 
 def drawn(kin: Kinematics, described: Mechanism, rng: Random, multiple: int) -> Trial:
@@ -185,7 +185,7 @@ def drawn(kin: Kinematics, described: Mechanism, rng: Random, multiple: int) -> 
     trial = Trial(kin, described, angles, degree, inputs, own, axes, {})
     _know(trial)
     if described.chain is not None:
-        trial.pose = frame_of(trial, trial.joints(axes))
+        trial.pose = trial.frame(described, {**own, **trial.joints(axes)})
     elif described.is_platform:
         trial.pose = _any_pose(trial, rng)
     return trial
@@ -201,7 +201,8 @@ def _know(trial: Trial) -> None:
         stated = [f.args[0] for e in trial.described.equations for f in sp.sympify(e).atoms(sp.sin, sp.cos)]
     moving = sorted((a for a in {*stated, *turned} if a.free_symbols & turned), key=sp.default_sort_key)
     told = evaluated(moving, {**trial.own, **joints}, trial.angles, trial.degree)
-    for angle in (*told, *trial.machine_joints().values()):
+    told += [trial.machine_values()[j.symbol.name] for j in trial.kin.mechanism.joints]
+    for angle in told:
         if angle.form is not None:
             trial.angles.know(angle)
 

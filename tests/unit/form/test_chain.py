@@ -137,6 +137,11 @@ FORMS = {
         Rz(A1 + 1.57) * Tx(35) * Rz(A2),
         "Rz(a1 + 1.57) * Tx(35) * Rz(a2)",
     ),
+    "a link stands in front of the turn behind it": (
+        CHAINS["SCARA"],
+        Rz(A1) * Tx(P1) * Rz(A2) * Tx(LINK) * Rz(0.5),
+        "Rz(a1) * Tx(p1) * Rz(a2) * Tx(link) * Rz(0.500000000000000)",
+    ),
 }
 
 

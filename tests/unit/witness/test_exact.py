@@ -10,9 +10,13 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
+from derive.description.mechanism import Mechanism, Task, length, linear, rotary
+from derive.description.validate import validate
+from derive.frames import Rz, Tx, Ty
 from derive.ir.primitives import Atan2
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import real
+from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from derive.witness import Disagreement
 from derive.witness.exact.field import PRIME, NoRoot, of_angle, on_circle, root, root_of_whole, times, turned
@@ -82,6 +86,29 @@ def test_what_cannot_be_asked_is_said() -> None:
     searched = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
     exact = check_exactly(kinematics_of(named(searched)), named(searched))
     assert exact.sentence == "The equations were not checked in a finite field: its roots are searched along a joint."
+
+
+P1, A1, LINK = linear("P1", "rail"), rotary("A1", "turn"), length("link", "link", nominal=300.0)
+OBLIQUE = {
+    "a turn between shifts": Tx(P1) * Rz(sp.pi / 3) * Tx(200) * Rz(A1) * Tx(LINK),
+    "a slide along a diagonal": Tx(P1 * sp.cos(sp.pi / 9)) * Ty(P1 * sp.sin(sp.pi / 9)) * Rz(A1) * Tx(LINK),
+    "a root": Tx(P1) * Ty(100 * sp.sqrt(2)) * Rz(A1) * Tx(LINK),
+}
+
+
+@pytest.mark.parametrize("kind", OBLIQUE)
+def test_decimals_in_place_of_oblique_numbers_are_said(kind: str) -> None:
+    """The form of the machine is rounded, so its programs do not meet the description exactly: no fault of theirs."""
+    machine = Mechanism(name="Oblique", parameters=(LINK,), joints=(P1, A1), chain=OBLIQUE[kind], task=Task("xy"))
+    described = validate(machine)
+    exact = check_exactly(build(described), described)
+    assert (exact.trials, exact.but.partition(" are ")[0]) == (0, "between its oblique axes")
+
+
+def test_a_turn_behind_the_links_is_exact() -> None:
+    chain = Tx(P1) * Rz(A1) * Tx(LINK) * Rz(sp.pi / 5)
+    described = validate(Mechanism(name="Turned", parameters=(LINK,), joints=(P1, A1), chain=chain, task=Task("xy")))
+    assert check_exactly(build(described), described).trials == 3
 
 
 def changed(program: Program, change: Callable[[Let], Let]) -> Program:
