@@ -26,6 +26,7 @@ from derive.ir.constants import (
     DEGREE,
     DOUBTFUL,
     FREE_ANGLE,
+    LATTICE,
     LEAST_DAMPING,
     LONGEST_STEP,
     NEARLY,
@@ -213,7 +214,11 @@ def _closed_form(mechanism: Mechanism, branch: Program) -> tuple[list[Let], dict
     lets = branch.lets()
     names = {let.name: called(f"closed_{let.name.name}", let.name) for let in lets} | GOAL
     names |= {FREE_ANGLE: _FREE}
-    turned = {reference_value(j): {j.reference: j.reference + _FREE_TURN} for j in mechanism.joints if j.is_angle}
+    turned = {
+        reference_value(j): {j.reference: j.reference + pow(LATTICE, k, SCANNED) * _FREE_TURN}
+        for k, j in enumerate(mechanism.joints)
+        if j.is_angle
+    }
     found = [
         Let(names[let.name], let.value.xreplace(turned.get(let.name, {})).xreplace(names), let.note)
         for let in lets
