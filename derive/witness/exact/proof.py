@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from random import Random
 
 import sympy as sp
 
-from derive.description.amounts import in_radians, number_in, with_right_angles
+from derive.description.amounts import as_right_angles, number_in, with_right_angles, without_decimals
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role, Turning
 from derive.geometry.frames import Motion
 from derive.ir.program import Program
@@ -23,13 +22,11 @@ from derive.witness.exact.runs import Known, Run, Signs, evaluated
 from derive.witness.exact.values import ZERO, Angles, Fractional, NotAlgebraic, NotPlanted, Value, fraction
 
 TRIALS = 3
-_DRAWS = 4000
-"""Draws, most of which end at the first number without a root."""
-_ROUNDING = 1e-14
+_STEPS = 500
+"""Random machines that are drawn, and programs that are run: they take some 2 s."""
+_ROUNDED = "numbers that its form computes are rounded"
 _LARGEST = 10**9
 """The largest multiple of which angles are drawn."""
-_TRIED = 4096
-"""Signs of roots that are tried for one pose."""
 _POSE = ("x", "y", "z", *(r.name for r in ROTATION_ENTRIES))
 Columns = list[list[int]]
 _SETTINGS = ("warning_distance", MIN_TYPE2_MARGIN)
@@ -51,6 +48,8 @@ class Trial:
     axes: dict[str, Value]
     """The planted axis values."""
     pose: dict[str, Value]
+    steps: Iterator[int]
+    """The steps that are left."""
 
     def joints(self, axes: Mapping[str, Value]) -> dict[str, Value]:
         """The joint values of the description."""
@@ -124,15 +123,49 @@ def _turned(columns: Columns, axis: int, pair: Pair) -> Columns:
 def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
     """Forward and inverse kinematics meet the equations exactly at random machines and poses, or it cannot be asked.
     Raises `Disagreement` where one does not.
+
+    The form of a machine with oblique frames holds numbers that were computed, and rounded: where the equations of the
+    description do not hold to the last digit, those of the form do.
     """
     if kin.mechanism.search is not None:
         return Exact(0, "its roots are searched along a joint")
-    if _rounds_angles(kin.mechanism, described):
-        return Exact(0, "angles between its oblique axes are decimal numbers that the description does not hold")
-    described, rng, found, multiple = with_right_angles(described), Random(20260), 0, 1
-    for _ in range(_DRAWS):
+    described = _with_exact_ends(with_right_angles(described))
+    try:
+        return _checked(kin, described)
+    except Disagreement:
+        if not _is_rounded(kin.mechanism, described):
+            raise
+    try:
+        exact = _checked(kin, kin.mechanism)
+    except Disagreement:
+        return Exact(0, _ROUNDED)
+    return replace(exact, but=_ROUNDED, what="equations of the machine's form") if exact.trials else exact
+
+
+def _with_exact_ends(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with fractions for the decimals at the ends of its rods, which their equations subtract."""
+    ends = [(tuple(map(without_decimals, r.base)), tuple(map(without_decimals, r.plate))) for r in mechanism.rods]
+    rods = (replace(r, base=b, plate=p) for r, (b, p) in zip(mechanism.rods, ends, strict=True))
+    return replace(mechanism, rods=tuple(rods))
+
+
+def _is_rounded(machine: Mechanism, described: Mechanism) -> bool:
+    """Whether numbers of the machine were computed of those of the description, other than by sums."""
+    if described.chain is None:
+        return any(sp.sympify(e).has(sp.Float) for e in machine.equations)
+    turns = [number_in(f.amount) for f in described.chain.factors if f.motion is Motion.TURN]
+    shifts = [f.amount for f in described.chain.factors if f.motion is Motion.SHIFT]
+    powers = [p for a in shifts for p in a.atoms(sp.Pow, sp.Function) if p.is_number and p.as_base_exp()[0] != sp.pi]
+    fixed = [p for p in machine.parameters if p.fixed is not None and p.role is Role.ANGLE]
+    return bool(powers or fixed) or any(as_right_angles(n) is None for n in turns)
+
+
+def _checked(kin: Kinematics, described: Mechanism) -> Exact:
+    """The check against the equations of a mechanism. Raises `Disagreement`."""
+    rng, found, multiple, steps = Random(20260), 0, 1, iter(range(_STEPS))
+    for _ in steps:
         try:
-            trial = drawn(kin, described, rng, multiple)
+            trial = drawn(kin, described, rng, multiple, steps)
             _check_forward(trial)
             _check_inverse(trial)
         except NoRoot:
@@ -146,30 +179,18 @@ def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
             return Exact(0, str(problem))
         found += 1
         if found == TRIALS:
-            return Exact(found, "forward kinematics iterates" if described.is_platform else "")
-    return Exact(0, "too few random numbers have all the roots that it takes")
+            break
+    if not found:
+        return Exact(0, "too few random numbers have all the roots that it takes")
+    if described.is_platform:
+        return Exact(found, "forward kinematics iterates", "equations of the inverse")
+    return Exact(found)
 
 
-def _rounds_angles(machine: Mechanism, described: Mechanism) -> bool:
-    """Whether the machine has a fixed angle that is none of the description, but for right angles: it was computed, and
-    has so many digits.
-    """
-    if described.chain is None:
-        return False
-    stated = [in_radians(number_in(f.amount)) for f in described.chain.factors if f.motion is Motion.TURN]
-    fixed = [math.radians(p.nominal) for p in machine.parameters if p.fixed is not None and p.role is Role.ANGLE]
-    return not all(any(_is_right(v + w) or _is_right(v - w) for w in stated) for v in fixed)
-
-
-def _is_right(angle: float) -> bool:
-    """Whether an angle in radians is a multiple of 90°."""
-    return abs(math.remainder(angle, math.pi / 2)) < _ROUNDING
-
-
-def drawn(kin: Kinematics, described: Mechanism, rng: Random, multiple: int) -> Trial:
+def drawn(kin: Kinematics, described: Mechanism, rng: Random, multiple: int, steps: Iterator[int]) -> Trial:
     """A random machine with a random pose. multiple: that of an angle that every axis value is."""
-    angles = Angles()
     degree = Value(_any(rng), {("", 1): Fraction(1)})
+    angles = Angles(degree.number)
 
     def angle(name: str) -> Value:
         whole = angles.planted(name, on_circle(_any(rng)), _any(rng)) * fraction(Fraction(multiple))
@@ -182,7 +203,7 @@ def drawn(kin: Kinematics, described: Mechanism, rng: Random, multiple: int) -> 
     given = [p for p in described.parameters if p.symbol.name not in numbers]
     own = numbers | {p.symbol.name: _as_number(inputs[named[p.given_name]]) for p in given}
     axes = {j.axis.name: angle(j.axis.name) if j.in_degrees else Value(_any(rng)) for j in described.joints}
-    trial = Trial(kin, described, angles, degree, inputs, own, axes, {})
+    trial = Trial(kin, described, angles, degree, inputs, own, axes, {}, steps)
     _know(trial)
     if described.chain is not None:
         trial.pose = frame_of(trial, trial.joints(axes))
@@ -239,10 +260,12 @@ def _any_pose(trial: Trial, rng: Random) -> dict[str, Value]:
 
 
 def _runs(trial: Trial, program_name: str, given: Mapping[str, Value], accept: Callable[[Run], bool]) -> None:
-    """Run a program with every sign of its roots until the answer is accepted; raises `Disagreement` where none is."""
+    """Run a program with every sign of its roots until the answer is accepted; raises `Disagreement` where none is, and
+    `NoRoot` where no steps are left.
+    """
     program = getattr(trial.kin, program_name)
     signs: Signs | None = Signs()
-    for _ in range(_TRIED):
+    for _ in trial.steps:
         assert signs is not None
         with suppress(NotPlanted):
             if accept(_begun(trial, program, given, signs)):
@@ -252,7 +275,7 @@ def _runs(trial: Trial, program_name: str, given: Mapping[str, Value], accept: C
             raise Disagreement(
                 f"{program_name} kinematics does not meet the closure exactly, whatever signs roots have"
             )
-    raise NotAlgebraic("it takes too many roots, each with two signs")
+    raise NoRoot
 
 
 def _begun(trial: Trial, program: Program, given: Mapping[str, Value], signs: Signs) -> Run:
