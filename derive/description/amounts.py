@@ -30,6 +30,11 @@ def number_in(amount: sp.Expr) -> sp.Expr:
     return sp.Add(*[t for t in sp.Add.make_args(sp.expand(amount)) if not t.free_symbols - {DEGREE}])
 
 
+def without_decimals(amount: sp.Expr) -> sp.Expr:
+    """The amount with fractions for its decimals, as they are written: 0.425 is 17/40."""
+    return amount.xreplace({f: sp.Rational(repr(float(f))) for f in amount.atoms(sp.Float)})
+
+
 def in_radians(number: sp.Expr) -> float:
     """The value of a number in which `DEGREE` may stand."""
     return float(number.subs(DEGREE, sp.pi / 180))

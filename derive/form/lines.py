@@ -15,8 +15,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.description.amounts import in_radians, number_in
-from derive.form.exact import without_decimals
+from derive.description.amounts import in_radians, number_in, without_decimals
 from derive.geometry.frames import Factor, Motion
 
 Array = NDArray[np.float64]

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from derive.description.amounts import with_right_angles
 from derive.description.mechanism import Mechanism
 from derive.form.chain import with_normal_chain
+from derive.form.exact import with_exact_numbers
 from derive.form.gears import with_gears
 from derive.form.inner_names import with_inner_names
 from derive.form.loop_angles import with_named_loop_angles
@@ -21,4 +22,4 @@ def in_form(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> M
     """
     own = with_normal_chain(with_right_angles(with_inner_names(mechanism, further)))
     geared = with_gears(own)  # a turn written in two parts is one by now
-    return with_named_numbers(with_named_loop_angles(with_plain_rods(geared)))
+    return with_named_numbers(with_named_loop_angles(with_plain_rods(with_exact_numbers(geared))))

@@ -10,10 +10,10 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.description.amounts import in_radians, number_in
+from derive.description.amounts import in_radians, number_in, without_decimals
 from derive.description.dimensions import Parameter, Role
 from derive.description.mechanism import Mechanism
-from derive.form.exact import is_right, without_decimals
+from derive.form.exact import is_right
 from derive.form.named_angles import NamedAngle, NamedAngles
 from derive.geometry.frames import Chain, Factor, Motion
 from derive.ir.constants import DEGREE

@@ -68,6 +68,8 @@ class Exact:
     """Random machines and poses at which they hold; 0 where nothing can be asked."""
     but: str = ""
     """Why not, or what is not asked."""
+    what: str = "equations"
+    """What holds."""
 
     @property
     def sentence(self) -> str:
@@ -75,9 +77,7 @@ class Exact:
         if not self.trials:
             return f"The equations were not checked in a finite field: {self.but}."
         where = f"(checked in a finite field at {self.trials} random machines and poses)"
-        if self.but:
-            return f"The equations of the inverse hold exactly {where}; {self.but}."
-        return f"The equations hold exactly {where}."
+        return f"The {self.what} hold exactly {where}{f'; {self.but}' if self.but else ''}."
 
 
 @dataclass(frozen=True)

@@ -199,7 +199,23 @@ def _places(described: Mechanism) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, .
     turned = [f.args[0] for f in sorted(functions, key=sp.default_sort_key)]
     turned += [] if described.heading is None else [described.heading]
     angles = tuple(dict.fromkeys(a for a in turned if a.free_symbols & joints))
-    return angles, tuple(j.symbol for j in described.joints if not any(a.has(j.symbol) for a in angles))
+    turning = {s for a in angles for s in a.free_symbols & joints}
+    return angles, _lengths(described, turning)
+
+
+def _lengths(described: Mechanism, turning: set[sp.Basic]) -> tuple[sp.Expr, ...]:
+    """The joints that are lengths, each with the angles that equations add to it: a quill that climbs with a turn is
+    elsewhere after a whole one, and the solution is the same.
+    """
+    joints = {j.symbol for j in described.joints}
+    own = joints | {p.symbol for p in described.parameters}
+    climbing: dict[sp.Basic, sp.Expr] = {}
+    for total in (t for e in described.equations for t in sp.preorder_traversal(sp.sympify(e)) if t.is_Add):
+        shifts = (t for t in total.args if t.free_symbols <= own and not t.has(sp.sin, sp.cos))
+        shift = sp.Add(*[t for t in shifts if t.free_symbols & joints])
+        if shift.free_symbols & turning:
+            climbing |= dict.fromkeys(shift.free_symbols & (joints - turning), shift)
+    return tuple(climbing.get(j.symbol, j.symbol) for j in described.joints if j.symbol not in turning)
 
 
 def _rates(turned: Term, q: Term, is_angle: NDArray[np.bool_]) -> Term:

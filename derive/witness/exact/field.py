@@ -23,7 +23,7 @@ Pair = tuple[int, int]
 
 
 class NoRoot(Exception):
-    """A number has no square root in the field: other numbers have to be drawn."""
+    """A number has no square root in the field, or its sign was not found: other numbers have to be drawn."""
 
 
 def inverse(number: int) -> int:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from random import Random
 
 import sympy as sp
 
-from derive.description.amounts import number_in, with_right_angles
+from derive.description.amounts import as_right_angles, number_in, with_right_angles, without_decimals
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role, Turning
 from derive.geometry.frames import Motion
 from derive.ir.program import Program
@@ -22,12 +22,11 @@ from derive.witness.exact.runs import Known, Run, Signs, evaluated
 from derive.witness.exact.values import ZERO, Angles, Fractional, NotAlgebraic, NotPlanted, Value, fraction
 
 TRIALS = 3
-_DRAWS = 4000
-"""Draws, most of which end at the first number without a root."""
+_STEPS = 500
+"""Random machines that are drawn, and programs that are run: they take some 2 s."""
+_ROUNDED = "numbers that its form computes are rounded"
 _LARGEST = 10**9
 """The largest multiple of which angles are drawn."""
-_TRIED = 4096
-"""Signs of roots that are tried for one pose."""
 _POSE = ("x", "y", "z", *(r.name for r in ROTATION_ENTRIES))
 Columns = list[list[int]]
 _SETTINGS = ("warning_distance", MIN_TYPE2_MARGIN)
@@ -49,17 +48,17 @@ class Trial:
     axes: dict[str, Value]
     """The planted axis values."""
     pose: dict[str, Value]
+    steps: Iterator[int]
+    """The steps that are left."""
 
     def joints(self, axes: Mapping[str, Value]) -> dict[str, Value]:
         """The joint values of the description."""
         return self._joints(self.described, axes, self.own)
 
-    def machine_values(self) -> dict[str, Value]:
-        """The values of the machine's own symbols, whose joints may have other gears: nothing is measured by them."""
-        fixed = [p for p in self.kin.mechanism.parameters if p.fixed is not None]
-        known = {name: _as_number(value) for name, value in self.inputs.items()}
-        known |= {p.name: evaluated([p.fixed], {}, self.angles, self.degree)[0] for p in fixed}
-        return known | self._joints(self.kin.mechanism, self.axes, known)
+    def machine_joints(self) -> dict[str, Value]:
+        """The planted joint values of the machine, which may have other gears: nothing is measured by them."""
+        numbers = {name: _as_number(value) for name, value in self.inputs.items()}
+        return self._joints(self.kin.mechanism, self.axes, numbers)
 
     def _joints(self, of: Mechanism, axes: Mapping[str, Value], known: Mapping[str, Value]) -> dict[str, Value]:
         motors: dict[str, Value] = {}
@@ -76,7 +75,7 @@ class Trial:
         """The closure of the description: zeros where it holds."""
         joints = self.joints(axes)
         if self.described.chain is not None:
-            frame = self.frame(self.described, {**self.own, **joints})
+            frame = frame_of(self, joints)
             return [(frame[n].number - pose[n].number) % PRIME for n in self.commanded()]
         stated = [sp.sympify(e) for e in self.described.equations]
         if self.described.heading is not None:
@@ -84,28 +83,6 @@ class Trial:
             stated += [sp.cos(heading) - ROTATION_ENTRIES[0], sp.sin(heading) - ROTATION_ENTRIES[3]]
         values = evaluated(stated, {**self.own, **joints, **pose}, self.angles, self.degree)
         return [v.number for v in values]
-
-    def frame(self, of: Mechanism, known: Mapping[str, Value]) -> dict[str, Value]:
-        """The frame at the end of a chain, multiplied out factor by factor."""
-        assert of.chain is not None
-        amounts = evaluated([f.amount for f in of.chain.factors], known, self.angles, self.degree)
-        position, columns = [0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-        half_a_turn = self.degree * fraction(Fraction(180))
-        for factor, amount in zip(of.chain.factors, amounts, strict=True):
-            if factor.motion is Motion.SHIFT:
-                column = columns[factor.axis]
-                position = [(p + c * amount.number) % PRIME for p, c in zip(position, column, strict=True)]
-                continue
-            angle = amount if factor.motion is Motion.TURN else amount * half_a_turn
-            columns = _turned(columns, factor.axis, self.angles.pair(angle))
-        rows = [columns[k][i] for i in range(3) for k in range(3)]
-        return {name: Value(number) for name, number in zip(_POSE, (*position, *rows), strict=True)}
-
-    def is_rounded(self) -> bool:
-        """Whether the machine has decimals in place of oblique numbers of the description: coordinates between oblique
-        axes, and their angles. It is then not the same machine but for rounding, which is measured in real numbers.
-        """
-        return _is_oblique(self.described) and self.frame(self.kin.mechanism, self.machine_values()) != self.pose
 
     def commanded(self) -> tuple[str, ...]:
         """The entries of the pose that a chain must meet."""
@@ -115,6 +92,23 @@ class Trial:
         column = ("r13", "r23", "r33")
         is_column = turning in (Turning.DIRECTION, Turning.PITCH)
         return (*self.described.task.position, *(column if is_column else _POSE[3:]))
+
+
+def frame_of(trial: Trial, joints: Mapping[str, Value]) -> dict[str, Value]:
+    """The frame at the end of the chain of the description, multiplied out factor by factor."""
+    assert trial.described.chain is not None
+    factors = trial.described.chain.factors
+    amounts = evaluated([f.amount for f in factors], {**trial.own, **joints}, trial.angles, trial.degree)
+    position, columns = [0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    half_a_turn = trial.degree * fraction(Fraction(180))
+    for factor, amount in zip(factors, amounts, strict=True):
+        if factor.motion is Motion.SHIFT:
+            position = [(p + c * amount.number) % PRIME for p, c in zip(position, columns[factor.axis], strict=True)]
+            continue
+        angle = amount if factor.motion is Motion.TURN else amount * half_a_turn
+        columns = _turned(columns, factor.axis, trial.angles.pair(angle))
+    rows = [columns[k][i] for i in range(3) for k in range(3)]
+    return {name: Value(number) for name, number in zip(_POSE, (*position, *rows), strict=True)}
 
 
 def _turned(columns: Columns, axis: int, pair: Pair) -> Columns:
@@ -129,15 +123,49 @@ def _turned(columns: Columns, axis: int, pair: Pair) -> Columns:
 def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
     """Forward and inverse kinematics meet the equations exactly at random machines and poses, or it cannot be asked.
     Raises `Disagreement` where one does not.
+
+    The form of a machine with oblique frames holds numbers that were computed, and rounded: where the equations of the
+    description do not hold to the last digit, those of the form do.
     """
     if kin.mechanism.search is not None:
         return Exact(0, "its roots are searched along a joint")
-    described, rng, found, multiple = with_right_angles(described), Random(20260), 0, 1
-    for _ in range(_DRAWS):
+    described = _with_exact_ends(with_right_angles(described))
+    try:
+        return _checked(kin, described)
+    except Disagreement:
+        if not _is_rounded(kin.mechanism, described):
+            raise
+    try:
+        exact = _checked(kin, kin.mechanism)
+    except Disagreement:
+        return Exact(0, _ROUNDED)
+    return replace(exact, but=_ROUNDED, what="equations of the machine's form") if exact.trials else exact
+
+
+def _with_exact_ends(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with fractions for the decimals at the ends of its rods, which their equations subtract."""
+    ends = [(tuple(map(without_decimals, r.base)), tuple(map(without_decimals, r.plate))) for r in mechanism.rods]
+    rods = (replace(r, base=b, plate=p) for r, (b, p) in zip(mechanism.rods, ends, strict=True))
+    return replace(mechanism, rods=tuple(rods))
+
+
+def _is_rounded(machine: Mechanism, described: Mechanism) -> bool:
+    """Whether numbers of the machine were computed of those of the description, other than by sums."""
+    if described.chain is None:
+        return any(sp.sympify(e).has(sp.Float) for e in machine.equations)
+    turns = [number_in(f.amount) for f in described.chain.factors if f.motion is Motion.TURN]
+    shifts = [f.amount for f in described.chain.factors if f.motion is Motion.SHIFT]
+    powers = [p for a in shifts for p in a.atoms(sp.Pow, sp.Function) if p.is_number and p.as_base_exp()[0] != sp.pi]
+    fixed = [p for p in machine.parameters if p.fixed is not None and p.role is Role.ANGLE]
+    return bool(powers or fixed) or any(as_right_angles(n) is None for n in turns)
+
+
+def _checked(kin: Kinematics, described: Mechanism) -> Exact:
+    """The check against the equations of a mechanism. Raises `Disagreement`."""
+    rng, found, multiple, steps = Random(20260), 0, 1, iter(range(_STEPS))
+    for _ in steps:
         try:
-            trial = drawn(kin, described, rng, multiple)
-            if trial.is_rounded():
-                return Exact(0, "between its oblique axes are decimal numbers that the description does not hold")
+            trial = drawn(kin, described, rng, multiple, steps)
             _check_forward(trial)
             _check_inverse(trial)
         except NoRoot:
@@ -151,25 +179,18 @@ def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
             return Exact(0, str(problem))
         found += 1
         if found == TRIALS:
-            return Exact(found, "forward kinematics iterates" if described.is_platform else "")
-    return Exact(0, "too few random numbers have all the roots that it takes")
+            break
+    if not found:
+        return Exact(0, "too few random numbers have all the roots that it takes")
+    if described.is_platform:
+        return Exact(found, "forward kinematics iterates", "equations of the inverse")
+    return Exact(found)
 
 
-def _is_oblique(described: Mechanism) -> bool:
-    """Whether a chain has a fixed turn that is no right angle, or a number in a shift that is no fraction."""
-    for factor in described.chain.factors if described.chain is not None else ():
-        if factor.motion is Motion.TURN and not (2 * number_in(factor.amount) / sp.pi).is_Integer:
-            return True
-        odd = sp.sympify(factor.amount).atoms(sp.Function, sp.Pow) if factor.motion is Motion.SHIFT else ()
-        if any(a.is_number and a.as_base_exp()[0] != sp.pi for a in odd):
-            return True
-    return False
-
-
-def drawn(kin: Kinematics, described: Mechanism, rng: Random, multiple: int) -> Trial:
+def drawn(kin: Kinematics, described: Mechanism, rng: Random, multiple: int, steps: Iterator[int]) -> Trial:
     """A random machine with a random pose. multiple: that of an angle that every axis value is."""
-    angles = Angles()
     degree = Value(_any(rng), {("", 1): Fraction(1)})
+    angles = Angles(degree.number)
 
     def angle(name: str) -> Value:
         whole = angles.planted(name, on_circle(_any(rng)), _any(rng)) * fraction(Fraction(multiple))
@@ -182,10 +203,10 @@ def drawn(kin: Kinematics, described: Mechanism, rng: Random, multiple: int) -> 
     given = [p for p in described.parameters if p.symbol.name not in numbers]
     own = numbers | {p.symbol.name: _as_number(inputs[named[p.given_name]]) for p in given}
     axes = {j.axis.name: angle(j.axis.name) if j.in_degrees else Value(_any(rng)) for j in described.joints}
-    trial = Trial(kin, described, angles, degree, inputs, own, axes, {})
+    trial = Trial(kin, described, angles, degree, inputs, own, axes, {}, steps)
     _know(trial)
     if described.chain is not None:
-        trial.pose = trial.frame(described, {**own, **trial.joints(axes)})
+        trial.pose = frame_of(trial, trial.joints(axes))
     elif described.is_platform:
         trial.pose = _any_pose(trial, rng)
     return trial
@@ -201,8 +222,7 @@ def _know(trial: Trial) -> None:
         stated = [f.args[0] for e in trial.described.equations for f in sp.sympify(e).atoms(sp.sin, sp.cos)]
     moving = sorted((a for a in {*stated, *turned} if a.free_symbols & turned), key=sp.default_sort_key)
     told = evaluated(moving, {**trial.own, **joints}, trial.angles, trial.degree)
-    told += [trial.machine_values()[j.symbol.name] for j in trial.kin.mechanism.joints]
-    for angle in told:
+    for angle in (*told, *trial.machine_joints().values()):
         if angle.form is not None:
             trial.angles.know(angle)
 
@@ -240,10 +260,12 @@ def _any_pose(trial: Trial, rng: Random) -> dict[str, Value]:
 
 
 def _runs(trial: Trial, program_name: str, given: Mapping[str, Value], accept: Callable[[Run], bool]) -> None:
-    """Run a program with every sign of its roots until the answer is accepted; raises `Disagreement` where none is."""
+    """Run a program with every sign of its roots until the answer is accepted; raises `Disagreement` where none is, and
+    `NoRoot` where no steps are left.
+    """
     program = getattr(trial.kin, program_name)
     signs: Signs | None = Signs()
-    for _ in range(_TRIED):
+    for _ in trial.steps:
         assert signs is not None
         with suppress(NotPlanted):
             if accept(_begun(trial, program, given, signs)):
@@ -253,7 +275,7 @@ def _runs(trial: Trial, program_name: str, given: Mapping[str, Value], accept: C
             raise Disagreement(
                 f"{program_name} kinematics does not meet the closure exactly, whatever signs roots have"
             )
-    raise NotAlgebraic("it takes too many roots, each with two signs")
+    raise NoRoot
 
 
 def _begun(trial: Trial, program: Program, given: Mapping[str, Value], signs: Signs) -> Run:

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from functools import cache, reduce
+from operator import add, mul
 
 import sympy as sp
 from sympy.core.relational import Relational
@@ -94,6 +96,9 @@ class Run:
 
     def _run(self, statement: Statement) -> None:
         if isinstance(statement, Let):
+            for name in _read(statement.value):  # first, as every root that is begun twice takes two signs
+                if name in self._sources and name not in self.known:
+                    raise _Missing(name)
             if is_condition(statement.value):
                 self.known[statement.name.name] = self.truth(statement.value)
             else:
@@ -161,15 +166,9 @@ class Run:
         if value is sp.pi:
             return self._degree * fraction(Fraction(180))
         if isinstance(value, sp.Add):
-            total = ZERO
-            for a in value.args:
-                total = total + self.number(a)
-            return self._settled(total)
+            return self._settled(reduce(add, map(self.number, value.args)))
         if isinstance(value, sp.Mul):
-            product = ONE
-            for a in value.args:
-                product = product * self.number(a)
-            return product
+            return reduce(mul, map(self.number, value.args))
         return self._power(value) if isinstance(value, sp.Pow) else self._called(value)
 
     def _named(self, symbol: sp.Symbol) -> Value:
@@ -246,6 +245,12 @@ class Run:
         self.known |= {n.name: Value(right[k // columns][k % columns]) for k, n in enumerate(names)}
         if statement.determinant is not None:
             self.known[statement.determinant.name] = Value(determinant)
+
+
+@cache
+def _read(value: sp.Basic) -> tuple[str, ...]:
+    """The names that a value reads, whatever is chosen."""
+    return () if value.has(Select) else tuple(sorted(s.name for s in value.free_symbols))
 
 
 def _eliminated(matrix: list[list[int]], right: list[list[int]]) -> int:

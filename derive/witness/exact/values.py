@@ -7,11 +7,12 @@ reads. Numbers that are no such sums have no form.
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
+from random import Random
 
 from derive.witness.exact.field import PRIME, Pair, element, inverse, of_angle, on_circle, times, turned
 
@@ -19,6 +20,9 @@ Form = Mapping[tuple[str, int], Fraction]
 """(atom, power of DEGREE) → multiple"""
 _ROUNDING = 1e-13
 """An angle in radians nearer than this to thousandths of a degree is a decimal number for these."""
+
+_PARTS = 10**20
+"""Other decimals are whole multiples of such a part of a radian or a degree: so their sums are the sums of angles."""
 
 
 class NotAlgebraic(Exception):
@@ -92,6 +96,7 @@ def _is_plain(form: Form) -> bool:
     return all(atom == "" for atom, _ in form)
 
 
+@cache
 def fraction(number: Fraction) -> Value:
     """A number that is known."""
     return Value(element(number), {("", 0): number} if number else {})
@@ -103,7 +108,9 @@ ONE, MINUS_ONE, ZERO = fraction(Fraction(1)), fraction(Fraction(-1)), fraction(F
 class Angles:
     """The atoms of one trial, with their cosines and sines."""
 
-    def __init__(self) -> None:
+    def __init__(self, seed: int) -> None:
+        """seed: other fixed angles for which the field has no sine are drawn with it."""
+        self._drawn = Random(seed)
         self.pairs: dict[str, Pair] = {}
         self._known: dict[Pair, Value] = {}
         self._found: set[str] = set()
@@ -161,12 +168,9 @@ class Angles:
                 thousandths, power = Fraction(near), 1
         if power == 1 and thousandths.denominator == 1:
             return of_angle(thousandths.numerator)
-        name = f"fixed {abs(multiple)} {power}"
+        parts, name = multiple * _PARTS, f"part {power}"
+        if parts.denominator != 1:
+            parts, name = Fraction(1 if multiple > 0 else -1), f"fixed {abs(multiple)} {power}"
         if name not in self.pairs:
-            self.pairs[name] = of_random(name)
-        return times(self.pairs[name], 1 if multiple > 0 else -1)
-
-
-def of_random(name: str) -> Pair:
-    """A point of the circle that depends on the name alone."""
-    return on_circle(int.from_bytes(hashlib.sha256(name.encode()).digest()[:7], "big"))
+            self.pairs[name] = on_circle(self._drawn.randrange(2, PRIME))
+        return times(self.pairs[name], parts.numerator)

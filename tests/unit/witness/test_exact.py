@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from derive.description.mechanism import Mechanism, Task, length, linear, rotary
 from derive.description.validate import validate
-from derive.frames import Rz, Tx, Ty
+from derive.frames import Rz, Tx
 from derive.ir.primitives import Atan2
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import real
@@ -89,20 +89,6 @@ def test_what_cannot_be_asked_is_said() -> None:
 
 
 P1, A1, LINK = linear("P1", "rail"), rotary("A1", "turn"), length("link", "link", nominal=300.0)
-OBLIQUE = {
-    "a turn between shifts": Tx(P1) * Rz(sp.pi / 3) * Tx(200) * Rz(A1) * Tx(LINK),
-    "a slide along a diagonal": Tx(P1 * sp.cos(sp.pi / 9)) * Ty(P1 * sp.sin(sp.pi / 9)) * Rz(A1) * Tx(LINK),
-    "a root": Tx(P1) * Ty(100 * sp.sqrt(2)) * Rz(A1) * Tx(LINK),
-}
-
-
-@pytest.mark.parametrize("kind", OBLIQUE)
-def test_decimals_in_place_of_oblique_numbers_are_said(kind: str) -> None:
-    """The form of the machine is rounded, so its programs do not meet the description exactly: no fault of theirs."""
-    machine = Mechanism(name="Oblique", parameters=(LINK,), joints=(P1, A1), chain=OBLIQUE[kind], task=Task("xy"))
-    described = validate(machine)
-    exact = check_exactly(build(described), described)
-    assert (exact.trials, exact.but.partition(" are ")[0]) == (0, "between its oblique axes")
 
 
 def test_a_turn_behind_the_links_is_exact() -> None:
