@@ -222,7 +222,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int next_attempt, passes_left_now;
   bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, is_nearer,
       no_start_is_left, mirrors;
-  for (int pass = 0; pass < 183; pass += 1) {
+  for (int pass = 0; pass < 184; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -307,11 +307,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     pose_is_met = pose_is_close && (!beside_elbow) && (!beside_shoulder) && (!beside_wrist);
     next_attempt = attempt + (another ? 1 : 0);
     free_angle = next_attempt > 0 ? 0.01 : 1e-11;
-    is_nearer = (attempt > 1) && (attempt < 62) && (error < nearest_error);
-    nearest_turn_now = is_nearer ? -6.0*(1 - attempt) : nearest_turn;
+    is_nearer = (attempt > 1) && (attempt < 63) && (error < nearest_error);
+    nearest_turn_now = is_nearer ? -360.0*(1 - attempt)/61.0 : nearest_turn;
     /* how far free angles are turned */
-    free_turn = (next_attempt > 1) && (next_attempt < 62) ? -6.0*(1 - next_attempt)
-        : (next_attempt >= 62 ? nearest_turn_now : 0.0);
+    free_turn = (next_attempt > 1) && (next_attempt < 63) ? -360.0*(1 - next_attempt)/61.0
+        : (next_attempt >= 63 ? nearest_turn_now : 0.0);
     closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
     free_angle_times_machine_scale = free_angle*k->machine_scale;
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
@@ -330,7 +330,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     closed_q6_radius_of_q5 = closed_radius_q6*closed_sign_wrist;
     /* cosine and sine of q5 from the q6 radius and r22 equations */
     closed_cos_q5 = closed_sin_q1*goal_r13 - closed_cos_q1*goal_r23;
-    closed_reference_a6 = SOFTKIN_DEGREE*(free_turn + given_ref_a6 - k->offset_a6);
+    closed_reference_a6 = (21.0*free_turn + given_ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
     /* polar coordinates: angle q6 from the r21 and r23 equations */
     closed_along_q6 = -closed_r21_from_q1*closed_sign_wrist;
     closed_length_q6 = closed_radius_q6 > free_angle ? closed_radius_q6 : 1.0;
@@ -440,7 +440,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3 + step_a4*step_a4
         + step_a5*step_a5 + step_a6*step_a6);
     shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
-    closed_reference_a2 = SOFTKIN_DEGREE*(free_turn + given_ref_a2 - k->offset_a2);
+    closed_reference_a2 = (17.0*free_turn + given_ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
     /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
     closed_one_less_cos_q3 = (k->a2_plus_a3 + closed_reach)*(k->a2_plus_a3 - closed_reach);
     /* 1 + cosine, times the scale */
@@ -473,7 +473,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     nearest_error_now = is_nearer ? error : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 62))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 63))) {
       break;
     }
     tried_a1 = (another ? closed_axis_a1
@@ -488,8 +488,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a6 = (another ? closed_axis_a6
         : (mirrors ? (beside_wrist ? 2.0*closed_axis_a6 - tried_a6 : tried_a6) : tried_a6
         + shared_quotient*step_a6));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 62) ? 0 : 40) : passes_left_now);
-    attempt = (no_start_is_left ? 63 : next_attempt);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 63) ? 0 : 40) : passes_left_now);
+    attempt = (no_start_is_left ? 64 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     nearest_error = nearest_error_now;
     nearest_turn = nearest_turn_now;

@@ -260,7 +260,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int next_attempt, passes_left_now;
   bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, is_nearer,
       no_start_is_left, mirrors;
-  for (int pass = 0; pass < 183; pass += 1) {
+  for (int pass = 0; pass < 184; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -350,11 +350,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow) && (!beside_hand);
     next_attempt = attempt + (another ? 1 : 0);
     free_angle = next_attempt > 0 ? 0.01 : 1e-11;
-    is_nearer = (attempt > 1) && (attempt < 62) && (error < nearest_error);
-    nearest_turn_now = is_nearer ? -6.0*(1 - attempt) : nearest_turn;
+    is_nearer = (attempt > 1) && (attempt < 63) && (error < nearest_error);
+    nearest_turn_now = is_nearer ? -360.0*(1 - attempt)/61.0 : nearest_turn;
     /* how far free angles are turned */
-    free_turn = (next_attempt > 1) && (next_attempt < 62) ? -6.0*(1 - next_attempt)
-        : (next_attempt >= 62 ? nearest_turn_now : 0.0);
+    free_turn = (next_attempt > 1) && (next_attempt < 63) ? -360.0*(1 - next_attempt)/61.0
+        : (next_attempt >= 63 ? nearest_turn_now : 0.0);
     closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
     free_angle_times_machine_scale = free_angle*k->machine_scale;
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
@@ -367,7 +367,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         ? (closed_ahead_q1*closed_wrist_y + closed_wrist_x*k->d3)/closed_divisor_q1
         : sin(closed_reference_a1);
     closed_r13_from_q1 = closed_cos_q1*goal_r13 + closed_sin_q1*goal_r23;
-    closed_reference_a2 = SOFTKIN_DEGREE*(free_turn + given_ref_a2 - k->offset_a2);
+    closed_reference_a2 = (17.0*free_turn + given_ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
     closed_length_q2 = (closed_reach > free_angle_times_machine_scale) && (sum_in_closed_length_q2 > 0.0)
         ? softkin_root(sum_in_closed_length_q2) : 1.0;
     /* at a singularity: the angle of the reference */
@@ -482,7 +482,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
     closed_axis_a2 = softkin_on_turn(k->offset_a2
         + softkin_angle_of(closed_sin_q2, closed_cos_q2)*SOFTKIN_RADIAN, closed_near_a2);
-    closed_reference_a4 = SOFTKIN_DEGREE*(free_turn + given_ref_a4 - k->offset_a4);
+    closed_reference_a4 = (33.0*free_turn + given_ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
     /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
     closed_direction_x_q4 = closed_radius_q4 > free_angle ? -closed_r33_from_q123*closed_sign_hand
@@ -511,7 +511,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     nearest_error_now = is_nearer ? error : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 62))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 63))) {
       break;
     }
     tried_a1 = (another ? closed_axis_a1
@@ -526,8 +526,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         + shared_quotient*step_a4));
     tried_a5 = (another ? closed_axis_a5 : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
     tried_a6 = (another ? closed_axis_a6 : (mirrors ? tried_a6 : tried_a6 + shared_quotient*step_a6));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 62) ? 0 : 40) : passes_left_now);
-    attempt = (no_start_is_left ? 63 : next_attempt);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 63) ? 0 : 40) : passes_left_now);
+    attempt = (no_start_is_left ? 64 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     nearest_error = nearest_error_now;
     nearest_turn = nearest_turn_now;

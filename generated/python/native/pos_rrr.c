@@ -172,7 +172,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       closed_direction_y_q2, closed_axis_a2, nearest_error_now, shared_quotient;
   int next_attempt, passes_left_now;
   bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, no_start_is_left, mirrors, is_nearer;
-  for (int pass = 0; pass < 183; pass += 1) {
+  for (int pass = 0; pass < 184; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -218,11 +218,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
         && (closed_reach > free_angle_times_machine_scale);
     mirrors = pose_is_close && (beside_arm || beside_elbow);
-    is_nearer = (attempt > 1) && (attempt < 62) && (error < nearest_error);
-    nearest_turn_now = is_nearer ? -6.0*(1 - attempt) : nearest_turn;
+    is_nearer = (attempt > 1) && (attempt < 63) && (error < nearest_error);
+    nearest_turn_now = is_nearer ? -360.0*(1 - attempt)/61.0 : nearest_turn;
     /* how far free angles are turned */
-    free_turn = (next_attempt > 1) && (next_attempt < 62) ? -6.0*(1 - next_attempt)
-        : (next_attempt >= 62 ? nearest_turn_now : 0.0);
+    free_turn = (next_attempt > 1) && (next_attempt < 63) ? -360.0*(1 - next_attempt)/61.0
+        : (next_attempt >= 63 ? nearest_turn_now : 0.0);
     closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
         ? closed_distance_q1*closed_distance_q1 : 1.0;
@@ -264,7 +264,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     step_a3 = multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3);
     shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
-    closed_reference_a2 = SOFTKIN_DEGREE*(free_turn + given_ref_a2 - k->offset_a2);
+    closed_reference_a2 = (17.0*free_turn + given_ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
     /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
     closed_direction_x_q2 = closed_reach > free_angle_times_machine_scale
         ? closed_arm_across_q2*closed_wrist_z_from_q1 + closed_arm_along_q2*closed_wrist_x_from_q1
@@ -277,7 +277,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     nearest_error_now = is_nearer ? error : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 62))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 63))) {
       break;
     }
     tried_a1 = (another ? closed_axis_a1
@@ -287,8 +287,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a3 = (another ? closed_axis_a3
         : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
         + shared_quotient*step_a3));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 62) ? 0 : 40) : passes_left_now);
-    attempt = (no_start_is_left ? 63 : next_attempt);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 63) ? 0 : 40) : passes_left_now);
+    attempt = (no_start_is_left ? 64 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     nearest_error = nearest_error_now;
     nearest_turn = nearest_turn_now;

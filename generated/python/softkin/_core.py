@@ -324,7 +324,8 @@ class Mechanism(Value, ABC):
         """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None where it has no solution.
 
         The input is trusted: plain tuples of floats, with a rotation that is exact to all digits. An axis may be on any
-        turn if no other axis moves with it. Limits are not tested.
+        turn if no other axis moves with it. Limits are not tested. Without a reference, which stands for zeros, a
+        machine that holds an axis at the reference has no solution.
         """
         return tuple([self.branch(frame, signs, reference) for _, signs in slots((AUTOMATIC,) * self.BRANCHES)])
 
@@ -333,6 +334,8 @@ class Mechanism(Value, ABC):
 
         signs: 1 for byte 1 of a branch, -1 for byte 2.
         """
+        if reference is None and self.HELD:
+            return None
         near = self._without_reference() if reference is None else reference
         axes = self._branch(*frame, signs, (0,) * len(self.PERIOD_AXES), near)
         return None if isinstance(axes, Diagnosis) else axes

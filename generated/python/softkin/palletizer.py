@@ -319,7 +319,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             9.0,
             0.0,
         )
-        for _ in range(183):
+        for _ in range(184):
             a1 = (tried_a1 - offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -367,15 +367,15 @@ class Palletizer(OffsetKinematics, TwistChoice):
             pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder)
             next_attempt = attempt + (1 if another else 0)
             free_angle = 0.01 if next_attempt > 0 else 1e-11
-            is_nearer = (attempt > 1) and (attempt < 62) and (error < nearest_error)
-            nearest_turn_now = -6.0 * (1 - attempt) if is_nearer else nearest_turn
+            is_nearer = (attempt > 1) and (attempt < 63) and (error < nearest_error)
+            nearest_turn_now = -360.0 * (1 - attempt) / 61.0 if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                -6.0 * (1 - next_attempt)
-                if (next_attempt > 1) and (next_attempt < 62)
-                else (nearest_turn_now if next_attempt >= 62 else 0.0)
+                -360.0 * (1 - next_attempt) / 61.0
+                if (next_attempt > 1) and (next_attempt < 63)
+                else (nearest_turn_now if next_attempt >= 63 else 0.0)
             )
-            closed_reference_a4 = DEGREE * (free_turn + given_ref_a4 - offset_a4)
+            closed_reference_a4 = (33.0 * free_turn + given_ref_a4 - offset_a4) * DEGREE
             closed_cos_a4 = cos(closed_reference_a4)
             closed_sin_a4 = sin(closed_reference_a4)
             # commanded point, in the frame of the last moving joint
@@ -457,7 +457,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
-            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - offset_a2)
+            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - offset_a2) * DEGREE
             # law of cosines for a3_from_a2 (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
             closed_one_less_cos_a3_from_a2 = (closed_reach + link_length_1_minus_link_length_2) * (
                 closed_reach - link_length_1_minus_link_length_2
@@ -501,7 +501,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 62)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 63)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -515,8 +515,8 @@ class Palletizer(OffsetKinematics, TwistChoice):
             tried_a2 = closed_axis_a2 if another else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
             tried_a3 = closed_axis_a3 if another else (tried_a3 if mirrors else tried_a3 + shared_quotient * step_a3)
             tried_a4 = given_ref_a4 if another else tried_a4
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 62) else 40) if another else passes_left_now
-            attempt = 63 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 63) else 40) if another else passes_left_now
+            attempt = 64 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now

@@ -24,9 +24,9 @@ counted together):
     forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
     inverse: 46 additions, 39 multiplications, 7 divisions, 4 square roots, 3 sines
     inverse, all 4 branches: 161 additions, 118 multiplications, 20 divisions, 9 square roots, 10 sines
-    a branch at a singular pose, in addition: 16323 additions, 23453 multiplications, 1467 divisions, 370
-    square roots, 2567 sines
-    steps of damped least squares on the closure, from one start after the other: at most 183 passes, all of
+    a branch at a singular pose, in addition: 16412 additions, 23765 multiplications, 1843 divisions, 372
+    square roots, 2581 sines
+    steps of damped least squares on the closure, from one start after the other: at most 184 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -96,7 +96,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr bed77ab54538bbc4"
+    KEY = "pos_rrr d069477992ba8e41"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -303,7 +303,7 @@ class PosRRR(OffsetKinematics):
             9.0,
             0.0,
         )
-        for _ in range(183):
+        for _ in range(184):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -352,13 +352,13 @@ class PosRRR(OffsetKinematics):
                 and (closed_reach > free_angle_times_machine_scale)
             )
             mirrors = pose_is_close and (beside_arm or beside_elbow)
-            is_nearer = (attempt > 1) and (attempt < 62) and (error < nearest_error)
-            nearest_turn_now = -6.0 * (1 - attempt) if is_nearer else nearest_turn
+            is_nearer = (attempt > 1) and (attempt < 63) and (error < nearest_error)
+            nearest_turn_now = -360.0 * (1 - attempt) / 61.0 if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                -6.0 * (1 - next_attempt)
-                if (next_attempt > 1) and (next_attempt < 62)
-                else (nearest_turn_now if next_attempt >= 62 else 0.0)
+                -360.0 * (1 - next_attempt) / 61.0
+                if (next_attempt > 1) and (next_attempt < 63)
+                else (nearest_turn_now if next_attempt >= 63 else 0.0)
             )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
             closed_divisor_q1 = (
@@ -411,7 +411,7 @@ class PosRRR(OffsetKinematics):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
-            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - offset_a2)
+            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - offset_a2) * DEGREE
             # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
             # reference
             closed_direction_x_q2 = (
@@ -430,7 +430,7 @@ class PosRRR(OffsetKinematics):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 62)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 63)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -451,8 +451,8 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 62) else 40) if another else passes_left_now
-            attempt = 63 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 63) else 40) if another else passes_left_now
+            attempt = 64 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
@@ -571,7 +571,7 @@ class PosRRR(OffsetKinematics):
             9.0,
             0.0,
         )
-        for _ in range(183):
+        for _ in range(184):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -623,13 +623,13 @@ class PosRRR(OffsetKinematics):
                 and (closed_reach > free_angle_times_machine_scale)
             )
             mirrors = pose_is_close and (beside_arm or beside_elbow)
-            is_nearer = (attempt > 1) and (attempt < 62) and (error < nearest_error)
-            nearest_turn_now = -6.0 * (1 - attempt) if is_nearer else nearest_turn
+            is_nearer = (attempt > 1) and (attempt < 63) and (error < nearest_error)
+            nearest_turn_now = -360.0 * (1 - attempt) / 61.0 if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                -6.0 * (1 - next_attempt)
-                if (next_attempt > 1) and (next_attempt < 62)
-                else (nearest_turn_now if next_attempt >= 62 else 0.0)
+                -360.0 * (1 - next_attempt) / 61.0
+                if (next_attempt > 1) and (next_attempt < 63)
+                else (nearest_turn_now if next_attempt >= 63 else 0.0)
             )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
             closed_divisor_q1 = (
@@ -682,7 +682,7 @@ class PosRRR(OffsetKinematics):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
-            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - offset_a2)
+            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - offset_a2) * DEGREE
             # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
             # reference
             closed_direction_x_q2 = (
@@ -701,7 +701,7 @@ class PosRRR(OffsetKinematics):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 62)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 63)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -722,8 +722,8 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 62) else 40) if another else passes_left_now
-            attempt = 63 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 63) else 40) if another else passes_left_now
+            attempt = 64 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now

@@ -161,7 +161,7 @@ class ArrayPrograms(Programs):
             nearest_error,
             nearest_turn,
         ) = initial(start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 40, 0, 9.0, 9.0, 0.0)
-        for _ in range(183):
+        for _ in range(184):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -287,13 +287,13 @@ class ArrayPrograms(Programs):
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow)) & (opposite(beside_hand))
             next_attempt = attempt + select(another, 1, 0)
             free_angle = select(next_attempt > 0, 0.01, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 62) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -6.0 * (1 - attempt), nearest_turn)
+            is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 62),
-                -6.0 * (1 - next_attempt),
-                select(next_attempt >= 62, nearest_turn_now, 0.0),
+                (next_attempt > 1) & (next_attempt < 63),
+                -360.0 * (1 - next_attempt) / 61.0,
+                select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
             free_angle_times_machine_scale = free_angle * k.machine_scale
@@ -312,7 +312,7 @@ class ArrayPrograms(Programs):
                 sin(closed_reference_a1),
             )
             closed_r13_from_q1 = closed_cos_q1 * goal_r13 + closed_sin_q1 * goal_r23
-            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
+            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - k.offset_a2) * DEGREE
             closed_length_q2 = select(
                 (closed_reach > free_angle_times_machine_scale) & (sum_in_closed_length_q2 > 0.0),
                 root(sum_in_closed_length_q2),
@@ -515,7 +515,7 @@ class ArrayPrograms(Programs):
             )
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
             closed_axis_a2 = nearest_period(k.offset_a2 + atan2(closed_sin_q2, closed_cos_q2) / DEGREE, closed_near_a2)
-            closed_reference_a4 = DEGREE * (free_turn + given_ref_a4 - k.offset_a4)
+            closed_reference_a4 = (33.0 * free_turn + given_ref_a4 - k.offset_a4) * DEGREE
             # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
             closed_direction_x_q4 = select(
@@ -551,7 +551,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 62))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 63))
             if settled(done, status):
                 break
             (
@@ -612,8 +612,8 @@ class ArrayPrograms(Programs):
                     ),
                     select(another, closed_axis_a5, select(mirrors, tried_a5, tried_a5 + shared_quotient * step_a5)),
                     select(another, closed_axis_a6, select(mirrors, tried_a6, tried_a6 + shared_quotient * step_a6)),
-                    select(another, select((next_attempt > 1) & (next_attempt < 62), 0, 40), passes_left_now),
-                    select(no_start_is_left, 63, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 63), 0, 40), passes_left_now),
+                    select(no_start_is_left, 64, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,

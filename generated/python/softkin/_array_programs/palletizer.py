@@ -87,7 +87,7 @@ class ArrayPrograms(Programs):
         tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before, nearest_error, nearest_turn = (
             initial(start_a1, start_a2, start_a3, start_a4, 40, 0, 9.0, 9.0, 0.0)
         )
-        for _ in range(183):
+        for _ in range(184):
             a1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -135,15 +135,15 @@ class ArrayPrograms(Programs):
             pose_is_met = pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder))
             next_attempt = attempt + select(another, 1, 0)
             free_angle = select(next_attempt > 0, 0.01, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 62) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -6.0 * (1 - attempt), nearest_turn)
+            is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 62),
-                -6.0 * (1 - next_attempt),
-                select(next_attempt >= 62, nearest_turn_now, 0.0),
+                (next_attempt > 1) & (next_attempt < 63),
+                -360.0 * (1 - next_attempt) / 61.0,
+                select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
-            closed_reference_a4 = DEGREE * (free_turn + given_ref_a4 - k.offset_a4)
+            closed_reference_a4 = (33.0 * free_turn + given_ref_a4 - k.offset_a4) * DEGREE
             closed_cos_a4 = cos(closed_reference_a4)
             closed_sin_a4 = sin(closed_reference_a4)
             # commanded point, in the frame of the last moving joint
@@ -221,7 +221,7 @@ class ArrayPrograms(Programs):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
+            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - k.offset_a2) * DEGREE
             # law of cosines for a3_from_a2 (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
             closed_one_less_cos_a3_from_a2 = (closed_reach + k.link_length_1_minus_link_length_2) * (
                 closed_reach - k.link_length_1_minus_link_length_2
@@ -263,7 +263,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 62))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 63))
             if settled(done, status):
                 break
             tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before, nearest_error, nearest_turn = (
@@ -297,8 +297,8 @@ class ArrayPrograms(Programs):
                             another, closed_axis_a3, select(mirrors, tried_a3, tried_a3 + shared_quotient * step_a3)
                         ),
                         select(another, given_ref_a4, tried_a4),
-                        select(another, select((next_attempt > 1) & (next_attempt < 62), 0, 40), passes_left_now),
-                        select(no_start_is_left, 63, next_attempt),
+                        select(another, select((next_attempt > 1) & (next_attempt < 63), 0, 40), passes_left_now),
+                        select(no_start_is_left, 64, next_attempt),
                         select(another | mirrors, 9.0, error),
                         nearest_error_now,
                         nearest_turn_now,

@@ -109,7 +109,7 @@ class ArrayPrograms(Programs):
         tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = initial(
             start_a1, start_a2, start_a3, 40, 0, 9.0, 9.0, 0.0
         )
-        for _ in range(183):
+        for _ in range(184):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -158,13 +158,13 @@ class ArrayPrograms(Programs):
                 & (closed_reach > free_angle_times_machine_scale)
             )
             mirrors = pose_is_close & (beside_arm | beside_elbow)
-            is_nearer = (attempt > 1) & (attempt < 62) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -6.0 * (1 - attempt), nearest_turn)
+            is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 62),
-                -6.0 * (1 - next_attempt),
-                select(next_attempt >= 62, nearest_turn_now, 0.0),
+                (next_attempt > 1) & (next_attempt < 63),
+                -360.0 * (1 - next_attempt) / 61.0,
+                select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
             closed_divisor_q1 = select(
@@ -215,7 +215,7 @@ class ArrayPrograms(Programs):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
+            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - k.offset_a2) * DEGREE
             # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
             # reference
             closed_direction_x_q2 = select(
@@ -234,7 +234,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 62))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 63))
             if settled(done, status):
                 break
             tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = advanced(
@@ -260,8 +260,8 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 62), 0, 40), passes_left_now),
-                    select(no_start_is_left, 63, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 63), 0, 40), passes_left_now),
+                    select(no_start_is_left, 64, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,
@@ -353,7 +353,7 @@ class ArrayPrograms(Programs):
         tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = initial(
             start_a1, start_a2, start_a3, 40, 0, 9.0, 9.0, 0.0
         )
-        for _ in range(183):
+        for _ in range(184):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -405,13 +405,13 @@ class ArrayPrograms(Programs):
                 & (closed_reach > free_angle_times_machine_scale)
             )
             mirrors = pose_is_close & (beside_arm | beside_elbow)
-            is_nearer = (attempt > 1) & (attempt < 62) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -6.0 * (1 - attempt), nearest_turn)
+            is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 62),
-                -6.0 * (1 - next_attempt),
-                select(next_attempt >= 62, nearest_turn_now, 0.0),
+                (next_attempt > 1) & (next_attempt < 63),
+                -360.0 * (1 - next_attempt) / 61.0,
+                select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
             closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
             closed_divisor_q1 = select(
@@ -462,7 +462,7 @@ class ArrayPrograms(Programs):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            closed_reference_a2 = DEGREE * (free_turn + given_ref_a2 - k.offset_a2)
+            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - k.offset_a2) * DEGREE
             # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
             # reference
             closed_direction_x_q2 = select(
@@ -481,7 +481,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 62))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 63))
             if settled(done, status):
                 break
             tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = advanced(
@@ -507,8 +507,8 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 62), 0, 40), passes_left_now),
-                    select(no_start_is_left, 63, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 63), 0, 40), passes_left_now),
+                    select(no_start_is_left, 64, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,
