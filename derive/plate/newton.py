@@ -150,7 +150,8 @@ def found_from(mechanism: Mechanism, start: Start) -> Forward:
     """
     lets = (*joint_lets(mechanism), *_bases(mechanism)[0])
     pose = (Let(name, _found(name)) for name in (*_position(mechanism), *_rotation_names(mechanism)))
-    statements = (*start.statements, *lets, _call(mechanism, start), *pose)
+    axes = finite([j.axis for j in mechanism.joints])
+    statements = (*axes, *start.statements, *lets, _call(mechanism, start), *pose)
     return Forward(statements, position_of(mechanism), tuple(rotation_of(mechanism)))
 
 
@@ -193,7 +194,6 @@ def search_program(mechanism: Mechanism) -> Program:
     positive = [sp.Gt(v, 0) for v in mechanism.positive if v.free_symbols <= joints]
     mirror = Require(sp.And(*positive), Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_MIRROR))
     checks: tuple[Statement, ...] = (
-        *finite([j.axis for j in mechanism.joints]),
         *joint_lets(mechanism),
         *([mirror] if positive else []),
     )

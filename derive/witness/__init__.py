@@ -33,7 +33,7 @@ from derive.witness.checks import check_forward, check_jacobian, check_margins
 from derive.witness.closure import closure_of
 from derive.witness.disagreement import Disagreement, NoPose
 from derive.witness.exact.proof import check_exactly
-from derive.witness.inverse import check_inverse, check_offset, check_solutions
+from derive.witness.inverse import all_slots, check_inverse, check_offset, check_solutions
 from derive.witness.jointless import check_jointless
 from derive.witness.orientation import check_orientation
 from derive.witness.samples import regular_samples
@@ -56,9 +56,10 @@ def witness(kin: Kinematics, described: Mechanism) -> Evidence:
         forward = max(check_forward(kin, closure, samples), check_orientation(kin, samples))
         jacobian = check_jacobian(kin, closure, samples)
         check_margins(kin, closure, samples)
-        inverse, round_trip = check_inverse(kin, closure, samples)
+        slots = all_slots(kin, samples)
+        inverse, round_trip = check_inverse(kin, closure, samples, slots)
         offset, offset_trip = check_offset(kin, closure, samples)
-        solutions, missed = check_solutions(kin, closure, samples)
+        solutions, missed = check_solutions(kin, closure, samples, slots)
         exact = check_exactly(kin, described)
     except Disagreement as problem:
         raise type(problem)(f"{kin.mechanism.name}: {problem}") from None

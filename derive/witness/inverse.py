@@ -9,6 +9,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from derive.description.mechanism import Joint
 from derive.ir.interpret import Array, run
 from derive.ir.program import Program, Status
 from derive.ir.symbols import COORDINATE_NAMES, branch_sign
@@ -35,11 +36,16 @@ Slots = tuple[Array, NDArray[np.bool_]]
 """Axis values (slots, samples, axes) and whether each slot answered OK."""
 
 
-def check_inverse(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[float, float]:
+def all_slots(kin: Kinematics, samples: Samples) -> Slots:
+    """What the inverse answers in every slot of every sample, with the turns of the samples."""
+    return run_slots(kin, kin.branch, samples, _commands(kin, samples))
+
+
+def check_inverse(kin: Kinematics, closure: Closure, samples: Samples, slots: Slots) -> tuple[float, float]:
     """The answer of every slot closes Φ and lies on its branch; the slot of forward kinematics gives back the axes with
     turns.
     """
-    axes, ok = run_slots(kin, kin.branch, samples, _commands(kin, samples))
+    axes, ok = slots
     residual = 0.0
     for slot, signs in enumerate(_signs(kin)):
         chosen = np.flatnonzero(ok[slot])
@@ -56,17 +62,19 @@ def check_inverse(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[
     return residual, _round_trip(kin, closure, samples, (axes, ok), samples.values, "the way back")
 
 
-def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[int, tuple[int, int] | None]:
+def check_solutions(
+    kin: Kinematics, closure: Closure, samples: Samples, answers: Slots
+) -> tuple[int, tuple[int, int] | None]:
     """Multi-start root finding finds the solutions in the slots, no more and no less. Returns the largest number of
     solutions.
 
     A search may miss some: then also how many, of how many.
     """
-    is_search = kin.mechanism.search is not None
-    first = np.unique(samples.machine, return_index=True)[1]
-    part = samples.take(np.arange(0, len(samples), _EVERY) if is_search else first)
+    search = kin.mechanism.search
+    rows = np.arange(0, len(samples), _EVERY) if search else _first_and_richest(samples, answers[1].sum(axis=0))
+    part = samples.take(rows)
     problem = problem_at(closure, part)
-    axes, ok = _ranks(kin, part)
+    axes, ok = _around(kin, part, search.joint) if search else (answers[0][:, rows], answers[1][:, rows])
     offered = [polished(problem, closure.joints(a, part.parameters)[:, :, 0] / problem.units) for a in axes]
     counts, missed = [], 0
     held = [np.stack(offered)[ok[:, row], row] for row in range(len(part))]
@@ -74,18 +82,25 @@ def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> tupl
     solutions = [_with_slots(problem, row, *both) for row, both in enumerate(zip(solutions, held, strict=True))]
     own = in_own_mode(kin, closure, part, solutions, problem.units)
     for row, found in enumerate(f[kept] for f, kept in zip(solutions, own, strict=True)):
-        slots = distinct(problem, row, held[row]) if is_search else held[row]  # opposite the reference: found twice
+        slots = distinct(problem, row, held[row]) if search else held[row]  # opposite the reference: found twice
         missing = _compare(kin, problem, row, (found, slots), describe(kin, part, row))
         missed += missing
         counts.append(len(found))
     if missed > _MOST_MISSED * sum(counts):
         raise Disagreement(f"the search misses {missed} of {sum(counts)} solutions")
-    if not is_search:
+    if not search:
         return max(counts), None
     refused, planted = refused_when_planted(kin, closure, samples)
     if refused > _MOST_MISSED * planted:
         raise Disagreement(f"the search refuses {refused} of {planted} poses next to where branches meet")
     return max(counts), (missed + refused, sum(counts) + planted)
+
+
+def _first_and_richest(samples: Samples, count: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Of every machine the first pose, and the first one with the most solutions. count: in the slots of each pose."""
+    first = np.unique(samples.machine, return_index=True)[1]
+    most = np.lexsort((-count, samples.machine))[first]
+    return np.unique([*first, *most])
 
 
 def _with_slots(problem: Problem, row: int, found: Array, slots: Array) -> Array:
@@ -138,19 +153,14 @@ def run_slots(kin: Kinematics, program: Program, samples: Samples, commands: dic
     return axes.reshape(len(slots), count, -1), ok.reshape(len(slots), count)
 
 
-def _ranks(kin: Kinematics, samples: Samples) -> Slots:
-    """The solutions of every slot; with a root scan from references around the circle: a branch may have several
-    solutions.
-    """
+def _around(kin: Kinematics, samples: Samples, searched: Joint) -> Slots:
+    """The solutions of every slot with a root scan, from references around the circle: a branch may have several."""
     commands = _commands(kin, samples)
-    search = kin.mechanism.search
-    if search is None:
-        return run_slots(kin, kin.branch, samples, commands)
     # The poses once for every reference, in one run: a root scan takes as many passes for one row as for all.
     around, count = np.linspace(0.0, 360.0, _AROUND, endpoint=False), len(samples)
     many = samples.take(np.tile(np.arange(count), _AROUND))
     commands = {name: np.tile(column, _AROUND) for name, column in commands.items()}
-    axes, ok = run_slots(kin, kin.branch, many, commands | {search.joint.reference.name: np.repeat(around, count)})
+    axes, ok = run_slots(kin, kin.branch, many, commands | {searched.reference.name: np.repeat(around, count)})
     slots = len(axes) * _AROUND
     by_reference = axes.reshape(len(axes), _AROUND, count, -1).swapaxes(0, 1)
     return by_reference.reshape(slots, count, -1), ok.reshape(-1, _AROUND, count).swapaxes(0, 1).reshape(slots, count)

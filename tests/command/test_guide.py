@@ -22,7 +22,7 @@ from tests.command.files import Folder, python
 from tests.command.guide import COMMANDS, MACHINES, PROGRAMS, REFUSALS, TEXT, pattern
 from tests.command.wrong import WRONG
 
-SOLUTIONS = {"arm_on_track": 2, "palletizer": 4, "five_bar": 3, "trunnion": 2, "planar_3rrr": 6}
+SOLUTIONS = {"arm_on_track": 2, "palletizer": 4, "five_bar": 4, "trunnion": 2, "planar_3rrr": 6}
 SAID_ELSEWHERE = {
     "… must not vanish: slides would be parallel": "a machine says it, when it is set up: tests/machines",
     "the margins … do not multiply to the determinant of the Jacobian; state the joints and lengths": (

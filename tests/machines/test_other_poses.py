@@ -197,7 +197,7 @@ def test_structured_text(name: str) -> None:
         assert block.initialise(made.parameters) == OK
         for solved in lost + kept:
             position, rotation = solved.frame.position, solved.frame.rotation
-            status, rows = block.jacobian_from(solved.axes, position, rotation)
+            status, rows = block.jacobian(solved.axes, (position, rotation))
             assert status == OK
             confirm(solved, rows)
             asked = position, rotation, solved.configuration, solved.axes

@@ -152,17 +152,12 @@ class Controller:
         status = self._call("AxesToOrientation", {"m": found}, a=values.axes(self.library, axes))
         return self._answer(status, lambda: self._rows(found))
 
-    def jacobian(self, axes: Numbers) -> Answer:
-        """Jacobian: all six rows of six."""
+    def jacobian(self, axes: Numbers, start: tuple[Numbers, Iterable[Numbers]] | None = None) -> Answer:
+        """Jacobian: all six rows of six. start: position and rotation, for JacobianFrom."""
         found = [values.MEANINGLESS] * 36
-        status = self._call("Jacobian", {"J": found}, a=values.axes(self.library, axes))
-        return self._answer(status, lambda: tuple(tuple(found[6 * i : 6 * i + 6]) for i in range(6)))
-
-    def jacobian_from(self, axes: Numbers, position: Numbers, rows: Iterable[Numbers]) -> Answer:
-        """JacobianFrom: all six rows of six."""
-        found = [values.MEANINGLESS] * 36
-        start = values.frame(self.library, position, rows)
-        status = self._call("JacobianFrom", {"J": found}, a=values.axes(self.library, axes), f=start)
+        more = {} if start is None else {"f": values.frame(self.library, *start)}
+        method = "JacobianFrom" if more else "Jacobian"
+        status = self._call(method, {"J": found}, a=values.axes(self.library, axes), **more)
         return self._answer(status, lambda: tuple(tuple(found[6 * i : 6 * i + 6]) for i in range(6)))
 
     def is_singular(self, axes: Numbers) -> bool:

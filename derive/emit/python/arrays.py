@@ -109,6 +109,10 @@ def _refused_late(body: Iterable[Statement]) -> list[Statement]:
 
 
 def values_of_a_row(kin: Kinematics) -> int:
-    """The number of values of one row in the inverse: inputs, intermediate values, results."""
-    programs = (kin.branch, *kin.shared)
-    return sum(len(p.inputs) + len(p.bound()) for p in programs) + OF_A_SEARCH * any(map(has_search, kin.shared))
+    """The number of values of one row in the inverse: inputs, intermediate values, results. A program that every pose
+    calls has its own values for every slot.
+    """
+    called = {s.program.name for s in kin.branch.body if isinstance(s, Call) and not s.is_rare}
+    programs = [(kin.branch, 1), *((p, 2 ** len(kin.branches) if p.name in called else 1) for p in kin.shared)]
+    own = sum(slots * (len(p.inputs) + len(p.bound())) for p, slots in programs)
+    return own + OF_A_SEARCH * any(map(has_search, kin.shared))

@@ -142,8 +142,8 @@ def _shared(program: Program | None, kinematics: Kinematics, contract: Contract,
         ready.add(inner.name)
         if (search := search_in(inner)) is not None and not search.is_listed:
             yield _Source(try_at_signature(search), search=search)
-        own = without_axes(inner, kinematics) if search is None else inner
-        yield _Source(signature_of(inner, spelled_inputs(kinematics), contract), own, is_shared=True, search=search)
+        signature = signature_of(inner, spelled_inputs(kinematics), contract)
+        yield _Source(signature, inner, is_shared=True, search=search)
 
 
 def _names(block: Block, contract: Contract) -> list[str]:

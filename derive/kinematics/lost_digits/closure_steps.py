@@ -66,6 +66,7 @@ _FIRST = sp.Integer(9)
 _LEFT, _ATTEMPT, _BEFORE = count("passes_left"), count("attempt"), real("error_before")
 _ANOTHER, _MIRRORS, _IS_MET = flag("another"), flag("mirrors"), flag("pose_is_met")
 _LEFT_NOW = count("passes_left_now")
+_AGAIN = flag("from_the_met_pose")
 _ENDS = flag("no_start_is_left")
 _FREE, _FREE_TURN = real("free_angle"), real("free_turn")
 _NEAREST, _NEAREST_TURN = real("nearest_error"), real("nearest_turn")
@@ -176,7 +177,8 @@ def _attempt(following: sp.Symbol) -> tuple[Let, ...]:
         Let(_ANOTHER, sp.Le(_LEFT, 0)),
         Let(_LEFT_NOW, _LEFT - cost),
         Let(following, _ATTEMPT + Select(_ANOTHER, _ONE, _ZERO)),
-        Let(_FREE, Select(sp.Gt(following, 0), DOUBTFUL, FREE_ANGLE)),
+        Let(_AGAIN, sp.And(_MIRRORS, sp.Gt(_LEFT, PASSES // 2)), "what is nearly free is known now"),
+        Let(_FREE, Select(sp.Or(_AGAIN, sp.Gt(following, 0)), DOUBTFUL, FREE_ANGLE)),
         Let(nearer, sp.And(_is_scan(_ATTEMPT), sp.Lt(real("error"), _NEAREST))),
         Let(_NEAREST_NOW, Select(nearer, real("error"), _NEAREST)),
         Let(_NEAREST_TURN_NOW, Select(nearer, _turn_of(_ATTEMPT), _NEAREST_TURN)),
@@ -215,7 +217,9 @@ def _closed_form(mechanism: Mechanism, branch: Program) -> tuple[list[Let], dict
     names = {let.name: called(f"closed_{let.name.name}", let.name) for let in lets} | GOAL
     names |= {FREE_ANGLE: _FREE}
     turned = {
-        reference_value(j): {j.reference: j.reference + pow(LATTICE, k, SCANNED) * _FREE_TURN}
+        reference_value(j): {
+            j.reference: Select(_AGAIN, _tried(j), j.reference + pow(LATTICE, k, SCANNED) * _FREE_TURN)
+        }
         for k, j in enumerate(mechanism.joints)
         if j.is_angle
     }
@@ -339,4 +343,4 @@ def _next(machine: Machine, joint: Joint, start: sp.Expr) -> sp.Expr:
     moved = _tried(joint) + real("shrinking") * real(f"step_{joint.key}") * unit
     beside = [flag(f"beside_{a.branch.name}") for a in machine.assignments if a.determinant.step == joint.symbol]
     mirrored = Select(beside[0], 2 * start - _tried(joint), _tried(joint)) if beside else _tried(joint)
-    return Select(_ANOTHER, start, Select(_MIRRORS, mirrored, moved))
+    return Select(sp.Or(_ANOTHER, _AGAIN), start, Select(_MIRRORS, mirrored, moved))

@@ -220,8 +220,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       closed_axis_a3, closed_angle_with_q4, closed_axis_a4, closed_axis_a5, closed_axis_a6,
       nearest_error_now, shared_quotient;
   int next_attempt, passes_left_now;
-  bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, is_nearer,
-      no_start_is_left, mirrors;
+  bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, mirrors,
+      from_the_met_pose, is_nearer, no_start_is_left;
   for (int pass = 0; pass < 184; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
@@ -306,13 +306,16 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
     pose_is_met = pose_is_close && (!beside_elbow) && (!beside_shoulder) && (!beside_wrist);
     next_attempt = attempt + (another ? 1 : 0);
-    free_angle = next_attempt > 0 ? 0.01 : 1e-11;
+    mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_wrist);
+    from_the_met_pose = mirrors && (passes_left > 20); /* what is nearly free is known now */
+    free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 1e-11;
     is_nearer = (attempt > 1) && (attempt < 63) && (error < nearest_error);
     nearest_turn_now = is_nearer ? -360.0*(1 - attempt)/61.0 : nearest_turn;
     /* how far free angles are turned */
     free_turn = (next_attempt > 1) && (next_attempt < 63) ? -360.0*(1 - next_attempt)/61.0
         : (next_attempt >= 63 ? nearest_turn_now : 0.0);
-    closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
+    closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
+        *SOFTKIN_DEGREE;
     free_angle_times_machine_scale = free_angle*k->machine_scale;
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
         ? closed_distance_q1*closed_distance_q1 : 1.0;
@@ -330,7 +333,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     closed_q6_radius_of_q5 = closed_radius_q6*closed_sign_wrist;
     /* cosine and sine of q5 from the q6 radius and r22 equations */
     closed_cos_q5 = closed_sin_q1*goal_r13 - closed_cos_q1*goal_r23;
-    closed_reference_a6 = (21.0*free_turn + given_ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
+    closed_reference_a6 = ((from_the_met_pose ? tried_a6 : 21.0*free_turn + given_ref_a6) - k->offset_a6)
+        *SOFTKIN_DEGREE;
     /* polar coordinates: angle q6 from the r21 and r23 equations */
     closed_along_q6 = -closed_r21_from_q1*closed_sign_wrist;
     closed_length_q6 = closed_radius_q6 > free_angle ? closed_radius_q6 : 1.0;
@@ -353,7 +357,6 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         + closed_wrist_z_from_q1*closed_wrist_z_from_q1);
     no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
         && (closed_radius_q6 > free_angle) && (closed_reach > free_angle_times_machine_scale);
-    mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_wrist);
     closed_axis_a1 = softkin_on_turn(k->offset_a1
         + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
     rate_1_1 = -k->one_by_machine_scale*y;
@@ -440,7 +443,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3 + step_a4*step_a4
         + step_a5*step_a5 + step_a6*step_a6);
     shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
-    closed_reference_a2 = (17.0*free_turn + given_ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    closed_reference_a2 = ((from_the_met_pose ? tried_a2 : 17.0*free_turn + given_ref_a2) - k->offset_a2)
+        *SOFTKIN_DEGREE;
     /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
     closed_one_less_cos_q3 = (k->a2_plus_a3 + closed_reach)*(k->a2_plus_a3 - closed_reach);
     /* 1 + cosine, times the scale */
@@ -476,16 +480,19 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     if (no_start_is_left || pose_is_met || (another && (next_attempt > 63))) {
       break;
     }
-    tried_a1 = (another ? closed_axis_a1
+    tried_a1 = (another || from_the_met_pose ? closed_axis_a1
         : (mirrors ? (beside_shoulder ? 2.0*closed_axis_a1 - tried_a1 : tried_a1) : tried_a1
         + shared_quotient*step_a1));
-    tried_a2 = (another ? closed_axis_a2 : (mirrors ? tried_a2 : tried_a2 + shared_quotient*step_a2));
-    tried_a3 = (another ? closed_axis_a3
+    tried_a2 = (another || from_the_met_pose ? closed_axis_a2
+        : (mirrors ? tried_a2 : tried_a2 + shared_quotient*step_a2));
+    tried_a3 = (another || from_the_met_pose ? closed_axis_a3
         : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
         + shared_quotient*step_a3));
-    tried_a4 = (another ? closed_axis_a4 : (mirrors ? tried_a4 : tried_a4 + shared_quotient*step_a4));
-    tried_a5 = (another ? closed_axis_a5 : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
-    tried_a6 = (another ? closed_axis_a6
+    tried_a4 = (another || from_the_met_pose ? closed_axis_a4
+        : (mirrors ? tried_a4 : tried_a4 + shared_quotient*step_a4));
+    tried_a5 = (another || from_the_met_pose ? closed_axis_a5
+        : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
+    tried_a6 = (another || from_the_met_pose ? closed_axis_a6
         : (mirrors ? (beside_wrist ? 2.0*closed_axis_a6 - tried_a6 : tried_a6) : tried_a6
         + shared_quotient*step_a6));
     passes_left = (another ? ((next_attempt > 1) && (next_attempt < 63) ? 0 : 40) : passes_left_now);

@@ -213,7 +213,6 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       + closed_arm_along_q2*closed_wrist_x_from_q1;
   const double closed_across_q2 = closed_arm_along_q2*closed_wrist_z_from_q1
       - closed_arm_across_q2*closed_wrist_x_from_q1;
-  const double sum_in_closed_length_q2 = closed_across_q2*closed_across_q2 + closed_along_q2*closed_along_q2;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double closed_cos_q3 = k->a3_by_effective_q3*closed_cos_swing_q3
       - closed_sin_swing_q3*k->d4_by_effective_q3;
@@ -221,6 +220,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       + closed_cos_swing_q3*k->d4_by_effective_q3;
   const double closed_axis_a3 = softkin_on_turn(k->offset_a3
       + softkin_angle_of(closed_sin_q3, closed_cos_q3)*SOFTKIN_RADIAN, closed_near_a3);
+  const double sum_in_closed_length_q2 = closed_across_q2*closed_across_q2 + closed_along_q2*closed_along_q2;
   /* steps of damped least squares on the closure, from one start after the other */
   double tried_a1 = start_a1;
   double tried_a2 = start_a2;
@@ -258,8 +258,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       closed_r32_from_q123, closed_direction_x_q6, closed_r21_from_q1, closed_r11_from_q1,
       closed_r31_from_q123, closed_direction_y_q6, closed_axis_a6, nearest_error_now, shared_quotient;
   int next_attempt, passes_left_now;
-  bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, is_nearer,
-      no_start_is_left, mirrors;
+  bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, mirrors,
+      from_the_met_pose, is_nearer, no_start_is_left;
   for (int pass = 0; pass < 184; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
@@ -349,13 +349,16 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
     pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow) && (!beside_hand);
     next_attempt = attempt + (another ? 1 : 0);
-    free_angle = next_attempt > 0 ? 0.01 : 1e-11;
+    mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
+    from_the_met_pose = mirrors && (passes_left > 20); /* what is nearly free is known now */
+    free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 1e-11;
     is_nearer = (attempt > 1) && (attempt < 63) && (error < nearest_error);
     nearest_turn_now = is_nearer ? -360.0*(1 - attempt)/61.0 : nearest_turn;
     /* how far free angles are turned */
     free_turn = (next_attempt > 1) && (next_attempt < 63) ? -360.0*(1 - next_attempt)/61.0
         : (next_attempt >= 63 ? nearest_turn_now : 0.0);
-    closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
+    closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
+        *SOFTKIN_DEGREE;
     free_angle_times_machine_scale = free_angle*k->machine_scale;
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
         ? closed_distance_q1*closed_distance_q1 : 1.0;
@@ -367,7 +370,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         ? (closed_ahead_q1*closed_wrist_y + closed_wrist_x*k->d3)/closed_divisor_q1
         : sin(closed_reference_a1);
     closed_r13_from_q1 = closed_cos_q1*goal_r13 + closed_sin_q1*goal_r23;
-    closed_reference_a2 = (17.0*free_turn + given_ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    closed_reference_a2 = ((from_the_met_pose ? tried_a2 : 17.0*free_turn + given_ref_a2) - k->offset_a2)
+        *SOFTKIN_DEGREE;
     closed_length_q2 = (closed_reach > free_angle_times_machine_scale) && (sum_in_closed_length_q2 > 0.0)
         ? softkin_root(sum_in_closed_length_q2) : 1.0;
     /* at a singularity: the angle of the reference */
@@ -384,7 +388,6 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         + closed_r33_from_q123*closed_r33_from_q123);
     no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
         && (closed_radius_q4 > free_angle) && (closed_reach > free_angle_times_machine_scale);
-    mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
     closed_axis_a1 = softkin_on_turn(k->offset_a1
         + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
     rate_1_1 = -k->one_by_machine_scale*y;
@@ -482,7 +485,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
     closed_axis_a2 = softkin_on_turn(k->offset_a2
         + softkin_angle_of(closed_sin_q2, closed_cos_q2)*SOFTKIN_RADIAN, closed_near_a2);
-    closed_reference_a4 = (33.0*free_turn + given_ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
+    closed_reference_a4 = ((from_the_met_pose ? tried_a4 : 33.0*free_turn + given_ref_a4) - k->offset_a4)
+        *SOFTKIN_DEGREE;
     /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
     closed_direction_x_q4 = closed_radius_q4 > free_angle ? -closed_r33_from_q123*closed_sign_hand
@@ -514,18 +518,21 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     if (no_start_is_left || pose_is_met || (another && (next_attempt > 63))) {
       break;
     }
-    tried_a1 = (another ? closed_axis_a1
+    tried_a1 = (another || from_the_met_pose ? closed_axis_a1
         : (mirrors ? (beside_arm ? 2.0*closed_axis_a1 - tried_a1 : tried_a1) : tried_a1
         + shared_quotient*step_a1));
-    tried_a2 = (another ? closed_axis_a2 : (mirrors ? tried_a2 : tried_a2 + shared_quotient*step_a2));
-    tried_a3 = (another ? closed_axis_a3
+    tried_a2 = (another || from_the_met_pose ? closed_axis_a2
+        : (mirrors ? tried_a2 : tried_a2 + shared_quotient*step_a2));
+    tried_a3 = (another || from_the_met_pose ? closed_axis_a3
         : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
         + shared_quotient*step_a3));
-    tried_a4 = (another ? closed_axis_a4
+    tried_a4 = (another || from_the_met_pose ? closed_axis_a4
         : (mirrors ? (beside_hand ? 2.0*closed_axis_a4 - tried_a4 : tried_a4) : tried_a4
         + shared_quotient*step_a4));
-    tried_a5 = (another ? closed_axis_a5 : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
-    tried_a6 = (another ? closed_axis_a6 : (mirrors ? tried_a6 : tried_a6 + shared_quotient*step_a6));
+    tried_a5 = (another || from_the_met_pose ? closed_axis_a5
+        : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
+    tried_a6 = (another || from_the_met_pose ? closed_axis_a6
+        : (mirrors ? tried_a6 : tried_a6 + shared_quotient*step_a6));
     passes_left = (another ? ((next_attempt > 1) && (next_attempt < 63) ? 0 : 40) : passes_left_now);
     attempt = (no_start_is_left ? 64 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);

@@ -171,7 +171,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       step_a2, step_a3, step_length, shrinking, closed_reference_a2, closed_direction_x_q2,
       closed_direction_y_q2, closed_axis_a2, nearest_error_now, shared_quotient;
   int next_attempt, passes_left_now;
-  bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, no_start_is_left, mirrors, is_nearer;
+  bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, mirrors, from_the_met_pose,
+      no_start_is_left, is_nearer;
   for (int pass = 0; pass < 184; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
@@ -213,17 +214,19 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
     pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow);
     next_attempt = attempt + (another ? 1 : 0);
-    free_angle = next_attempt > 0 ? 0.01 : 1e-11;
+    mirrors = pose_is_close && (beside_arm || beside_elbow);
+    from_the_met_pose = mirrors && (passes_left > 20); /* what is nearly free is known now */
+    free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 1e-11;
     free_angle_times_machine_scale = free_angle*k->machine_scale;
     no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
         && (closed_reach > free_angle_times_machine_scale);
-    mirrors = pose_is_close && (beside_arm || beside_elbow);
     is_nearer = (attempt > 1) && (attempt < 63) && (error < nearest_error);
     nearest_turn_now = is_nearer ? -360.0*(1 - attempt)/61.0 : nearest_turn;
     /* how far free angles are turned */
     free_turn = (next_attempt > 1) && (next_attempt < 63) ? -360.0*(1 - next_attempt)/61.0
         : (next_attempt >= 63 ? nearest_turn_now : 0.0);
-    closed_reference_a1 = SOFTKIN_DEGREE*(free_turn + given_ref_a1 - k->offset_a1);
+    closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
+        *SOFTKIN_DEGREE;
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
         ? closed_distance_q1*closed_distance_q1 : 1.0;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
@@ -264,7 +267,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     step_a3 = multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3);
     shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
-    closed_reference_a2 = (17.0*free_turn + given_ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    closed_reference_a2 = ((from_the_met_pose ? tried_a2 : 17.0*free_turn + given_ref_a2) - k->offset_a2)
+        *SOFTKIN_DEGREE;
     /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
     closed_direction_x_q2 = closed_reach > free_angle_times_machine_scale
         ? closed_arm_across_q2*closed_wrist_z_from_q1 + closed_arm_along_q2*closed_wrist_x_from_q1
@@ -280,11 +284,12 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     if (no_start_is_left || pose_is_met || (another && (next_attempt > 63))) {
       break;
     }
-    tried_a1 = (another ? closed_axis_a1
+    tried_a1 = (another || from_the_met_pose ? closed_axis_a1
         : (mirrors ? (beside_arm ? 2.0*closed_axis_a1 - tried_a1 : tried_a1) : tried_a1
         + shared_quotient*step_a1));
-    tried_a2 = (another ? closed_axis_a2 : (mirrors ? tried_a2 : tried_a2 + shared_quotient*step_a2));
-    tried_a3 = (another ? closed_axis_a3
+    tried_a2 = (another || from_the_met_pose ? closed_axis_a2
+        : (mirrors ? tried_a2 : tried_a2 + shared_quotient*step_a2));
+    tried_a3 = (another || from_the_met_pose ? closed_axis_a3
         : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
         + shared_quotient*step_a3));
     passes_left = (another ? ((next_attempt > 1) && (next_attempt < 63) ? 0 : 40) : passes_left_now);

@@ -107,7 +107,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof 65187aeecba6c80c"
+    KEY = "articulatedrobot_6dof cc030b575154660b"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -393,13 +393,13 @@ class ArticulatedRobot6DOF(Mechanism):
         # rotation by q2 that takes the arm to its target point
         closed_along_q2 = closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
         closed_across_q2 = closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
-        sum_in_closed_length_q2 = closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         closed_cos_q3 = a3_by_effective_q3 * closed_cos_swing_q3 - closed_sin_swing_q3 * d4_by_effective_q3
         closed_sin_q3 = a3_by_effective_q3 * closed_sin_swing_q3 + closed_cos_swing_q3 * d4_by_effective_q3
         closed_axis_a3 = offset_a3 + arctan2(closed_sin_q3, closed_cos_q3 + 0.0) * RADIAN
         if not -180.000000001 <= closed_axis_a3 - closed_near_a3 < 179.999999999:
             closed_axis_a3 = nearest_period(closed_axis_a3, closed_near_a3)
+        sum_in_closed_length_q2 = closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2
         # steps of damped least squares on the closure, from one start after the other
         (
             tried_a1,
@@ -539,7 +539,9 @@ class ArticulatedRobot6DOF(Mechanism):
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow) and (not beside_hand)
             next_attempt = attempt + (1 if another else 0)
-            free_angle = 0.01 if next_attempt > 0 else 1e-11
+            mirrors = pose_is_close and (beside_arm or beside_elbow or beside_hand)
+            from_the_met_pose = mirrors and (passes_left > 20)  # what is nearly free is known now
+            free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
             is_nearer = (attempt > 1) and (attempt < 63) and (error < nearest_error)
             nearest_turn_now = -360.0 * (1 - attempt) / 61.0 if is_nearer else nearest_turn
             # how far free angles are turned
@@ -548,7 +550,7 @@ class ArticulatedRobot6DOF(Mechanism):
                 if (next_attempt > 1) and (next_attempt < 63)
                 else (nearest_turn_now if next_attempt >= 63 else 0.0)
             )
-            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
+            closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             free_angle_times_machine_scale = free_angle * machine_scale
             closed_divisor_q1 = (
                 closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
@@ -565,7 +567,9 @@ class ArticulatedRobot6DOF(Mechanism):
                 else sin(closed_reference_a1)
             )
             closed_r13_from_q1 = closed_cos_q1 * goal_r13 + closed_sin_q1 * goal_r23
-            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - offset_a2) * DEGREE
+            closed_reference_a2 = (
+                (tried_a2 if from_the_met_pose else 17.0 * free_turn + given_ref_a2) - offset_a2
+            ) * DEGREE
             closed_length_q2 = (
                 (sqrt(sum_in_closed_length_q2) if sum_in_closed_length_q2 > 0.0 else 0.0)
                 if (closed_reach > free_angle_times_machine_scale) and (sum_in_closed_length_q2 > 0.0)
@@ -596,7 +600,6 @@ class ArticulatedRobot6DOF(Mechanism):
                 and (closed_radius_q4 > free_angle)
                 and (closed_reach > free_angle_times_machine_scale)
             )
-            mirrors = pose_is_close and (beside_arm or beside_elbow or beside_hand)
             closed_axis_a1 = nearest_period(
                 offset_a1 + arctan2(closed_sin_q1 + 0.0, closed_cos_q1 + 0.0) * RADIAN, closed_near_a1
             )
@@ -772,7 +775,9 @@ class ArticulatedRobot6DOF(Mechanism):
             closed_axis_a2 = nearest_period(
                 offset_a2 + arctan2(closed_sin_q2 + 0.0, closed_cos_q2 + 0.0) * RADIAN, closed_near_a2
             )
-            closed_reference_a4 = (33.0 * free_turn + given_ref_a4 - offset_a4) * DEGREE
+            closed_reference_a4 = (
+                (tried_a4 if from_the_met_pose else 33.0 * free_turn + given_ref_a4) - offset_a4
+            ) * DEGREE
             # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
             closed_direction_x_q4 = (
@@ -812,17 +817,21 @@ class ArticulatedRobot6DOF(Mechanism):
                 break
             tried_a1 = (
                 closed_axis_a1
-                if another
+                if another or from_the_met_pose
                 else (
                     (2.0 * closed_axis_a1 - tried_a1 if beside_arm else tried_a1)
                     if mirrors
                     else tried_a1 + shared_quotient * step_a1
                 )
             )
-            tried_a2 = closed_axis_a2 if another else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
+            tried_a2 = (
+                closed_axis_a2
+                if another or from_the_met_pose
+                else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
+            )
             tried_a3 = (
                 closed_axis_a3
-                if another
+                if another or from_the_met_pose
                 else (
                     (2.0 * closed_axis_a3 - tried_a3 if beside_elbow else tried_a3)
                     if mirrors
@@ -831,15 +840,23 @@ class ArticulatedRobot6DOF(Mechanism):
             )
             tried_a4 = (
                 closed_axis_a4
-                if another
+                if another or from_the_met_pose
                 else (
                     (2.0 * closed_axis_a4 - tried_a4 if beside_hand else tried_a4)
                     if mirrors
                     else tried_a4 + shared_quotient * step_a4
                 )
             )
-            tried_a5 = closed_axis_a5 if another else (tried_a5 if mirrors else tried_a5 + shared_quotient * step_a5)
-            tried_a6 = closed_axis_a6 if another else (tried_a6 if mirrors else tried_a6 + shared_quotient * step_a6)
+            tried_a5 = (
+                closed_axis_a5
+                if another or from_the_met_pose
+                else (tried_a5 if mirrors else tried_a5 + shared_quotient * step_a5)
+            )
+            tried_a6 = (
+                closed_axis_a6
+                if another or from_the_met_pose
+                else (tried_a6 if mirrors else tried_a6 + shared_quotient * step_a6)
+            )
             passes_left = (0 if (next_attempt > 1) and (next_attempt < 63) else 40) if another else passes_left_now
             attempt = 64 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error

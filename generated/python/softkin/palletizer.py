@@ -366,7 +366,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder)
             next_attempt = attempt + (1 if another else 0)
-            free_angle = 0.01 if next_attempt > 0 else 1e-11
+            mirrors = pose_is_close and (beside_elbow or beside_shoulder)
+            from_the_met_pose = mirrors and (passes_left > 20)  # what is nearly free is known now
+            free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
             is_nearer = (attempt > 1) and (attempt < 63) and (error < nearest_error)
             nearest_turn_now = -360.0 * (1 - attempt) / 61.0 if is_nearer else nearest_turn
             # how far free angles are turned
@@ -375,7 +377,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 if (next_attempt > 1) and (next_attempt < 63)
                 else (nearest_turn_now if next_attempt >= 63 else 0.0)
             )
-            closed_reference_a4 = (33.0 * free_turn + given_ref_a4 - offset_a4) * DEGREE
+            closed_reference_a4 = (
+                (tried_a4 if from_the_met_pose else 33.0 * free_turn + given_ref_a4) - offset_a4
+            ) * DEGREE
             closed_cos_a4 = cos(closed_reference_a4)
             closed_sin_a4 = sin(closed_reference_a4)
             # commanded point, in the frame of the last moving joint
@@ -400,8 +404,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 and (closed_distance_a1 > free_angle_times_machine_scale)
                 and (closed_reach > free_angle_times_machine_scale)
             )
-            mirrors = pose_is_close and (beside_elbow or beside_shoulder)
-            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
+            closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             closed_divisor_a1 = (
                 closed_distance_a1 * closed_distance_a1 if closed_distance_a1 > free_angle_times_machine_scale else 1.0
             )
@@ -457,7 +460,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
-            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - offset_a2) * DEGREE
+            closed_reference_a2 = (
+                (tried_a2 if from_the_met_pose else 17.0 * free_turn + given_ref_a2) - offset_a2
+            ) * DEGREE
             # law of cosines for a3_from_a2 (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
             closed_one_less_cos_a3_from_a2 = (closed_reach + link_length_1_minus_link_length_2) * (
                 closed_reach - link_length_1_minus_link_length_2
@@ -505,16 +510,24 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 break
             tried_a1 = (
                 closed_axis_a1
-                if another
+                if another or from_the_met_pose
                 else (
                     (2.0 * closed_axis_a1 - tried_a1 if beside_shoulder else tried_a1)
                     if mirrors
                     else tried_a1 + shared_quotient * step_a1
                 )
             )
-            tried_a2 = closed_axis_a2 if another else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
-            tried_a3 = closed_axis_a3 if another else (tried_a3 if mirrors else tried_a3 + shared_quotient * step_a3)
-            tried_a4 = given_ref_a4 if another else tried_a4
+            tried_a2 = (
+                closed_axis_a2
+                if another or from_the_met_pose
+                else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
+            )
+            tried_a3 = (
+                closed_axis_a3
+                if another or from_the_met_pose
+                else (tried_a3 if mirrors else tried_a3 + shared_quotient * step_a3)
+            )
+            tried_a4 = given_ref_a4 if another or from_the_met_pose else tried_a4
             passes_left = (0 if (next_attempt > 1) and (next_attempt < 63) else 40) if another else passes_left_now
             attempt = 64 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error

@@ -96,7 +96,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr d069477992ba8e41"
+    KEY = "pos_rrr a0214a3414f68da5"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -344,14 +344,15 @@ class PosRRR(OffsetKinematics):
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
             next_attempt = attempt + (1 if another else 0)
-            free_angle = 0.01 if next_attempt > 0 else 1e-11
+            mirrors = pose_is_close and (beside_arm or beside_elbow)
+            from_the_met_pose = mirrors and (passes_left > 20)  # what is nearly free is known now
+            free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
             free_angle_times_machine_scale = free_angle * machine_scale
             no_start_is_left = (
                 another
                 and (closed_distance_q1 > free_angle_times_machine_scale)
                 and (closed_reach > free_angle_times_machine_scale)
             )
-            mirrors = pose_is_close and (beside_arm or beside_elbow)
             is_nearer = (attempt > 1) and (attempt < 63) and (error < nearest_error)
             nearest_turn_now = -360.0 * (1 - attempt) / 61.0 if is_nearer else nearest_turn
             # how far free angles are turned
@@ -360,7 +361,7 @@ class PosRRR(OffsetKinematics):
                 if (next_attempt > 1) and (next_attempt < 63)
                 else (nearest_turn_now if next_attempt >= 63 else 0.0)
             )
-            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
+            closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             closed_divisor_q1 = (
                 closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
             )
@@ -411,7 +412,9 @@ class PosRRR(OffsetKinematics):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
-            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - offset_a2) * DEGREE
+            closed_reference_a2 = (
+                (tried_a2 if from_the_met_pose else 17.0 * free_turn + given_ref_a2) - offset_a2
+            ) * DEGREE
             # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
             # reference
             closed_direction_x_q2 = (
@@ -434,17 +437,21 @@ class PosRRR(OffsetKinematics):
                 break
             tried_a1 = (
                 closed_axis_a1
-                if another
+                if another or from_the_met_pose
                 else (
                     (2.0 * closed_axis_a1 - tried_a1 if beside_arm else tried_a1)
                     if mirrors
                     else tried_a1 + shared_quotient * step_a1
                 )
             )
-            tried_a2 = closed_axis_a2 if another else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
+            tried_a2 = (
+                closed_axis_a2
+                if another or from_the_met_pose
+                else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
+            )
             tried_a3 = (
                 closed_axis_a3
-                if another
+                if another or from_the_met_pose
                 else (
                     (2.0 * closed_axis_a3 - tried_a3 if beside_elbow else tried_a3)
                     if mirrors
@@ -615,14 +622,15 @@ class PosRRR(OffsetKinematics):
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
             next_attempt = attempt + (1 if another else 0)
-            free_angle = 0.01 if next_attempt > 0 else 1e-11
+            mirrors = pose_is_close and (beside_arm or beside_elbow)
+            from_the_met_pose = mirrors and (passes_left > 20)  # what is nearly free is known now
+            free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
             free_angle_times_machine_scale = free_angle * machine_scale
             no_start_is_left = (
                 another
                 and (closed_distance_q1 > free_angle_times_machine_scale)
                 and (closed_reach > free_angle_times_machine_scale)
             )
-            mirrors = pose_is_close and (beside_arm or beside_elbow)
             is_nearer = (attempt > 1) and (attempt < 63) and (error < nearest_error)
             nearest_turn_now = -360.0 * (1 - attempt) / 61.0 if is_nearer else nearest_turn
             # how far free angles are turned
@@ -631,7 +639,7 @@ class PosRRR(OffsetKinematics):
                 if (next_attempt > 1) and (next_attempt < 63)
                 else (nearest_turn_now if next_attempt >= 63 else 0.0)
             )
-            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - offset_a1)
+            closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             closed_divisor_q1 = (
                 closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
             )
@@ -682,7 +690,9 @@ class PosRRR(OffsetKinematics):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
-            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - offset_a2) * DEGREE
+            closed_reference_a2 = (
+                (tried_a2 if from_the_met_pose else 17.0 * free_turn + given_ref_a2) - offset_a2
+            ) * DEGREE
             # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
             # reference
             closed_direction_x_q2 = (
@@ -705,17 +715,21 @@ class PosRRR(OffsetKinematics):
                 break
             tried_a1 = (
                 closed_axis_a1
-                if another
+                if another or from_the_met_pose
                 else (
                     (2.0 * closed_axis_a1 - tried_a1 if beside_arm else tried_a1)
                     if mirrors
                     else tried_a1 + shared_quotient * step_a1
                 )
             )
-            tried_a2 = closed_axis_a2 if another else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
+            tried_a2 = (
+                closed_axis_a2
+                if another or from_the_met_pose
+                else (tried_a2 if mirrors else tried_a2 + shared_quotient * step_a2)
+            )
             tried_a3 = (
                 closed_axis_a3
-                if another
+                if another or from_the_met_pose
                 else (
                     (2.0 * closed_axis_a3 - tried_a3 if beside_elbow else tried_a3)
                     if mirrors

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import isnan, pi, prod
+from typing import Any
 
 from softkin import Frame
+from softkin._start import IterativeForward
 
 from tests.text import values
 from tests.text.closeness import asked, assert_same
@@ -14,28 +16,29 @@ from tests.text.samples import Sample
 from tests.text.serial_pairs import SerialPair
 
 
-def jacobian(pair: SerialPair, sample: Sample) -> None:
+def jacobian(pair: SerialPair, sample: Sample, start: Frame | None = None) -> None:
     """Jacobian writes the matrix of Python, and zeros in all other places."""
-    status, rows = asked(pair.robot.jacobian, sample.axes)
+    status, rows = asked(pair.robot.jacobian, sample.axes, *_start_in_python(pair, start))
     expected = None
     if status == OK:
         wide = [tuple(row) + (0.0,) * (6 - len(row)) for row in rows]
         expected = (*wide, *((0.0,) * 6,) * (6 - len(wide)))
-    assert_same(pair.controller.jacobian(sample.axes), (status, expected), pair, sample)
+    assert_same(pair.controller.jacobian(sample.axes, start), (status, expected), pair, sample)
 
 
-def axis_velocities(pair: SerialPair, sample: Sample) -> None:
+def axis_velocities(pair: SerialPair, sample: Sample, start: Frame | None = None) -> None:
     """AxisVelocities gives what the Jacobian of Python turns into the twist; where that is singular, a status and
     zeros.
     """
     twist = [40.0, -30.0, 20.0, 10.0, -15.0, 25.0]
     found = [values.MEANINGLESS] * 6
     given = {"aVelocities": found, "aTwist": twist, "a": values.axes(pair.library, sample.axes)}
-    status = pair.controller.block.call("AxisVelocities", **given)
-    wanted, rows = asked(pair.robot.jacobian, sample.axes)
+    status, _ = _called(pair, "AxisVelocities", given, start)
+    own = _start_in_python(pair, start)
+    wanted, rows = asked(pair.robot.jacobian, sample.axes, *own)
     if status != OK:
         assert found == [0.0] * 6
-        margins = pair.robot.singularity(sample.axes).margins.values()
+        margins = pair.robot.singularity(sample.axes, *own).margins.values()
         assert wanted == status or prod(map(abs, margins)) < 1e-9
         return
     assert wanted == OK
@@ -55,13 +58,11 @@ def singularity(pair: SerialPair, sample: Sample) -> None:
     assert pair.controller.is_singular(sample.axes) == expected, f"{pair} {sample}"
 
 
-def margins(pair: SerialPair, sample: Sample) -> None:
+def margins(pair: SerialPair, sample: Sample, start: Frame | None = None) -> None:
     """Margins writes those of Python, and zeros in all other places."""
     found = [values.MEANINGLESS] * 8
-    block = pair.controller.block
-    given = {"aMargins": found, "a": values.axes(pair.library, sample.axes)}
-    status, outputs = block.call_with_outputs("Margins", **given)
-    expected = tuple(pair.robot.singularity(sample.axes).margins.values())
+    status, outputs = _called(pair, "Margins", {"aMargins": found, "a": values.axes(pair.library, sample.axes)}, start)
+    expected = tuple(pair.robot.singularity(sample.axes, *_start_in_python(pair, start)).margins.values())
     if status == OK:
         assert outputs["iCount"] == len(expected)
         assert_same((status, tuple(found)), (OK, (*expected, *(0.0,) * (8 - len(expected)))), pair, sample)
@@ -69,21 +70,26 @@ def margins(pair: SerialPair, sample: Sample) -> None:
         assert found == [values.MEANINGLESS] * 8 and all(map(isnan, expected))
 
 
-def at_the_frame(method: str) -> Callable[[SerialPair, Sample], None]:
-    """The method that takes the frame of the axes as well: a serial mechanism has one, and answers as without it."""
-    name, size = {"Jacobian": ("J", 36), "Margins": ("aMargins", 8), "AxisVelocities": ("aVelocities", 6)}[method]
+def from_start(compare: Callable[[SerialPair, Sample, Frame], None]) -> Callable[[SerialPair, Sample], None]:
+    """The comparison of the method that takes a start as well, with the frame of the axes; the origin where they have
+    none.
+    """
 
-    def compare(pair: SerialPair, sample: Sample) -> None:
+    def compare_from(pair: SerialPair, sample: Sample) -> None:
         status, found = asked(lambda axes: pair.robot.forward(axes)[0], sample.axes)
-        frame = found if status == OK else Frame((0.0, 0.0, 0.0))
-        start = {"f": values.frame(pair.library, frame.position, frame.rotation)}
-        answers = []
-        for more in ({}, start):
-            written = [values.MEANINGLESS] * size
-            given = {name: written, "a": values.axes(pair.library, sample.axes)}
-            given |= {"aTwist": [4.0, -3.0, 2.0, 1.0, -1.5, 2.5]} if method == "AxisVelocities" else {}
-            called = method + ("From" if more else "")
-            answers.append((pair.controller.block.call_with_outputs(called, **given, **more), written))
-        assert repr(answers[0]) == repr(answers[1]), f"{pair} {sample}"
+        compare(pair, sample, found if status == OK else Frame((0.0, 0.0, 0.0)))
 
-    return compare
+    return compare_from
+
+
+def _called(pair: SerialPair, method: str, given: dict[str, Any], start: Frame | None) -> tuple[str, dict[str, Any]]:
+    """The status and the outputs of a method; of the one that takes a start, if there is one."""
+    block = pair.controller.block
+    if start is None:
+        return block.call_with_outputs(method, **given)
+    return block.call_with_outputs(f"{method}From", **given, f=values.frame(pair.library, *start))
+
+
+def _start_in_python(pair: SerialPair, start: Frame | None) -> tuple[Frame, ...]:
+    """The start as an argument in Python, where a machine with one frame at its axes takes none."""
+    return () if start is None or not isinstance(pair.robot, IterativeForward) else (start,)

@@ -171,10 +171,10 @@ def _on_circle(radius: float, degrees: float) -> tuple[sp.Expr, sp.Expr]:
 
 
 TURNING_INVENTIONS = {
-    "three sliders with rods": (three_prr(), 4),
+    "three sliders with rods": (three_prr(), 5),
     "three legs of variable length": (three_rpr(), 1),
     "legs of three kinds": (two_cranks_and_a_leg(), 4),
-    "four cranks, position and heading": (four_rods(), 11),
+    "four cranks, position and heading": (four_rods(), 12),
     "six cranks with rods": (six_rus(), 64),
 }
 """With the largest number of solutions, in the assembly mode of home, that the witness finds at a pose."""

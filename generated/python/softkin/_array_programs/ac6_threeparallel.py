@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 425
+    VALUES = 427
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -132,7 +132,7 @@ class ArrayPrograms(Programs):
             nearest_error,
             nearest_turn,
         ) = initial(start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 40, 0, 9.0, 9.0, 0.0)
-        for _ in range(184):
+        for _ in range(212):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -254,16 +254,18 @@ class ArrayPrograms(Programs):
                 pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder)) & (opposite(beside_wrist))
             )
             next_attempt = attempt + select(another, 1, 0)
-            free_angle = select(next_attempt > 0, 0.01, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
+            mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_wrist)
+            from_the_met_pose = mirrors & (passes_left > 20)  # what is nearly free is known now
+            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
+            is_nearer = (attempt > 1) & (attempt < 91) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 89.0, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 63),
-                -360.0 * (1 - next_attempt) / 61.0,
-                select(next_attempt >= 63, nearest_turn_now, 0.0),
+                (next_attempt > 1) & (next_attempt < 91),
+                -360.0 * (1 - next_attempt) / 89.0,
+                select(next_attempt >= 91, nearest_turn_now, 0.0),
             )
-            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
+            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             free_angle_times_machine_scale = free_angle * k.machine_scale
             closed_divisor_q1 = select(
                 closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
@@ -286,7 +288,10 @@ class ArrayPrograms(Programs):
             closed_q6_radius_of_q5 = given_sigma_wrist * closed_radius_q6
             # cosine and sine of q5 from the q6 radius and r22 equations
             closed_cos_q5 = closed_sin_q1 * goal_r13 - closed_cos_q1 * goal_r23
-            closed_reference_a6 = (21.0 * free_turn + given_ref_a6 - k.offset_a6) * DEGREE
+            free_turn_times_55 = 55.0 * free_turn
+            closed_reference_a6 = (
+                select(from_the_met_pose, tried_a6, free_turn_times_55 + given_ref_a6) - k.offset_a6
+            ) * DEGREE
             # polar coordinates: angle q6 from the r21 and r23 equations
             closed_along_q6 = -given_sigma_wrist * closed_r21_from_q1
             closed_length_q6 = select(closed_radius_q6 > free_angle, closed_radius_q6, 1.0)
@@ -317,7 +322,6 @@ class ArrayPrograms(Programs):
                 & (closed_radius_q6 > free_angle)
                 & (closed_reach > free_angle_times_machine_scale)
             )
-            mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_wrist)
             closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
             rate_1_1 = -k.one_by_machine_scale * y
             rate_2_1 = k.one_by_machine_scale * x
@@ -455,7 +459,9 @@ class ArrayPrograms(Programs):
                 + step_a6 * step_a6
             )
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - k.offset_a2) * DEGREE
+            closed_reference_a2 = (
+                select(from_the_met_pose, tried_a2, free_turn_times_55 + given_ref_a2) - k.offset_a2
+            ) * DEGREE
             # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
             closed_one_less_cos_q3 = (k.a2_plus_a3 + closed_reach) * (k.a2_plus_a3 - closed_reach)
             # 1 + cosine, times the scale
@@ -494,7 +500,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 63))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 91))
             if settled(done, status):
                 break
             (
@@ -526,7 +532,7 @@ class ArrayPrograms(Programs):
                 ),
                 (
                     select(
-                        another,
+                        another | from_the_met_pose,
                         closed_axis_a1,
                         select(
                             mirrors,
@@ -534,9 +540,13 @@ class ArrayPrograms(Programs):
                             tried_a1 + shared_quotient * step_a1,
                         ),
                     ),
-                    select(another, closed_axis_a2, select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2)),
                     select(
-                        another,
+                        another | from_the_met_pose,
+                        closed_axis_a2,
+                        select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2),
+                    ),
+                    select(
+                        another | from_the_met_pose,
                         closed_axis_a3,
                         select(
                             mirrors,
@@ -544,10 +554,18 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, closed_axis_a4, select(mirrors, tried_a4, tried_a4 + shared_quotient * step_a4)),
-                    select(another, closed_axis_a5, select(mirrors, tried_a5, tried_a5 + shared_quotient * step_a5)),
                     select(
-                        another,
+                        another | from_the_met_pose,
+                        closed_axis_a4,
+                        select(mirrors, tried_a4, tried_a4 + shared_quotient * step_a4),
+                    ),
+                    select(
+                        another | from_the_met_pose,
+                        closed_axis_a5,
+                        select(mirrors, tried_a5, tried_a5 + shared_quotient * step_a5),
+                    ),
+                    select(
+                        another | from_the_met_pose,
                         closed_axis_a6,
                         select(
                             mirrors,
@@ -555,8 +573,8 @@ class ArrayPrograms(Programs):
                             tried_a6 + shared_quotient * step_a6,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 63), 0, 40), passes_left_now),
-                    select(no_start_is_left, 64, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 91), 0, 40), passes_left_now),
+                    select(no_start_is_left, 92, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,

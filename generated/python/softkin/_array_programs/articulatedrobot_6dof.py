@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 456
+    VALUES = 457
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -142,11 +142,11 @@ class ArrayPrograms(Programs):
         # rotation by q2 that takes the arm to its target point
         closed_along_q2 = closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
         closed_across_q2 = closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
-        sum_in_closed_length_q2 = closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         closed_cos_q3 = k.a3_by_effective_q3 * closed_cos_swing_q3 - closed_sin_swing_q3 * k.d4_by_effective_q3
         closed_sin_q3 = k.a3_by_effective_q3 * closed_sin_swing_q3 + closed_cos_swing_q3 * k.d4_by_effective_q3
         closed_axis_a3 = nearest_period(k.offset_a3 + degrees(closed_sin_q3, closed_cos_q3), closed_near_a3)
+        sum_in_closed_length_q2 = closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2
         # steps of damped least squares on the closure, from one start after the other
         (
             tried_a1,
@@ -286,7 +286,9 @@ class ArrayPrograms(Programs):
             pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow)) & (opposite(beside_hand))
             next_attempt = attempt + select(another, 1, 0)
-            free_angle = select(next_attempt > 0, 0.01, 1e-11)
+            mirrors = pose_is_close & (beside_arm | beside_elbow | beside_hand)
+            from_the_met_pose = mirrors & (passes_left > 20)  # what is nearly free is known now
+            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
             is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
             nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
             # how far free angles are turned
@@ -295,7 +297,7 @@ class ArrayPrograms(Programs):
                 -360.0 * (1 - next_attempt) / 61.0,
                 select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
-            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
+            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             free_angle_times_machine_scale = free_angle * k.machine_scale
             closed_divisor_q1 = select(
                 closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
@@ -312,7 +314,9 @@ class ArrayPrograms(Programs):
                 sin(closed_reference_a1),
             )
             closed_r13_from_q1 = closed_cos_q1 * goal_r13 + closed_sin_q1 * goal_r23
-            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - k.offset_a2) * DEGREE
+            closed_reference_a2 = (
+                select(from_the_met_pose, tried_a2, 17.0 * free_turn + given_ref_a2) - k.offset_a2
+            ) * DEGREE
             closed_length_q2 = select(
                 (closed_reach > free_angle_times_machine_scale) & (sum_in_closed_length_q2 > 0.0),
                 root(sum_in_closed_length_q2),
@@ -343,7 +347,6 @@ class ArrayPrograms(Programs):
                 & (closed_radius_q4 > free_angle)
                 & (closed_reach > free_angle_times_machine_scale)
             )
-            mirrors = pose_is_close & (beside_arm | beside_elbow | beside_hand)
             closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
             rate_1_1 = -k.one_by_machine_scale * y
             rate_2_1 = k.one_by_machine_scale * x
@@ -515,7 +518,9 @@ class ArrayPrograms(Programs):
             )
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
             closed_axis_a2 = nearest_period(k.offset_a2 + atan2(closed_sin_q2, closed_cos_q2) / DEGREE, closed_near_a2)
-            closed_reference_a4 = (33.0 * free_turn + given_ref_a4 - k.offset_a4) * DEGREE
+            closed_reference_a4 = (
+                select(from_the_met_pose, tried_a4, 33.0 * free_turn + given_ref_a4) - k.offset_a4
+            ) * DEGREE
             # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
             closed_direction_x_q4 = select(
@@ -583,7 +588,7 @@ class ArrayPrograms(Programs):
                 ),
                 (
                     select(
-                        another,
+                        another | from_the_met_pose,
                         closed_axis_a1,
                         select(
                             mirrors,
@@ -591,9 +596,13 @@ class ArrayPrograms(Programs):
                             tried_a1 + shared_quotient * step_a1,
                         ),
                     ),
-                    select(another, closed_axis_a2, select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2)),
                     select(
-                        another,
+                        another | from_the_met_pose,
+                        closed_axis_a2,
+                        select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2),
+                    ),
+                    select(
+                        another | from_the_met_pose,
                         closed_axis_a3,
                         select(
                             mirrors,
@@ -602,7 +611,7 @@ class ArrayPrograms(Programs):
                         ),
                     ),
                     select(
-                        another,
+                        another | from_the_met_pose,
                         closed_axis_a4,
                         select(
                             mirrors,
@@ -610,8 +619,16 @@ class ArrayPrograms(Programs):
                             tried_a4 + shared_quotient * step_a4,
                         ),
                     ),
-                    select(another, closed_axis_a5, select(mirrors, tried_a5, tried_a5 + shared_quotient * step_a5)),
-                    select(another, closed_axis_a6, select(mirrors, tried_a6, tried_a6 + shared_quotient * step_a6)),
+                    select(
+                        another | from_the_met_pose,
+                        closed_axis_a5,
+                        select(mirrors, tried_a5, tried_a5 + shared_quotient * step_a5),
+                    ),
+                    select(
+                        another | from_the_met_pose,
+                        closed_axis_a6,
+                        select(mirrors, tried_a6, tried_a6 + shared_quotient * step_a6),
+                    ),
                     select(another, select((next_attempt > 1) & (next_attempt < 63), 0, 40), passes_left_now),
                     select(no_start_is_left, 64, next_attempt),
                     select(another | mirrors, 9.0, error),

@@ -37,7 +37,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 250
+    VALUES = 251
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def meet_point(self, given: Values, status: Codes) -> Values:
@@ -134,7 +134,9 @@ class ArrayPrograms(Programs):
             pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
             pose_is_met = pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder))
             next_attempt = attempt + select(another, 1, 0)
-            free_angle = select(next_attempt > 0, 0.01, 1e-11)
+            mirrors = pose_is_close & (beside_elbow | beside_shoulder)
+            from_the_met_pose = mirrors & (passes_left > 20)  # what is nearly free is known now
+            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
             is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
             nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
             # how far free angles are turned
@@ -143,7 +145,9 @@ class ArrayPrograms(Programs):
                 -360.0 * (1 - next_attempt) / 61.0,
                 select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
-            closed_reference_a4 = (33.0 * free_turn + given_ref_a4 - k.offset_a4) * DEGREE
+            closed_reference_a4 = (
+                select(from_the_met_pose, tried_a4, 33.0 * free_turn + given_ref_a4) - k.offset_a4
+            ) * DEGREE
             closed_cos_a4 = cos(closed_reference_a4)
             closed_sin_a4 = sin(closed_reference_a4)
             # commanded point, in the frame of the last moving joint
@@ -166,8 +170,7 @@ class ArrayPrograms(Programs):
                 & (closed_distance_a1 > free_angle_times_machine_scale)
                 & (closed_reach > free_angle_times_machine_scale)
             )
-            mirrors = pose_is_close & (beside_elbow | beside_shoulder)
-            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
+            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             closed_divisor_a1 = select(
                 closed_distance_a1 > free_angle_times_machine_scale, closed_distance_a1 * closed_distance_a1, 1.0
             )
@@ -221,7 +224,9 @@ class ArrayPrograms(Programs):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - k.offset_a2) * DEGREE
+            closed_reference_a2 = (
+                select(from_the_met_pose, tried_a2, 17.0 * free_turn + given_ref_a2) - k.offset_a2
+            ) * DEGREE
             # law of cosines for a3_from_a2 (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
             closed_one_less_cos_a3_from_a2 = (closed_reach + k.link_length_1_minus_link_length_2) * (
                 closed_reach - k.link_length_1_minus_link_length_2
@@ -282,7 +287,7 @@ class ArrayPrograms(Programs):
                     ),
                     (
                         select(
-                            another,
+                            another | from_the_met_pose,
                             closed_axis_a1,
                             select(
                                 mirrors,
@@ -291,12 +296,16 @@ class ArrayPrograms(Programs):
                             ),
                         ),
                         select(
-                            another, closed_axis_a2, select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2)
+                            another | from_the_met_pose,
+                            closed_axis_a2,
+                            select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2),
                         ),
                         select(
-                            another, closed_axis_a3, select(mirrors, tried_a3, tried_a3 + shared_quotient * step_a3)
+                            another | from_the_met_pose,
+                            closed_axis_a3,
+                            select(mirrors, tried_a3, tried_a3 + shared_quotient * step_a3),
                         ),
-                        select(another, given_ref_a4, tried_a4),
+                        select(another | from_the_met_pose, given_ref_a4, tried_a4),
                         select(another, select((next_attempt > 1) & (next_attempt < 63), 0, 40), passes_left_now),
                         select(no_start_is_left, 64, next_attempt),
                         select(another | mirrors, 9.0, error),

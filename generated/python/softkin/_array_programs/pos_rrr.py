@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 405
+    VALUES = 407
     JACOBIAN_ROWS = (0, 1, 2)
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
@@ -150,14 +150,15 @@ class ArrayPrograms(Programs):
             pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow))
             next_attempt = attempt + select(another, 1, 0)
-            free_angle = select(next_attempt > 0, 0.01, 1e-11)
+            mirrors = pose_is_close & (beside_arm | beside_elbow)
+            from_the_met_pose = mirrors & (passes_left > 20)  # what is nearly free is known now
+            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
             free_angle_times_machine_scale = free_angle * k.machine_scale
             no_start_is_left = (
                 another
                 & (closed_distance_q1 > free_angle_times_machine_scale)
                 & (closed_reach > free_angle_times_machine_scale)
             )
-            mirrors = pose_is_close & (beside_arm | beside_elbow)
             is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
             nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
             # how far free angles are turned
@@ -166,7 +167,7 @@ class ArrayPrograms(Programs):
                 -360.0 * (1 - next_attempt) / 61.0,
                 select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
-            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
+            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             closed_divisor_q1 = select(
                 closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
             )
@@ -215,7 +216,9 @@ class ArrayPrograms(Programs):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - k.offset_a2) * DEGREE
+            closed_reference_a2 = (
+                select(from_the_met_pose, tried_a2, 17.0 * free_turn + given_ref_a2) - k.offset_a2
+            ) * DEGREE
             # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
             # reference
             closed_direction_x_q2 = select(
@@ -242,7 +245,7 @@ class ArrayPrograms(Programs):
                 (tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn),
                 (
                     select(
-                        another,
+                        another | from_the_met_pose,
                         closed_axis_a1,
                         select(
                             mirrors,
@@ -250,9 +253,13 @@ class ArrayPrograms(Programs):
                             tried_a1 + shared_quotient * step_a1,
                         ),
                     ),
-                    select(another, closed_axis_a2, select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2)),
                     select(
-                        another,
+                        another | from_the_met_pose,
+                        closed_axis_a2,
+                        select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2),
+                    ),
+                    select(
+                        another | from_the_met_pose,
                         closed_axis_a3,
                         select(
                             mirrors,
@@ -397,14 +404,15 @@ class ArrayPrograms(Programs):
             pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow))
             next_attempt = attempt + select(another, 1, 0)
-            free_angle = select(next_attempt > 0, 0.01, 1e-11)
+            mirrors = pose_is_close & (beside_arm | beside_elbow)
+            from_the_met_pose = mirrors & (passes_left > 20)  # what is nearly free is known now
+            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
             free_angle_times_machine_scale = free_angle * k.machine_scale
             no_start_is_left = (
                 another
                 & (closed_distance_q1 > free_angle_times_machine_scale)
                 & (closed_reach > free_angle_times_machine_scale)
             )
-            mirrors = pose_is_close & (beside_arm | beside_elbow)
             is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
             nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
             # how far free angles are turned
@@ -413,7 +421,7 @@ class ArrayPrograms(Programs):
                 -360.0 * (1 - next_attempt) / 61.0,
                 select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
-            closed_reference_a1 = DEGREE * (free_turn + given_ref_a1 - k.offset_a1)
+            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             closed_divisor_q1 = select(
                 closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
             )
@@ -462,7 +470,9 @@ class ArrayPrograms(Programs):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            closed_reference_a2 = (17.0 * free_turn + given_ref_a2 - k.offset_a2) * DEGREE
+            closed_reference_a2 = (
+                select(from_the_met_pose, tried_a2, 17.0 * free_turn + given_ref_a2) - k.offset_a2
+            ) * DEGREE
             # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
             # reference
             closed_direction_x_q2 = select(
@@ -489,7 +499,7 @@ class ArrayPrograms(Programs):
                 (tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn),
                 (
                     select(
-                        another,
+                        another | from_the_met_pose,
                         closed_axis_a1,
                         select(
                             mirrors,
@@ -497,9 +507,13 @@ class ArrayPrograms(Programs):
                             tried_a1 + shared_quotient * step_a1,
                         ),
                     ),
-                    select(another, closed_axis_a2, select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2)),
                     select(
-                        another,
+                        another | from_the_met_pose,
+                        closed_axis_a2,
+                        select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2),
+                    ),
+                    select(
+                        another | from_the_met_pose,
                         closed_axis_a3,
                         select(
                             mirrors,
