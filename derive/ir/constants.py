@@ -63,9 +63,9 @@ DAMPED = sp.Float("1e-12")
 lengths of the machine, is left."""
 DOUBTFUL = sp.Float("1e-2")
 """A step whose margin is at most this may have lost digits that a later step needs; there its angle is set free."""
-SCANNED = 89
+SCANNED = 61
 """The values of free angles that are tried, all around the circle, to find the start that is nearest to a pose."""
-LATTICE = 55
+LATTICE = 17
 """Every further free angle is turned this many times as far, so that several have the values of a lattice."""
 PASSES = 40
 """The largest number of steps from each start: next to a double root every step leaves a third of the error."""

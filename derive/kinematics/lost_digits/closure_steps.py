@@ -6,7 +6,8 @@ move. A solution counts if its error is rounding, and no branch has the wrong si
 
 Where the steps meet nothing, the closed form gives another start: with nearly free angles at the reference, then with
 them turned to where the closed form comes nearest to the pose, of many values around the circle. Where the steps meet
-the pose on another branch, the joint of its two roots is mirrored about the start.
+the pose on another branch, nearly free angles are known from there, and the closed form is taken again; if that
+leads to the same branch, the joint of its two roots is mirrored about the start.
 """
 
 from __future__ import annotations

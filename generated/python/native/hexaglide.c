@@ -312,9 +312,6 @@ static softkin_status find_platform(const void *machine, const double *given, do
       begin_r13 = given[8], begin_r21 = given[9], begin_r22 = given[10], begin_r23 = given[11],
       begin_r31 = given[12], begin_r32 = given[13], begin_r33 = given[14], begin_x = given[15],
       begin_y = given[16], begin_z = given[17];
-  if (!softkin_are_reasonable((const double[]){axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6}, 6)) {
-    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
-  }
   /* joints of the platform, seen from its origin, in the orientation of the start */
   const double start_arm_1_x = begin_r11*k->platform_1_x + begin_r12*k->platform_1_y
       + begin_r13*k->platform_1_z;
@@ -647,7 +644,8 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const hexaglide_machine *k = machine;
   const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3], axis_a5 = axes[4],
       axis_a6 = axes[5];
-  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y, k->start_z}, 3)) {
+  if (!softkin_are_reasonable((const double[]){axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6,
+      k->start_x, k->start_y, k->start_z}, 9)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
   /* pose of the platform, by Newton's method from the start */
@@ -1080,7 +1078,8 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const hexaglide_machine *k = machine;
   const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3], axis_a5 = axes[4],
       axis_a6 = axes[5];
-  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y, k->start_z}, 3)) {
+  if (!softkin_are_reasonable((const double[]){axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6,
+      k->start_x, k->start_y, k->start_z}, 9)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
   /* pose of the platform, by Newton's method from the start */
@@ -1140,7 +1139,8 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const hexaglide_machine *k = machine;
   const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3], axis_a5 = axes[4],
       axis_a6 = axes[5];
-  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y, k->start_z}, 3)) {
+  if (!softkin_are_reasonable((const double[]){axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6,
+      k->start_x, k->start_y, k->start_z}, 9)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
   /* pose of the platform, by Newton's method from the start */

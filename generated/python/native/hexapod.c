@@ -300,9 +300,6 @@ static softkin_status find_platform(const void *machine, const double *given, do
       begin_r13 = given[8], begin_r21 = given[9], begin_r22 = given[10], begin_r23 = given[11],
       begin_r31 = given[12], begin_r32 = given[13], begin_r33 = given[14], begin_x = given[15],
       begin_y = given[16], begin_z = given[17];
-  if (!softkin_are_reasonable((const double[]){axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6}, 6)) {
-    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
-  }
   const double l1 = axis_l1 - k->offset_l1;
   const double l2 = axis_l2 - k->offset_l2;
   const double l3 = axis_l3 - k->offset_l3;
@@ -617,7 +614,8 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const hexapod_machine *k = machine;
   const double axis_l1 = axes[0], axis_l2 = axes[1], axis_l3 = axes[2], axis_l4 = axes[3], axis_l5 = axes[4],
       axis_l6 = axes[5];
-  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y, k->start_z}, 3)) {
+  if (!softkin_are_reasonable((const double[]){axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6,
+      k->start_x, k->start_y, k->start_z}, 9)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
   /* pose of the platform, by Newton's method from the start */
@@ -1020,7 +1018,8 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const hexapod_machine *k = machine;
   const double axis_l1 = axes[0], axis_l2 = axes[1], axis_l3 = axes[2], axis_l4 = axes[3], axis_l5 = axes[4],
       axis_l6 = axes[5];
-  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y, k->start_z}, 3)) {
+  if (!softkin_are_reasonable((const double[]){axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6,
+      k->start_x, k->start_y, k->start_z}, 9)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
   /* pose of the platform, by Newton's method from the start */
@@ -1043,7 +1042,8 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const hexapod_machine *k = machine;
   const double axis_l1 = axes[0], axis_l2 = axes[1], axis_l3 = axes[2], axis_l4 = axes[3], axis_l5 = axes[4],
       axis_l6 = axes[5];
-  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y, k->start_z}, 3)) {
+  if (!softkin_are_reasonable((const double[]){axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6,
+      k->start_x, k->start_y, k->start_z}, 9)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
   /* pose of the platform, by Newton's method from the start */

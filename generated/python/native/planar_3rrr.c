@@ -167,9 +167,6 @@ static softkin_status find_platform(const void *machine, const double *given, do
   const planar_3rrr_machine *k = machine;
   const double axis_a1 = given[0], axis_a2 = given[1], axis_a3 = given[2], begin_cos_heading = given[3],
       begin_sin_heading = given[4], begin_x = given[5], begin_y = given[6];
-  if (!softkin_are_reasonable((const double[]){axis_a1, axis_a2, axis_a3}, 3)) {
-    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
-  }
   /* joints of the platform, seen from its origin, in the orientation of the start */
   const double start_arm_1_x = begin_cos_heading*k->platform_1_x - begin_sin_heading*k->platform_1_y;
   const double start_arm_1_y = begin_cos_heading*k->platform_1_y + begin_sin_heading*k->platform_1_x;
@@ -289,7 +286,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
     double *margins, softkin_refusal *why) {
   const planar_3rrr_machine *k = machine;
   const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2];
-  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y}, 2)) {
+  if (!softkin_are_reasonable((const double[]){axis_a1, axis_a2, axis_a3, k->start_x, k->start_y}, 5)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
   const double start_along = k->start_r11 + k->start_r22; /* nearest rotation about Z */
@@ -639,7 +636,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
     softkin_refusal *why) {
   const planar_3rrr_machine *k = machine;
   const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2];
-  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y}, 2)) {
+  if (!softkin_are_reasonable((const double[]){axis_a1, axis_a2, axis_a3, k->start_x, k->start_y}, 5)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
   const double start_along = k->start_r11 + k->start_r22; /* nearest rotation about Z */
@@ -700,7 +697,7 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
     softkin_refusal *why) {
   const planar_3rrr_machine *k = machine;
   const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2];
-  if (!softkin_are_reasonable((const double[]){k->start_x, k->start_y}, 2)) {
+  if (!softkin_are_reasonable((const double[]){axis_a1, axis_a2, axis_a3, k->start_x, k->start_y}, 5)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
   const double start_along = k->start_r11 + k->start_r22; /* nearest rotation about Z */

@@ -37,9 +37,9 @@ CHUNK = 8192
 EVERY_SLOT = 3 * CHUNK
 """The largest number of rows times slots computed together where all slots are computed, since slots share values."""
 FEWEST, FEWEST_SEARCHED = 512, 96
-"""The least number of rows computed together, unless there are fewer; also taken for a root scan with many trials."""
+"""The least number of rows computed together, unless there are fewer; the second of a root scan with many trials."""
 MANY = 100_000
-"""From this size of a result on, intermediate values must take little memory, also those of a root scan."""
+"""From this size of a result on, intermediate values must take little memory, however few rows then go together."""
 SHARE = 0.25
 """The share of the result's memory that intermediate values take."""
 _UNTRIED = 255
@@ -161,7 +161,7 @@ def _rows_together(values: int, rows: int, slots: int, width: int) -> int:
     values: the number of values of one row, some of them separate for every slot.
     """
     on_the_way = 8.0 * (slots * width + 1.35 * values + 16.0)
-    least = FEWEST if values < 120000 else FEWEST_SEARCHED if rows < MANY else 1
+    least = 1 if rows >= MANY else FEWEST if values < 120000 else FEWEST_SEARCHED
     wanted = int(SHARE * rows * slots * (8 * width + 1) / on_the_way)
     return max(1, min(CHUNK, EVERY_SLOT // slots, max(least, wanted)))
 

@@ -33,9 +33,9 @@ counted together):
     inverse: 79 additions, 70 multiplications, 10 divisions, 5 square roots, 6 sines
     inverse, all 8 branches: 506 additions, 322 multiplications, 42 divisions, 17 square roots, 30 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 72753 additions, 91609 multiplications, 4028 divisions, 1062
-    square roots, 5306 sines
-    steps of damped least squares on the closure, from one start after the other: at most 212 passes, all of
+    a branch at a singular pose, in addition: 63149 additions, 79697 multiplications, 3496 divisions, 922
+    square roots, 4606 sines
+    steps of damped least squares on the closure, from one start after the other: at most 184 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -104,7 +104,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 6ff6ac027287162f"
+    KEY = "ac6_threeparallel 6ffd873176b0718f"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -373,7 +373,7 @@ class Ac6ThreeParallel(Mechanism):
             nearest_error,
             nearest_turn,
         ) = start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 40, 0, 9.0, 9.0, 0.0
-        for _ in range(212):
+        for _ in range(184):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -496,13 +496,13 @@ class Ac6ThreeParallel(Mechanism):
             mirrors = pose_is_close and (beside_elbow or beside_shoulder or beside_wrist)
             from_the_met_pose = mirrors and (passes_left > 20)  # what is nearly free is known now
             free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
-            is_nearer = (attempt > 1) and (attempt < 91) and (error < nearest_error)
-            nearest_turn_now = -360.0 * (1 - attempt) / 89.0 if is_nearer else nearest_turn
+            is_nearer = (attempt > 1) and (attempt < 63) and (error < nearest_error)
+            nearest_turn_now = -360.0 * (1 - attempt) / 61.0 if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                -360.0 * (1 - next_attempt) / 89.0
-                if (next_attempt > 1) and (next_attempt < 91)
-                else (nearest_turn_now if next_attempt >= 91 else 0.0)
+                -360.0 * (1 - next_attempt) / 61.0
+                if (next_attempt > 1) and (next_attempt < 63)
+                else (nearest_turn_now if next_attempt >= 63 else 0.0)
             )
             closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             free_angle_times_machine_scale = free_angle * machine_scale
@@ -527,9 +527,8 @@ class Ac6ThreeParallel(Mechanism):
             closed_q6_radius_of_q5 = given_sigma_wrist * closed_radius_q6
             # cosine and sine of q5 from the q6 radius and r22 equations
             closed_cos_q5 = closed_sin_q1 * goal_r13 - closed_cos_q1 * goal_r23
-            free_turn_times_55 = 55.0 * free_turn
             closed_reference_a6 = (
-                (tried_a6 if from_the_met_pose else free_turn_times_55 + given_ref_a6) - offset_a6
+                (tried_a6 if from_the_met_pose else 21.0 * free_turn + given_ref_a6) - offset_a6
             ) * DEGREE
             # polar coordinates: angle q6 from the r21 and r23 equations
             closed_along_q6 = -given_sigma_wrist * closed_r21_from_q1
@@ -701,7 +700,7 @@ class Ac6ThreeParallel(Mechanism):
             )
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
             closed_reference_a2 = (
-                (tried_a2 if from_the_met_pose else free_turn_times_55 + given_ref_a2) - offset_a2
+                (tried_a2 if from_the_met_pose else 17.0 * free_turn + given_ref_a2) - offset_a2
             ) * DEGREE
             # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
             closed_one_less_cos_q3 = (a2_plus_a3 + closed_reach) * (a2_plus_a3 - closed_reach)
@@ -747,7 +746,7 @@ class Ac6ThreeParallel(Mechanism):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 91)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 63)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -791,8 +790,8 @@ class Ac6ThreeParallel(Mechanism):
                     else tried_a6 + shared_quotient * step_a6
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 91) else 40) if another else passes_left_now
-            attempt = 92 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 63) else 40) if another else passes_left_now
+            attempt = 64 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now

@@ -504,7 +504,7 @@ class Hexaglide(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Hexaglide"
-    KEY = "hexaglide ec88d3ce37b8c0e2"
+    KEY = "hexaglide b67e60cb2969138b"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="X of carriage 1", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="X of carriage 2", multi_turn=False),
@@ -924,8 +924,6 @@ class Hexaglide(IterativeForward):
         rail_5_y, rail_5_z, rail_6_y, rail_6_z = k.rail_5_y, k.rail_5_z, k.rail_6_y, k.rail_6_z
         rod_length_1, rod_length_2, rod_length_3 = k.rod_length_1, k.rod_length_2, k.rod_length_3
         rod_length_4, rod_length_5, rod_length_6, within = k.rod_length_4, k.rod_length_5, k.rod_length_6, k.within
-        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
-            return Status.BAD_INPUT
         # joints of the platform, seen from its origin, in the orientation of the start
         start_arm_1_x = begin_r11 * platform_1_x + begin_r12 * platform_1_y + begin_r13 * platform_1_z
         start_arm_1_y = begin_r21 * platform_1_x + begin_r22 * platform_1_y + begin_r23 * platform_1_z
@@ -1222,7 +1220,7 @@ class Hexaglide(IterativeForward):
         start_r11, start_r12, start_r13, start_r21 = k.start_r11, k.start_r12, k.start_r13, k.start_r21
         start_r22, start_r23, start_r31, start_r32 = k.start_r22, k.start_r23, k.start_r31, k.start_r32
         start_r33, start_x, start_y, start_z = k.start_r33, k.start_x, k.start_y, k.start_z
-        if not reasonable(start_x, start_y, start_z):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, start_x, start_y, start_z):
             return Status.BAD_INPUT
         # pose of the platform, by Newton's method from the start
         found = self._find_platform(
@@ -1277,7 +1275,7 @@ class Hexaglide(IterativeForward):
         start_r11, start_r12, start_r13, start_r21 = k.start_r11, k.start_r12, k.start_r13, k.start_r21
         start_r22, start_r23, start_r31, start_r32 = k.start_r22, k.start_r23, k.start_r31, k.start_r32
         start_r33, start_x, start_y, start_z = k.start_r33, k.start_x, k.start_y, k.start_z
-        if not reasonable(start_x, start_y, start_z):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, start_x, start_y, start_z):
             return Status.BAD_INPUT
         # pose of the platform, by Newton's method from the start
         found = self._find_platform(
@@ -1851,7 +1849,7 @@ class Hexaglide(IterativeForward):
         platform_6_z, start_r11, start_r12, start_r13 = k.platform_6_z, k.start_r11, k.start_r12, k.start_r13
         start_r21, start_r22, start_r23, start_r31 = k.start_r21, k.start_r22, k.start_r23, k.start_r31
         start_r32, start_r33, start_x, start_y, start_z = k.start_r32, k.start_r33, k.start_x, k.start_y, k.start_z
-        if not reasonable(start_x, start_y, start_z):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, start_x, start_y, start_z):
             return Status.BAD_INPUT
         # pose of the platform, by Newton's method from the start
         found = self._find_platform(
@@ -1921,7 +1919,7 @@ class Hexaglide(IterativeForward):
         start_r13, start_r21, start_r22, start_r23 = k.start_r13, k.start_r21, k.start_r22, k.start_r23
         start_r31, start_r32, start_r33, start_x, start_y = k.start_r31, k.start_r32, k.start_r33, k.start_x, k.start_y
         start_z = k.start_z
-        if not reasonable(start_x, start_y, start_z):
+        if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, start_x, start_y, start_z):
             return Status.BAD_INPUT
         # pose of the platform, by Newton's method from the start
         found = self._find_platform(

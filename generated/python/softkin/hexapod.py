@@ -373,7 +373,7 @@ class Hexapod(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Hexapod"
-    KEY = "hexapod 97bfd10d76b2d7e2"
+    KEY = "hexapod 0dad3fc2c6cec0c8"
     AXES = (
         Axis(name="L1", kind="linear", unit="u", meaning="Length of leg 1, between its joints", multi_turn=False),
         Axis(name="L2", kind="linear", unit="u", meaning="Length of leg 2, between its joints", multi_turn=False),
@@ -766,8 +766,6 @@ class Hexapod(IterativeForward):
         platform_4_z, platform_5_x, platform_5_y = k.platform_4_z, k.platform_5_x, k.platform_5_y
         platform_5_z, platform_6_x, platform_6_y = k.platform_5_z, k.platform_6_x, k.platform_6_y
         platform_6_z, within = k.platform_6_z, k.within
-        if not reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6):
-            return Status.BAD_INPUT
         l1 = axis_l1 - offset_l1
         l2 = axis_l2 - offset_l2
         l3 = axis_l3 - offset_l3
@@ -1039,7 +1037,7 @@ class Hexapod(IterativeForward):
         start_r11, start_r12, start_r13, start_r21 = k.start_r11, k.start_r12, k.start_r13, k.start_r21
         start_r22, start_r23, start_r31, start_r32 = k.start_r22, k.start_r23, k.start_r31, k.start_r32
         start_r33, start_x, start_y, start_z = k.start_r33, k.start_x, k.start_y, k.start_z
-        if not reasonable(start_x, start_y, start_z):
+        if not reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_x, start_y, start_z):
             return Status.BAD_INPUT
         # pose of the platform, by Newton's method from the start
         found = self._find_platform(
@@ -1094,7 +1092,7 @@ class Hexapod(IterativeForward):
         start_r11, start_r12, start_r13, start_r21 = k.start_r11, k.start_r12, k.start_r13, k.start_r21
         start_r22, start_r23, start_r31, start_r32 = k.start_r22, k.start_r23, k.start_r31, k.start_r32
         start_r33, start_x, start_y, start_z = k.start_r33, k.start_x, k.start_y, k.start_z
-        if not reasonable(start_x, start_y, start_z):
+        if not reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_x, start_y, start_z):
             return Status.BAD_INPUT
         # pose of the platform, by Newton's method from the start
         found = self._find_platform(
@@ -1586,7 +1584,7 @@ class Hexapod(IterativeForward):
         start_r11, start_r12, start_r13, start_r21 = k.start_r11, k.start_r12, k.start_r13, k.start_r21
         start_r22, start_r23, start_r31, start_r32 = k.start_r22, k.start_r23, k.start_r31, k.start_r32
         start_r33, start_x, start_y, start_z = k.start_r33, k.start_x, k.start_y, k.start_z
-        if not reasonable(start_x, start_y, start_z):
+        if not reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_x, start_y, start_z):
             return Status.BAD_INPUT
         # pose of the platform, by Newton's method from the start
         found = self._find_platform(
@@ -1624,7 +1622,7 @@ class Hexapod(IterativeForward):
         start_r13, start_r21, start_r22, start_r23 = k.start_r13, k.start_r21, k.start_r22, k.start_r23
         start_r31, start_r32, start_r33, start_x, start_y = k.start_r31, k.start_r32, k.start_r33, k.start_x, k.start_y
         start_z = k.start_z
-        if not reasonable(start_x, start_y, start_z):
+        if not reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_x, start_y, start_z):
             return Status.BAD_INPUT
         # pose of the platform, by Newton's method from the start
         found = self._find_platform(

@@ -335,7 +335,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Planar_3RRR"
-    KEY = "planar_3rrr cab6b97d7d484b7a"
+    KEY = "planar_3rrr f04a9ff596d0873e"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z, from +X", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z, from +X", multi_turn=True),
@@ -552,8 +552,6 @@ class Planar3RRR(IterativeForward, TwistChoice):
         platform_2_x, platform_2_y, platform_3_x = k.platform_2_x, k.platform_2_y, k.platform_3_x
         platform_3_y, rod_length_1, rod_length_2 = k.platform_3_y, k.rod_length_1, k.rod_length_2
         rod_length_3, within = k.rod_length_3, k.within
-        if not reasonable(axis_a1, axis_a2, axis_a3):
-            return Status.BAD_INPUT
         # joints of the platform, seen from its origin, in the orientation of the start
         start_arm_1_x = begin_cos_heading * platform_1_x - begin_sin_heading * platform_1_y
         start_arm_1_y = begin_cos_heading * platform_1_y + begin_sin_heading * platform_1_x
@@ -668,8 +666,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         platform_2_x, platform_2_y, platform_3_x = k.platform_2_x, k.platform_2_y, k.platform_3_x
         platform_3_y, start_r11, start_r12, start_r21 = k.platform_3_y, k.start_r11, k.start_r12, k.start_r21
         start_r22, start_x, start_y = k.start_r22, k.start_x, k.start_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= start_x <= 1e9 and -1e9 <= start_y <= 1e9):
+        if not reasonable(axis_a1, axis_a2, axis_a3, start_x, start_y):
             return Status.BAD_INPUT
         start_along = start_r11 + start_r22  # nearest rotation about Z
         start_across = start_r21 - start_r12
@@ -721,8 +718,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         k = self._constants
         start_r11, start_r12, start_r21, start_r22 = k.start_r11, k.start_r12, k.start_r21, k.start_r22
         start_x, start_y = k.start_x, k.start_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= start_x <= 1e9 and -1e9 <= start_y <= 1e9):
+        if not reasonable(axis_a1, axis_a2, axis_a3, start_x, start_y):
             return Status.BAD_INPUT
         start_along = start_r11 + start_r22  # nearest rotation about Z
         start_across = start_r21 - start_r12
@@ -994,8 +990,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         platform_2_x, platform_2_y, platform_3_x = k.platform_2_x, k.platform_2_y, k.platform_3_x
         platform_3_y, start_r11, start_r12, start_r21 = k.platform_3_y, k.start_r11, k.start_r12, k.start_r21
         start_r22, start_x, start_y = k.start_r22, k.start_x, k.start_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= start_x <= 1e9 and -1e9 <= start_y <= 1e9):
+        if not reasonable(axis_a1, axis_a2, axis_a3, start_x, start_y):
             return Status.BAD_INPUT
         start_along = start_r11 + start_r22  # nearest rotation about Z
         start_across = start_r21 - start_r12
@@ -1041,8 +1036,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
         one_by_platform_radius, start_r11, start_r12 = k.one_by_platform_radius, k.start_r11, k.start_r12
         start_r21, start_r22, start_x, start_y = k.start_r21, k.start_r22, k.start_x, k.start_y
-        # inputs must be numbers, and of reasonable size
-        if not (-1e9 <= start_x <= 1e9 and -1e9 <= start_y <= 1e9):
+        if not reasonable(axis_a1, axis_a2, axis_a3, start_x, start_y):
             return Status.BAD_INPUT
         start_along = start_r11 + start_r22  # nearest rotation about Z
         start_across = start_r21 - start_r12

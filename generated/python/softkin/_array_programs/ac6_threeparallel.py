@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 427
+    VALUES = 426
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -132,7 +132,7 @@ class ArrayPrograms(Programs):
             nearest_error,
             nearest_turn,
         ) = initial(start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 40, 0, 9.0, 9.0, 0.0)
-        for _ in range(212):
+        for _ in range(184):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -257,13 +257,13 @@ class ArrayPrograms(Programs):
             mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_wrist)
             from_the_met_pose = mirrors & (passes_left > 20)  # what is nearly free is known now
             free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 91) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 89.0, nearest_turn)
+            is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 91),
-                -360.0 * (1 - next_attempt) / 89.0,
-                select(next_attempt >= 91, nearest_turn_now, 0.0),
+                (next_attempt > 1) & (next_attempt < 63),
+                -360.0 * (1 - next_attempt) / 61.0,
+                select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             free_angle_times_machine_scale = free_angle * k.machine_scale
@@ -288,9 +288,8 @@ class ArrayPrograms(Programs):
             closed_q6_radius_of_q5 = given_sigma_wrist * closed_radius_q6
             # cosine and sine of q5 from the q6 radius and r22 equations
             closed_cos_q5 = closed_sin_q1 * goal_r13 - closed_cos_q1 * goal_r23
-            free_turn_times_55 = 55.0 * free_turn
             closed_reference_a6 = (
-                select(from_the_met_pose, tried_a6, free_turn_times_55 + given_ref_a6) - k.offset_a6
+                select(from_the_met_pose, tried_a6, 21.0 * free_turn + given_ref_a6) - k.offset_a6
             ) * DEGREE
             # polar coordinates: angle q6 from the r21 and r23 equations
             closed_along_q6 = -given_sigma_wrist * closed_r21_from_q1
@@ -460,7 +459,7 @@ class ArrayPrograms(Programs):
             )
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
             closed_reference_a2 = (
-                select(from_the_met_pose, tried_a2, free_turn_times_55 + given_ref_a2) - k.offset_a2
+                select(from_the_met_pose, tried_a2, 17.0 * free_turn + given_ref_a2) - k.offset_a2
             ) * DEGREE
             # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
             closed_one_less_cos_q3 = (k.a2_plus_a3 + closed_reach) * (k.a2_plus_a3 - closed_reach)
@@ -500,7 +499,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 91))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 63))
             if settled(done, status):
                 break
             (
@@ -573,8 +572,8 @@ class ArrayPrograms(Programs):
                             tried_a6 + shared_quotient * step_a6,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 91), 0, 40), passes_left_now),
-                    select(no_start_is_left, 92, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 63), 0, 40), passes_left_now),
+                    select(no_start_is_left, 64, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,

@@ -59,8 +59,6 @@ class ArrayPrograms(StartedPrograms):
             begin_z,
         ) = given
         k = self.constants
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), Status.BAD_INPUT)
         # joints of the platform, seen from its origin, in the orientation of the start
         start_arm_1_x = begin_r11 * k.platform_1_x + begin_r12 * k.platform_1_y + begin_r13 * k.platform_1_z
         start_arm_1_y = begin_r21 * k.platform_1_x + begin_r22 * k.platform_1_y + begin_r23 * k.platform_1_z
@@ -374,7 +372,11 @@ class ArrayPrograms(StartedPrograms):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, reasonable(k.start_x, k.start_y, k.start_z), Status.BAD_INPUT)
+        require(
+            status,
+            reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, k.start_x, k.start_y, k.start_z),
+            Status.BAD_INPUT,
+        )
         # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (
@@ -755,7 +757,11 @@ class ArrayPrograms(StartedPrograms):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, reasonable(k.start_x, k.start_y, k.start_z), Status.BAD_INPUT)
+        require(
+            status,
+            reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, k.start_x, k.start_y, k.start_z),
+            Status.BAD_INPUT,
+        )
         # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (
@@ -821,7 +827,11 @@ class ArrayPrograms(StartedPrograms):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, reasonable(k.start_x, k.start_y, k.start_z), Status.BAD_INPUT)
+        require(
+            status,
+            reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, k.start_x, k.start_y, k.start_z),
+            Status.BAD_INPUT,
+        )
         # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (

@@ -59,8 +59,6 @@ class ArrayPrograms(StartedPrograms):
             begin_z,
         ) = given
         k = self.constants
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6), Status.BAD_INPUT)
         l1 = axis_l1 - k.offset_l1
         l2 = axis_l2 - k.offset_l2
         l3 = axis_l3 - k.offset_l3
@@ -335,7 +333,11 @@ class ArrayPrograms(StartedPrograms):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, reasonable(k.start_x, k.start_y, k.start_z), Status.BAD_INPUT)
+        require(
+            status,
+            reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, k.start_x, k.start_y, k.start_z),
+            Status.BAD_INPUT,
+        )
         # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (
@@ -716,7 +718,11 @@ class ArrayPrograms(StartedPrograms):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, reasonable(k.start_x, k.start_y, k.start_z), Status.BAD_INPUT)
+        require(
+            status,
+            reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, k.start_x, k.start_y, k.start_z),
+            Status.BAD_INPUT,
+        )
         # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (
@@ -750,7 +756,11 @@ class ArrayPrograms(StartedPrograms):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, reasonable(k.start_x, k.start_y, k.start_z), Status.BAD_INPUT)
+        require(
+            status,
+            reasonable(axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, k.start_x, k.start_y, k.start_z),
+            Status.BAD_INPUT,
+        )
         # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (

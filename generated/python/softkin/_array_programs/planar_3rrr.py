@@ -37,15 +37,13 @@ class ArrayPrograms(StartedPrograms):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 238
+    VALUES = 903
     JACOBIAN_ROWS = (0, 1, 5)
 
     def find_platform(self, given: Values, status: Codes) -> Values:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""
         axis_a1, axis_a2, axis_a3, begin_cos_heading, begin_sin_heading, begin_x, begin_y = given
         k = self.constants
-        # inputs must be numbers, and of reasonable size
-        require(status, reasonable(axis_a1, axis_a2, axis_a3), Status.BAD_INPUT)
         # joints of the platform, seen from its origin, in the orientation of the start
         start_arm_1_x = begin_cos_heading * k.platform_1_x - begin_sin_heading * k.platform_1_y
         start_arm_1_y = begin_cos_heading * k.platform_1_y + begin_sin_heading * k.platform_1_x
@@ -155,7 +153,7 @@ class ArrayPrograms(StartedPrograms):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, reasonable(k.start_x, k.start_y), Status.BAD_INPUT)
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, k.start_x, k.start_y), Status.BAD_INPUT)
         start_along = k.start_r11 + k.start_r22  # nearest rotation about Z
         start_across = k.start_r21 - k.start_r12
         start_length = sqrt(start_across * start_across + start_along * start_along)
@@ -390,7 +388,7 @@ class ArrayPrograms(StartedPrograms):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, reasonable(k.start_x, k.start_y), Status.BAD_INPUT)
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, k.start_x, k.start_y), Status.BAD_INPUT)
         start_along = k.start_r11 + k.start_r22  # nearest rotation about Z
         start_across = k.start_r21 - k.start_r12
         start_length = sqrt(start_across * start_across + start_along * start_along)
@@ -433,7 +431,7 @@ class ArrayPrograms(StartedPrograms):
         k = self.constants
         status = passed(axes)
         # inputs must be numbers, and of reasonable size
-        require(status, reasonable(k.start_x, k.start_y), Status.BAD_INPUT)
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, k.start_x, k.start_y), Status.BAD_INPUT)
         start_along = k.start_r11 + k.start_r22  # nearest rotation about Z
         start_across = k.start_r21 - k.start_r12
         start_length = sqrt(start_across * start_across + start_along * start_along)
