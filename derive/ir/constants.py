@@ -65,9 +65,11 @@ DOUBTFUL = sp.Float("1e-2")
 """A step whose margin is at most this may have lost digits that a later step needs; there its angle is set free."""
 SCANNED = 61
 """The values of free angles that are tried, all around the circle, to find the start that is nearest to a pose."""
+REFINED = 16
+"""So many more beside the nearest, ever closer."""
 LATTICE = 17
 """Every further free angle is turned this many times as far, so that several have the values of a lattice."""
-PASSES = 40
+PASSES = 64
 """The largest number of steps from each start: next to a double root every step leaves a third of the error."""
 STALLED = sp.Float("0.999")
 """A step towards a pose that leaves more than this share of the error makes hardly any progress."""

@@ -26,10 +26,6 @@ from tests.text.controller import OK
 
 WITHIN = 3e-11
 """Of what is missed: an angle is free below 1e-11 of its scale, and two may be, each with a chord of 2."""
-RARELY = 5e-5
-"""The share of all poses that may be lost where the machine has equal links and every angle is singular at once: the
-error changes by 1e-9 of the reach in a whole turn of a free angle, and steps of least squares hardly move it.
-"""
 EVERY = pytest.mark.parametrize("name", KINDS)
 
 
@@ -58,10 +54,8 @@ def test_no_pose_is_lost(name: str) -> None:
 @pytest.mark.slow
 @EVERY
 def test_no_pose_of_many_is_lost(name: str) -> None:
-    """Of many poses none, or hardly any."""
-    machines = list(sized(KINDS[name]))
-    found = [pose for machine in machines for pose in lost(machine, 8000, 32)]
-    assert len(found) <= RARELY * 8000 * len(machines) * len(REFERENCES), found
+    """The same for many poses."""
+    assert [pose for machine in sized(KINDS[name]) for pose in lost(machine, 8000, 32)] == []
 
 
 @EVERY

@@ -75,7 +75,7 @@ def printed(
 
 
 def _outcome(program: Program, refusal: Refusal) -> Iterator[str]:
-    if any(isinstance(s, Call) for s in program.body):
+    if any(isinstance(s, Call) and s.program.refuses for s in program.body):
         yield f"{OUTCOME} : {refusal.type};"
 
 

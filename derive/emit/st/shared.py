@@ -67,8 +67,9 @@ def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterato
         *indented(refusal.of_call(call, OUTCOME)),
         "END_IF",
     ]
-    packed_call = _packed(f"{OUTCOME} := {method_name(call.program)}(", arguments, results)
-    lines = [*packed_call, *(refused if call.program.refuses else ())]
+    refuses, name = call.program.refuses, method_name(call.program)
+    lines = _packed(f"{OUTCOME} := {name}(" if refuses else f"{name}(", arguments, results)
+    lines += refused if refuses else []
     if not call.is_conditional:
         yield from lines
         return

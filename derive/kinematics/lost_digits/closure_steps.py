@@ -32,6 +32,7 @@ from derive.ir.constants import (
     LONGEST_STEP,
     NEARLY,
     PASSES,
+    REFINED,
     SCANNED,
     SHARE_OF_DAMPING,
     STALLED,
@@ -67,14 +68,17 @@ _FIRST = sp.Integer(9)
 _LEFT, _ATTEMPT, _BEFORE = count("passes_left"), count("attempt"), real("error_before")
 _ANOTHER, _MIRRORS, _IS_MET = flag("another"), flag("mirrors"), flag("pose_is_met")
 _LEFT_NOW = count("passes_left_now")
+_TURN, _BESIDE = real("turn_of_attempt"), real("turn_beside")
 _AGAIN = flag("from_the_met_pose")
 _ENDS = flag("no_start_is_left")
 _FREE, _FREE_TURN = real("free_angle"), real("free_turn")
 _NEAREST, _NEAREST_TURN = real("nearest_error"), real("nearest_turn")
 _NEAREST_NOW, _NEAREST_TURN_NOW = real("nearest_error_now"), real("nearest_turn_now")
-_SCAN_ENDS = SCANNED + 2
-"""The attempts: 0 from the given start, 1 with nearly free angles at the reference, then one of the scan each, and this
-one from the nearest of the scan.
+_STEP = sp.Rational(360, SCANNED)
+"""How far (degrees) free angles are turned from one attempt of the scan to the next."""
+_SCAN_ENDS = SCANNED + REFINED + 2
+"""The attempts: 0 from the given start, 1 with nearly free angles at the reference, then one of the scan each, some
+beside the nearest, ever closer, and this one from the nearest of all.
 """
 
 
@@ -151,8 +155,8 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
     attempt = (*_attempt(following), *closed, _ending(closed))
     step = (*_at_axes(machine), *_error(machine), *_sides(machine), *attempt, *_step(machine))
     return Iterate(
-        state=(*map(_tried, joints), _LEFT, _ATTEMPT, _BEFORE, _NEAREST, _NEAREST_TURN),
-        start=(*map(started, joints), sp.Integer(PASSES), _ZERO, _FIRST, _FIRST, _ZERO),
+        state=(*map(_tried, joints), _LEFT, _ATTEMPT, _BEFORE, _NEAREST, _NEAREST_TURN, _TURN, _BESIDE),
+        start=(*map(started, joints), sp.Integer(PASSES), _ZERO, _FIRST, _FIRST, _ZERO, _ZERO, _STEP),
         step=tuple(s for s in step if isinstance(s, Let | Solve)),
         following=(
             *(_next(machine, j, starts[j]) for j in joints),
@@ -161,9 +165,11 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
             Select(sp.Or(_ANOTHER, _MIRRORS), _FIRST, real("error")),
             _NEAREST_NOW,
             _NEAREST_TURN_NOW,
+            _FREE_TURN,
+            Select(_refines(following), -_BESIDE / Select(sp.Gt(_BESIDE, 0), _ONE, sp.Integer(2)), _BESIDE),
         ),
         done=sp.Or(_IS_MET, sp.And(_ANOTHER, sp.Gt(following, _SCAN_ENDS)), _ENDS),
-        limit=3 * (PASSES + 1) + SCANNED,
+        limit=3 * (PASSES + 1) + SCANNED + REFINED,
         otherwise=None,
         note="steps of damped least squares on the closure, from one start after the other",
     )
@@ -172,7 +178,7 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
 def _attempt(following: sp.Symbol) -> tuple[Let, ...]:
     """Whether another start is taken, which one, and what is free there."""
     nearer = flag("is_nearer")
-    turn = Select(sp.Ge(following, _SCAN_ENDS), _NEAREST_TURN_NOW, _ZERO)
+    far = Select(_refines(following), _BESIDE, _ZERO)
     cost = Select(sp.Gt(real("error"), STALLED * _BEFORE), sp.Integer(COST_OF_A_STALL), _ONE)
     return (
         Let(_ANOTHER, sp.Le(_LEFT, 0)),
@@ -182,8 +188,12 @@ def _attempt(following: sp.Symbol) -> tuple[Let, ...]:
         Let(_FREE, Select(sp.Or(_AGAIN, sp.Gt(following, 0)), DOUBTFUL, FREE_ANGLE)),
         Let(nearer, sp.And(_is_scan(_ATTEMPT), sp.Lt(real("error"), _NEAREST))),
         Let(_NEAREST_NOW, Select(nearer, real("error"), _NEAREST)),
-        Let(_NEAREST_TURN_NOW, Select(nearer, _turn_of(_ATTEMPT), _NEAREST_TURN)),
-        Let(_FREE_TURN, Select(_is_scan(following), _turn_of(following), turn), "how far free angles are turned"),
+        Let(_NEAREST_TURN_NOW, Select(nearer, _TURN, _NEAREST_TURN)),
+        Let(
+            _FREE_TURN,
+            Select(sp.Gt(following, SCANNED + 1), _NEAREST_TURN_NOW + far, _STEP * ToReal(following - 1)),
+            "how far free angles are turned",
+        ),
     )
 
 
@@ -199,9 +209,9 @@ def _is_scan(attempt: sp.Symbol) -> sp.Basic:
     return sp.And(sp.Gt(attempt, 1), sp.Lt(attempt, _SCAN_ENDS))
 
 
-def _turn_of(attempt: sp.Symbol) -> sp.Expr:
-    """How far (degrees) an attempt of the scan turns the free angles."""
-    return sp.Rational(360, SCANNED) * ToReal(attempt - 1)
+def _refines(attempt: sp.Symbol) -> sp.Basic:
+    """Whether an attempt is one beside the nearest of the scan."""
+    return sp.And(sp.Gt(attempt, SCANNED + 1), sp.Lt(attempt, _SCAN_ENDS))
 
 
 def _on_its_turn(joint: Joint, branch: Program) -> sp.Expr:

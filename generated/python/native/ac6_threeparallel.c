@@ -188,11 +188,13 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   double tried_a4 = start_a4;
   double tried_a5 = start_a5;
   double tried_a6 = start_a6;
-  int passes_left = 40;
+  int passes_left = 64;
   int attempt = 0;
   double error_before = 9.0;
   double nearest_error = 9.0;
   double nearest_turn = 0.0;
+  double turn_of_attempt = 0.0;
+  double turn_beside = 5.901639344262295;
   double q1, sin_q1, cos_q1, q2, q3, q4, q2_plus_q3, q2_plus_q3_plus_q4, cos_q234, r11_at_q234, q5, sin_q5,
       cos_q5, r12_at_q5, sin_q234, r13_at_q234, cos_q2, r11_at_q2, x_at_q3, cos_q23, r11_at_q23, x_at_q4,
       x_at_q5, x_at_q6, d6_times_r12_at_q5, x, wrist_x, r21_at_q234, r22_at_q5, r23_at_q234, r21_at_q2,
@@ -222,7 +224,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int next_attempt, passes_left_now;
   bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, mirrors,
       from_the_met_pose, is_nearer, no_start_is_left;
-  for (int pass = 0; pass < 184; pass += 1) {
+  for (int pass = 0; pass < 272; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -307,13 +309,13 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     pose_is_met = pose_is_close && (!beside_elbow) && (!beside_shoulder) && (!beside_wrist);
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_wrist);
-    from_the_met_pose = mirrors && (passes_left > 20); /* what is nearly free is known now */
+    from_the_met_pose = mirrors && (passes_left > 32); /* what is nearly free is known now */
     free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 1e-11;
-    is_nearer = (attempt > 1) && (attempt < 63) && (error < nearest_error);
-    nearest_turn_now = is_nearer ? -360.0*(1 - attempt)/61.0 : nearest_turn;
+    is_nearer = (attempt > 1) && (attempt < 79) && (error < nearest_error);
+    nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
-    free_turn = (next_attempt > 1) && (next_attempt < 63) ? -360.0*(1 - next_attempt)/61.0
-        : (next_attempt >= 63 ? nearest_turn_now : 0.0);
+    free_turn = next_attempt > 62 ? nearest_turn_now
+        + ((next_attempt > 62) && (next_attempt < 79) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
     closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
         *SOFTKIN_DEGREE;
     free_angle_times_machine_scale = free_angle*k->machine_scale;
@@ -477,7 +479,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     nearest_error_now = is_nearer ? error : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 63))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 79))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -495,11 +497,14 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a6 = (another || from_the_met_pose ? closed_axis_a6
         : (mirrors ? (beside_wrist ? 2.0*closed_axis_a6 - tried_a6 : tried_a6) : tried_a6
         + shared_quotient*step_a6));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 63) ? 0 : 40) : passes_left_now);
-    attempt = (no_start_is_left ? 64 : next_attempt);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 79) ? 0 : 64) : passes_left_now);
+    attempt = (no_start_is_left ? 80 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     nearest_error = nearest_error_now;
     nearest_turn = nearest_turn_now;
+    turn_of_attempt = free_turn;
+    turn_beside = ((next_attempt > 62) && (next_attempt < 79) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
+        : turn_beside);
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
   const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);

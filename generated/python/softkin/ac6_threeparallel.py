@@ -33,9 +33,9 @@ counted together):
     inverse: 79 additions, 70 multiplications, 10 divisions, 5 square roots, 6 sines
     inverse, all 8 branches: 506 additions, 322 multiplications, 42 divisions, 17 square roots, 30 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 63149 additions, 79697 multiplications, 3496 divisions, 922
-    square roots, 4606 sines
-    steps of damped least squares on the closure, from one start after the other: at most 184 passes, all of
+    a branch at a singular pose, in addition: 93333 additions, 117529 multiplications, 5168 divisions, 1362
+    square roots, 6806 sines
+    steps of damped least squares on the closure, from one start after the other: at most 272 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -104,7 +104,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 6ffd873176b0718f"
+    KEY = "ac6_threeparallel 58fbea170ef62974"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -372,8 +372,10 @@ class Ac6ThreeParallel(Mechanism):
             error_before,
             nearest_error,
             nearest_turn,
-        ) = start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 40, 0, 9.0, 9.0, 0.0
-        for _ in range(184):
+            turn_of_attempt,
+            turn_beside,
+        ) = start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+        for _ in range(272):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -494,15 +496,15 @@ class Ac6ThreeParallel(Mechanism):
             pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder) and (not beside_wrist)
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_elbow or beside_shoulder or beside_wrist)
-            from_the_met_pose = mirrors and (passes_left > 20)  # what is nearly free is known now
+            from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
             free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
-            is_nearer = (attempt > 1) and (attempt < 63) and (error < nearest_error)
-            nearest_turn_now = -360.0 * (1 - attempt) / 61.0 if is_nearer else nearest_turn
+            is_nearer = (attempt > 1) and (attempt < 79) and (error < nearest_error)
+            nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                -360.0 * (1 - next_attempt) / 61.0
-                if (next_attempt > 1) and (next_attempt < 63)
-                else (nearest_turn_now if next_attempt >= 63 else 0.0)
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 79) else 0.0)
+                if next_attempt > 62
+                else -360.0 * (1 - next_attempt) / 61.0
             )
             closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             free_angle_times_machine_scale = free_angle * machine_scale
@@ -746,7 +748,7 @@ class Ac6ThreeParallel(Mechanism):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 63)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 79)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -790,11 +792,17 @@ class Ac6ThreeParallel(Mechanism):
                     else tried_a6 + shared_quotient * step_a6
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 63) else 40) if another else passes_left_now
-            attempt = 64 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 79) else 64) if another else passes_left_now
+            attempt = 80 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
+            turn_of_attempt = free_turn
+            turn_beside = (
+                -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
+                if (next_attempt > 62) and (next_attempt < 79)
+                else turn_beside
+            )
         chosen_a1 = tried_a1
         if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
             chosen_a1 = nearest_period(chosen_a1, closed_near_a1)

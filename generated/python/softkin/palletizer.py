@@ -308,18 +308,20 @@ class Palletizer(OffsetKinematics, TwistChoice):
             else closed_open_a3
         )
         # steps of damped least squares on the closure, from one start after the other
-        tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before, nearest_error, nearest_turn = (
-            start_a1,
-            start_a2,
-            start_a3,
-            start_a4,
-            40,
-            0,
-            9.0,
-            9.0,
-            0.0,
-        )
-        for _ in range(184):
+        (
+            tried_a1,
+            tried_a2,
+            tried_a3,
+            tried_a4,
+            passes_left,
+            attempt,
+            error_before,
+            nearest_error,
+            nearest_turn,
+            turn_of_attempt,
+            turn_beside,
+        ) = start_a1, start_a2, start_a3, start_a4, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+        for _ in range(272):
             a1 = (tried_a1 - offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -367,15 +369,15 @@ class Palletizer(OffsetKinematics, TwistChoice):
             pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder)
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_elbow or beside_shoulder)
-            from_the_met_pose = mirrors and (passes_left > 20)  # what is nearly free is known now
+            from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
             free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
-            is_nearer = (attempt > 1) and (attempt < 63) and (error < nearest_error)
-            nearest_turn_now = -360.0 * (1 - attempt) / 61.0 if is_nearer else nearest_turn
+            is_nearer = (attempt > 1) and (attempt < 79) and (error < nearest_error)
+            nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                -360.0 * (1 - next_attempt) / 61.0
-                if (next_attempt > 1) and (next_attempt < 63)
-                else (nearest_turn_now if next_attempt >= 63 else 0.0)
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 79) else 0.0)
+                if next_attempt > 62
+                else -360.0 * (1 - next_attempt) / 61.0
             )
             closed_reference_a4 = (
                 (tried_a4 if from_the_met_pose else 33.0 * free_turn + given_ref_a4) - offset_a4
@@ -506,7 +508,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 63)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 79)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -528,11 +530,17 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 else (tried_a3 if mirrors else tried_a3 + shared_quotient * step_a3)
             )
             tried_a4 = given_ref_a4 if another or from_the_met_pose else tried_a4
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 63) else 40) if another else passes_left_now
-            attempt = 64 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 79) else 64) if another else passes_left_now
+            attempt = 80 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
+            turn_of_attempt = free_turn
+            turn_beside = (
+                -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
+                if (next_attempt > 62) and (next_attempt < 79)
+                else turn_beside
+            )
         chosen_a1 = tried_a1
         if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
             chosen_a1 = nearest_period(chosen_a1, closed_near_a1)

@@ -24,9 +24,9 @@ counted together):
     forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
     inverse: 46 additions, 39 multiplications, 7 divisions, 4 square roots, 3 sines
     inverse, all 4 branches: 161 additions, 118 multiplications, 20 divisions, 9 square roots, 10 sines
-    a branch at a singular pose, in addition: 16412 additions, 23765 multiplications, 1843 divisions, 372
-    square roots, 2581 sines
-    steps of damped least squares on the closure, from one start after the other: at most 184 passes, all of
+    a branch at a singular pose, in addition: 24244 additions, 34845 multiplications, 2723 divisions, 548
+    square roots, 3813 sines
+    steps of damped least squares on the closure, from one start after the other: at most 272 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -96,7 +96,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr a0214a3414f68da5"
+    KEY = "pos_rrr 16c92cb298038f44"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -293,17 +293,19 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= closed_axis_a3 - closed_near_a3 < 179.999999999:
             closed_axis_a3 = nearest_period(closed_axis_a3, closed_near_a3)
         # steps of damped least squares on the closure, from one start after the other
-        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = (
-            start_a1,
-            start_a2,
-            start_a3,
-            40,
-            0,
-            9.0,
-            9.0,
-            0.0,
-        )
-        for _ in range(184):
+        (
+            tried_a1,
+            tried_a2,
+            tried_a3,
+            passes_left,
+            attempt,
+            error_before,
+            nearest_error,
+            nearest_turn,
+            turn_of_attempt,
+            turn_beside,
+        ) = start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+        for _ in range(272):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -345,7 +347,7 @@ class PosRRR(OffsetKinematics):
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_arm or beside_elbow)
-            from_the_met_pose = mirrors and (passes_left > 20)  # what is nearly free is known now
+            from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
             free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
             free_angle_times_machine_scale = free_angle * machine_scale
             no_start_is_left = (
@@ -353,13 +355,13 @@ class PosRRR(OffsetKinematics):
                 and (closed_distance_q1 > free_angle_times_machine_scale)
                 and (closed_reach > free_angle_times_machine_scale)
             )
-            is_nearer = (attempt > 1) and (attempt < 63) and (error < nearest_error)
-            nearest_turn_now = -360.0 * (1 - attempt) / 61.0 if is_nearer else nearest_turn
+            is_nearer = (attempt > 1) and (attempt < 79) and (error < nearest_error)
+            nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                -360.0 * (1 - next_attempt) / 61.0
-                if (next_attempt > 1) and (next_attempt < 63)
-                else (nearest_turn_now if next_attempt >= 63 else 0.0)
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 79) else 0.0)
+                if next_attempt > 62
+                else -360.0 * (1 - next_attempt) / 61.0
             )
             closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             closed_divisor_q1 = (
@@ -433,7 +435,7 @@ class PosRRR(OffsetKinematics):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 63)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 79)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -458,11 +460,17 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 63) else 40) if another else passes_left_now
-            attempt = 64 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 79) else 64) if another else passes_left_now
+            attempt = 80 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
+            turn_of_attempt = free_turn
+            turn_beside = (
+                -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
+                if (next_attempt > 62) and (next_attempt < 79)
+                else turn_beside
+            )
         chosen_a1 = tried_a1
         if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
             chosen_a1 = nearest_period(chosen_a1, closed_near_a1)
@@ -568,17 +576,19 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= closed_axis_a3 - closed_near_a3 < 179.999999999:
             closed_axis_a3 = nearest_period(closed_axis_a3, closed_near_a3)
         # steps of damped least squares on the closure, from one start after the other
-        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = (
-            start_a1,
-            start_a2,
-            start_a3,
-            40,
-            0,
-            9.0,
-            9.0,
-            0.0,
-        )
-        for _ in range(184):
+        (
+            tried_a1,
+            tried_a2,
+            tried_a3,
+            passes_left,
+            attempt,
+            error_before,
+            nearest_error,
+            nearest_turn,
+            turn_of_attempt,
+            turn_beside,
+        ) = start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+        for _ in range(272):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -623,7 +633,7 @@ class PosRRR(OffsetKinematics):
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_arm or beside_elbow)
-            from_the_met_pose = mirrors and (passes_left > 20)  # what is nearly free is known now
+            from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
             free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
             free_angle_times_machine_scale = free_angle * machine_scale
             no_start_is_left = (
@@ -631,13 +641,13 @@ class PosRRR(OffsetKinematics):
                 and (closed_distance_q1 > free_angle_times_machine_scale)
                 and (closed_reach > free_angle_times_machine_scale)
             )
-            is_nearer = (attempt > 1) and (attempt < 63) and (error < nearest_error)
-            nearest_turn_now = -360.0 * (1 - attempt) / 61.0 if is_nearer else nearest_turn
+            is_nearer = (attempt > 1) and (attempt < 79) and (error < nearest_error)
+            nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                -360.0 * (1 - next_attempt) / 61.0
-                if (next_attempt > 1) and (next_attempt < 63)
-                else (nearest_turn_now if next_attempt >= 63 else 0.0)
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 79) else 0.0)
+                if next_attempt > 62
+                else -360.0 * (1 - next_attempt) / 61.0
             )
             closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             closed_divisor_q1 = (
@@ -711,7 +721,7 @@ class PosRRR(OffsetKinematics):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             nearest_error_now = error if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 63)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 79)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -736,11 +746,17 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 63) else 40) if another else passes_left_now
-            attempt = 64 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 79) else 64) if another else passes_left_now
+            attempt = 80 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
+            turn_of_attempt = free_turn
+            turn_beside = (
+                -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
+                if (next_attempt > 62) and (next_attempt < 79)
+                else turn_beside
+            )
         chosen_a1 = tried_a1
         if not -180.000000001 <= chosen_a1 - closed_near_a1 < 179.999999999:
             chosen_a1 = nearest_period(chosen_a1, closed_near_a1)

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 457
+    VALUES = 459
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -160,8 +160,12 @@ class ArrayPrograms(Programs):
             error_before,
             nearest_error,
             nearest_turn,
-        ) = initial(start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 40, 0, 9.0, 9.0, 0.0)
-        for _ in range(184):
+            turn_of_attempt,
+            turn_beside,
+        ) = initial(
+            start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+        )
+        for _ in range(272):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -287,15 +291,15 @@ class ArrayPrograms(Programs):
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow)) & (opposite(beside_hand))
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_arm | beside_elbow | beside_hand)
-            from_the_met_pose = mirrors & (passes_left > 20)  # what is nearly free is known now
+            from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
             free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
+            is_nearer = (attempt > 1) & (attempt < 79) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 63),
+                next_attempt > 62,
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 79), turn_beside, 0.0),
                 -360.0 * (1 - next_attempt) / 61.0,
-                select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             free_angle_times_machine_scale = free_angle * k.machine_scale
@@ -556,7 +560,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 63))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 79))
             if settled(done, status):
                 break
             (
@@ -571,6 +575,8 @@ class ArrayPrograms(Programs):
                 error_before,
                 nearest_error,
                 nearest_turn,
+                turn_of_attempt,
+                turn_beside,
             ) = advanced(
                 done,
                 (
@@ -585,6 +591,8 @@ class ArrayPrograms(Programs):
                     error_before,
                     nearest_error,
                     nearest_turn,
+                    turn_of_attempt,
+                    turn_beside,
                 ),
                 (
                     select(
@@ -629,11 +637,17 @@ class ArrayPrograms(Programs):
                         closed_axis_a6,
                         select(mirrors, tried_a6, tried_a6 + shared_quotient * step_a6),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 63), 0, 40), passes_left_now),
-                    select(no_start_is_left, 64, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 79), 0, 64), passes_left_now),
+                    select(no_start_is_left, 80, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,
+                    free_turn,
+                    select(
+                        (next_attempt > 62) & (next_attempt < 79),
+                        -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
+                        turn_beside,
+                    ),
                 ),
             )
         chosen_a1 = nearest_period(tried_a1, closed_near_a1)

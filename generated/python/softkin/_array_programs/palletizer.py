@@ -37,7 +37,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 251
+    VALUES = 253
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def meet_point(self, given: Values, status: Codes) -> Values:
@@ -84,10 +84,20 @@ class ArrayPrograms(Programs):
             given_turn_a3 != 0, 360.0 * select(given_turn_a3 > 0, given_turn_a3 - 1, given_turn_a3), closed_open_a3
         )
         # steps of damped least squares on the closure, from one start after the other
-        tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before, nearest_error, nearest_turn = (
-            initial(start_a1, start_a2, start_a3, start_a4, 40, 0, 9.0, 9.0, 0.0)
-        )
-        for _ in range(184):
+        (
+            tried_a1,
+            tried_a2,
+            tried_a3,
+            tried_a4,
+            passes_left,
+            attempt,
+            error_before,
+            nearest_error,
+            nearest_turn,
+            turn_of_attempt,
+            turn_beside,
+        ) = initial(start_a1, start_a2, start_a3, start_a4, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
+        for _ in range(272):
             a1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -135,15 +145,15 @@ class ArrayPrograms(Programs):
             pose_is_met = pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder))
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_elbow | beside_shoulder)
-            from_the_met_pose = mirrors & (passes_left > 20)  # what is nearly free is known now
+            from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
             free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
+            is_nearer = (attempt > 1) & (attempt < 79) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 63),
+                next_attempt > 62,
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 79), turn_beside, 0.0),
                 -360.0 * (1 - next_attempt) / 61.0,
-                select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
             closed_reference_a4 = (
                 select(from_the_met_pose, tried_a4, 33.0 * free_turn + given_ref_a4) - k.offset_a4
@@ -268,51 +278,69 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 63))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 79))
             if settled(done, status):
                 break
-            tried_a1, tried_a2, tried_a3, tried_a4, passes_left, attempt, error_before, nearest_error, nearest_turn = (
-                advanced(
-                    done,
-                    (
-                        tried_a1,
-                        tried_a2,
-                        tried_a3,
-                        tried_a4,
-                        passes_left,
-                        attempt,
-                        error_before,
-                        nearest_error,
-                        nearest_turn,
+            (
+                tried_a1,
+                tried_a2,
+                tried_a3,
+                tried_a4,
+                passes_left,
+                attempt,
+                error_before,
+                nearest_error,
+                nearest_turn,
+                turn_of_attempt,
+                turn_beside,
+            ) = advanced(
+                done,
+                (
+                    tried_a1,
+                    tried_a2,
+                    tried_a3,
+                    tried_a4,
+                    passes_left,
+                    attempt,
+                    error_before,
+                    nearest_error,
+                    nearest_turn,
+                    turn_of_attempt,
+                    turn_beside,
+                ),
+                (
+                    select(
+                        another | from_the_met_pose,
+                        closed_axis_a1,
+                        select(
+                            mirrors,
+                            select(beside_shoulder, 2.0 * closed_axis_a1 - tried_a1, tried_a1),
+                            tried_a1 + shared_quotient * step_a1,
+                        ),
                     ),
-                    (
-                        select(
-                            another | from_the_met_pose,
-                            closed_axis_a1,
-                            select(
-                                mirrors,
-                                select(beside_shoulder, 2.0 * closed_axis_a1 - tried_a1, tried_a1),
-                                tried_a1 + shared_quotient * step_a1,
-                            ),
-                        ),
-                        select(
-                            another | from_the_met_pose,
-                            closed_axis_a2,
-                            select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2),
-                        ),
-                        select(
-                            another | from_the_met_pose,
-                            closed_axis_a3,
-                            select(mirrors, tried_a3, tried_a3 + shared_quotient * step_a3),
-                        ),
-                        select(another | from_the_met_pose, given_ref_a4, tried_a4),
-                        select(another, select((next_attempt > 1) & (next_attempt < 63), 0, 40), passes_left_now),
-                        select(no_start_is_left, 64, next_attempt),
-                        select(another | mirrors, 9.0, error),
-                        nearest_error_now,
-                        nearest_turn_now,
+                    select(
+                        another | from_the_met_pose,
+                        closed_axis_a2,
+                        select(mirrors, tried_a2, tried_a2 + shared_quotient * step_a2),
                     ),
-                )
+                    select(
+                        another | from_the_met_pose,
+                        closed_axis_a3,
+                        select(mirrors, tried_a3, tried_a3 + shared_quotient * step_a3),
+                    ),
+                    select(another | from_the_met_pose, given_ref_a4, tried_a4),
+                    select(another, select((next_attempt > 1) & (next_attempt < 79), 0, 64), passes_left_now),
+                    select(no_start_is_left, 80, next_attempt),
+                    select(another | mirrors, 9.0, error),
+                    nearest_error_now,
+                    nearest_turn_now,
+                    free_turn,
+                    select(
+                        (next_attempt > 62) & (next_attempt < 79),
+                        -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
+                        turn_beside,
+                    ),
+                ),
             )
         chosen_a1 = nearest_period(tried_a1, closed_near_a1)
         chosen_a2 = nearest_period(tried_a2, closed_near_a2)

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 407
+    VALUES = 411
     JACOBIAN_ROWS = (0, 1, 2)
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
@@ -106,10 +106,19 @@ class ArrayPrograms(Programs):
         closed_sin_q3 = k.a3_by_effective_q3_2 * closed_sin_swing_q3 + closed_cos_swing_q3 * k.d4_by_effective_q3_2
         closed_axis_a3 = nearest_period(k.offset_a3 + degrees(closed_sin_q3, closed_cos_q3), closed_near_a3)
         # steps of damped least squares on the closure, from one start after the other
-        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = initial(
-            start_a1, start_a2, start_a3, 40, 0, 9.0, 9.0, 0.0
-        )
-        for _ in range(184):
+        (
+            tried_a1,
+            tried_a2,
+            tried_a3,
+            passes_left,
+            attempt,
+            error_before,
+            nearest_error,
+            nearest_turn,
+            turn_of_attempt,
+            turn_beside,
+        ) = initial(start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
+        for _ in range(272):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -151,7 +160,7 @@ class ArrayPrograms(Programs):
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow))
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_arm | beside_elbow)
-            from_the_met_pose = mirrors & (passes_left > 20)  # what is nearly free is known now
+            from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
             free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
             free_angle_times_machine_scale = free_angle * k.machine_scale
             no_start_is_left = (
@@ -159,13 +168,13 @@ class ArrayPrograms(Programs):
                 & (closed_distance_q1 > free_angle_times_machine_scale)
                 & (closed_reach > free_angle_times_machine_scale)
             )
-            is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
+            is_nearer = (attempt > 1) & (attempt < 79) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 63),
+                next_attempt > 62,
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 79), turn_beside, 0.0),
                 -360.0 * (1 - next_attempt) / 61.0,
-                select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             closed_divisor_q1 = select(
@@ -237,12 +246,34 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 63))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 79))
             if settled(done, status):
                 break
-            tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = advanced(
+            (
+                tried_a1,
+                tried_a2,
+                tried_a3,
+                passes_left,
+                attempt,
+                error_before,
+                nearest_error,
+                nearest_turn,
+                turn_of_attempt,
+                turn_beside,
+            ) = advanced(
                 done,
-                (tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn),
+                (
+                    tried_a1,
+                    tried_a2,
+                    tried_a3,
+                    passes_left,
+                    attempt,
+                    error_before,
+                    nearest_error,
+                    nearest_turn,
+                    turn_of_attempt,
+                    turn_beside,
+                ),
                 (
                     select(
                         another | from_the_met_pose,
@@ -267,11 +298,17 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 63), 0, 40), passes_left_now),
-                    select(no_start_is_left, 64, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 79), 0, 64), passes_left_now),
+                    select(no_start_is_left, 80, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,
+                    free_turn,
+                    select(
+                        (next_attempt > 62) & (next_attempt < 79),
+                        -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
+                        turn_beside,
+                    ),
                 ),
             )
         chosen_a1 = nearest_period(tried_a1, closed_near_a1)
@@ -357,10 +394,19 @@ class ArrayPrograms(Programs):
         closed_arm_across_q2 = k.a2 + closed_cos_q3 * tool_z + closed_sin_q3 * tool_x
         closed_axis_a3 = nearest_period(k.offset_a3 + degrees(closed_sin_q3, closed_cos_q3), closed_near_a3)
         # steps of damped least squares on the closure, from one start after the other
-        tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = initial(
-            start_a1, start_a2, start_a3, 40, 0, 9.0, 9.0, 0.0
-        )
-        for _ in range(184):
+        (
+            tried_a1,
+            tried_a2,
+            tried_a3,
+            passes_left,
+            attempt,
+            error_before,
+            nearest_error,
+            nearest_turn,
+            turn_of_attempt,
+            turn_beside,
+        ) = initial(start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
+        for _ in range(272):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -405,7 +451,7 @@ class ArrayPrograms(Programs):
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow))
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_arm | beside_elbow)
-            from_the_met_pose = mirrors & (passes_left > 20)  # what is nearly free is known now
+            from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
             free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
             free_angle_times_machine_scale = free_angle * k.machine_scale
             no_start_is_left = (
@@ -413,13 +459,13 @@ class ArrayPrograms(Programs):
                 & (closed_distance_q1 > free_angle_times_machine_scale)
                 & (closed_reach > free_angle_times_machine_scale)
             )
-            is_nearer = (attempt > 1) & (attempt < 63) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, -360.0 * (1 - attempt) / 61.0, nearest_turn)
+            is_nearer = (attempt > 1) & (attempt < 79) & (error < nearest_error)
+            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                (next_attempt > 1) & (next_attempt < 63),
+                next_attempt > 62,
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 79), turn_beside, 0.0),
                 -360.0 * (1 - next_attempt) / 61.0,
-                select(next_attempt >= 63, nearest_turn_now, 0.0),
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             closed_divisor_q1 = select(
@@ -491,12 +537,34 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             nearest_error_now = select(is_nearer, error, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 63))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 79))
             if settled(done, status):
                 break
-            tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn = advanced(
+            (
+                tried_a1,
+                tried_a2,
+                tried_a3,
+                passes_left,
+                attempt,
+                error_before,
+                nearest_error,
+                nearest_turn,
+                turn_of_attempt,
+                turn_beside,
+            ) = advanced(
                 done,
-                (tried_a1, tried_a2, tried_a3, passes_left, attempt, error_before, nearest_error, nearest_turn),
+                (
+                    tried_a1,
+                    tried_a2,
+                    tried_a3,
+                    passes_left,
+                    attempt,
+                    error_before,
+                    nearest_error,
+                    nearest_turn,
+                    turn_of_attempt,
+                    turn_beside,
+                ),
                 (
                     select(
                         another | from_the_met_pose,
@@ -521,11 +589,17 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 63), 0, 40), passes_left_now),
-                    select(no_start_is_left, 64, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 79), 0, 64), passes_left_now),
+                    select(no_start_is_left, 80, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,
+                    free_turn,
+                    select(
+                        (next_attempt > 62) & (next_attempt < 79),
+                        -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
+                        turn_beside,
+                    ),
                 ),
             )
         chosen_a1 = nearest_period(tried_a1, closed_near_a1)
