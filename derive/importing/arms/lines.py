@@ -37,8 +37,9 @@ class Arm:
     lines: tuple[Line, ...]
     tip: Array
     size: float
-    """The length of the path from the first joint along all others to the tip, or one unit where that is zero. Lengths
-    are compared with it.
+    """The length of the way from the base's nearest point on the first axis, from axis to nearest point of the next, to
+    the tip; where that is zero the distance of the tip from the base, or one unit. Lengths are compared with it. It is
+    that of the machine, whatever frames the file chooses.
     """
     rounding: float
     """A length below which differences are the rounding of our own calculation."""
@@ -47,22 +48,37 @@ class Arm:
 def arm_of(robot: Robot) -> Arm:
     """The lines of a robot. Offsets of joints that follow others are part of its zero."""
     number = {axis.name: k for k, axis in enumerate(robot.axes)}
-    frame, way, base = np.eye(4), 0.0, 0.0
+    frame, written = np.eye(4), 0.0
     lines: list[Line] = []
     for step in robot.steps:
         for place in step.places:
             matrix = place.matrix()
             frame = frame @ matrix
-            length = float(np.linalg.norm(matrix[:3, 3]))
-            way, base = (way + length, base) if lines else (way, base + length)
+            written += float(np.linalg.norm(matrix[:3, 3]))
         if step.moving is not None:
             direction = frame[:3, :3] @ np.array(step.moving.direction)
             drives = tuple((number[name], multiplier) for name, multiplier in step.moving.drives)
             if drives:
                 lines.append(Line(step.moving.kind, frame[:3, 3].copy(), direction, drives))
             frame = frame @ motion(step.moving, step.moving.offset)
-    size = next((length for length in (way, base) if length > _SMALLEST), 1.0)
-    return Arm(tuple(lines), frame, size, ROUNDING * (size + base))
+    lengths = (_way(lines, frame[:3, 3]), float(np.linalg.norm(frame[:3, 3])))
+    size = next((length for length in lengths if length > _SMALLEST), 1.0)
+    return Arm(tuple(lines), frame, size, ROUNDING * (size + written))
+
+
+def _way(lines: Sequence[Line], tip: Array) -> float:
+    """The length of the way along all axes that turn to the tip. A slide stands nowhere, and is passed over."""
+    turning = [line for line in lines if line.kind is Kind.ROTARY]
+    way, here = 0.0, projected(turning[0], np.zeros(3)) if turning else tip
+    for line in turning[1:]:
+        before, here = here, projected(line, here)
+        way += float(np.linalg.norm(here - before))
+    return way + float(np.linalg.norm(tip - here))
+
+
+def projected(line: Line, point: Array) -> Array:
+    """The point of a line that is nearest to a point."""
+    return np.asarray(line.point + line.direction * float((point - line.point) @ line.direction))
 
 
 def motion(moving: Moving, value: float) -> Array:

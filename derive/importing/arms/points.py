@@ -7,12 +7,13 @@ meet or come nearest to their neighbours, those of the file, and their projectio
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from derive.description.joints import Kind
 from derive.importing.arms.headings import Heading
-from derive.importing.arms.lines import Arm, Line, feet
+from derive.importing.arms.lines import Arm, feet, projected
 from derive.importing.robot import Array
 
 _FAR = 20.0
@@ -98,20 +99,21 @@ def _candidates(arm: Arm, limit: float) -> list[list[Array]]:
     ends = {0: np.zeros(3), len(rotary) - 1: arm.tip[:3, 3]}
     for place, point in ends.items():
         if rotary:
-            found[rotary[place]].append(_projected(lines[rotary[place]], point))
+            found[rotary[place]].append(projected(lines[rotary[place]], point))
     for _ in range(2):
         before = {k: list(some) for k, some in found.items()}
         for k, other in zip(rotary, rotary[1:], strict=False):
-            found[k] += [_projected(lines[k], p) for p in before[other]]
-            found[other] += [_projected(lines[other], p) for p in before[k]]
+            found[k] += [projected(lines[k], p) for p in before[other]]
+            found[other] += [projected(lines[other], p) for p in before[k]]
         found = {k: _distinct(some, far, limit) for k, some in found.items()}
     every = _distinct([np.zeros(3), *(p for some in found.values() for p in some), arm.tip[:3, 3]], far, limit)
-    return [found.get(k, every) for k in range(len(lines))]
+    return [sorted(found.get(k, every), key=partial(_place, arm.size)) for k in range(len(lines))]
 
 
-def _projected(line: Line, point: Array) -> Array:
-    """The point of a line that is nearest to a point."""
-    return np.asarray(line.point + line.direction * float((point - line.point) @ line.direction))
+def _place(size: float, point: Array) -> tuple[float, ...]:
+    """The order of candidates: of ways that cost the same the first is taken, wherever the file has its frames."""
+    shares = point / size
+    return tuple(np.round([np.linalg.norm(shares), *shares], 6).tolist())
 
 
 def _distinct(some: list[Array], far: float, limit: float) -> list[Array]:

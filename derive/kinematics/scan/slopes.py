@@ -5,6 +5,7 @@ inputs.
     Let(b, Root(a))          →  Let(slope_b, Select(b > 0, slope_a/(2*b), 0))
     Let(d, a/b)              →  Let(slope_d, (slope_a - d*slope_b)/b)
     Let(c, Select(p, a, b))  →  Let(slope_c, Select(p, slope_a, slope_b))
+    Let(e, Abs(a))           →  Let(slope_e, Select(a > 0, slope_a, -slope_a))
 
 Total like the statements themselves: where a root vanishes its slope is given as zero. A `Require` has no slope, and a
 condition is not differentiated.
@@ -58,6 +59,10 @@ def _slope(value: sp.Basic, slopes: dict[sp.Symbol, sp.Expr], whole: sp.Expr | N
         root = value if whole is None else whole
         inner = _slope(value.args[0], slopes)
         return Select(sp.Gt(root, 0), inner / (2 * Select(sp.Gt(root, 0), root, sp.Integer(1))), _ZERO)
+    if isinstance(value, sp.Abs):
+        (signed,) = value.args
+        inner = _slope(signed, slopes)
+        return Select(sp.Gt(signed, 0), inner, -inner)
     if isinstance(value, sp.Symbol):
         return slopes[value]
     if isinstance(value, sp.Add):

@@ -19,6 +19,7 @@ from tests.unit.kinematics.inventions import invention
 from tests.unit.solver.test_fast_refusals import JOINTS, LENGTHS, L
 
 A1, A2, A3, A4, A5, A6 = JOINTS[:6]
+ELBOW = Rz(A1) * Tx(L[6]) * Ry(A2) * Tz(L[1]) * Ry(A3) * Tx(L[2])
 ARM = Rz(A1) * Ry(A2) * Tz(L[1]) * Ry(A3) * Tx(L[2]) * Rx(A4)
 SIDEWAYS = ARM * Ty(L[3]) * Ry(A5) * Rx(A6) * Tx(L[4])
 
@@ -48,11 +49,14 @@ def chosen(mechanism: Mechanism) -> str | None:
         (SIDEWAYS, "A6"),
         (ARM * Ry(A5) * Tz(L[3]) * Rx(A6) * Tx(L[4]), "A6"),
         (ARM * Ry(A5) * Rx(A6) * Tx(L[4]), None),
+        (ELBOW * Tz(L[3]) * Rx(A4) * Tz(L[5]) * Ry(A5) * Rx(A6) * Tx(L[4]), "A1"),
         (Rz(A6) * Tx(L[4]) * Rx(A5) * Tz(L[3]) * Rz(A4) * Tx(L[2]) * Ry(A3) * Tz(L[1]) * Ry(A2) * Rz(A1), "A6"),
     ],
 )  # fmt: skip
 def test_the_joint(chain: Chain, joint: str | None) -> None:
-    """Of the arm that stands on its flange the first joint, for the same reason."""
+    """Of the arm that stands on its flange the first joint, for the same reason. A forearm that A4 makes longer and
+    shorter across has its length along at least: no condition is left that a search could not follow.
+    """
     assert chosen(arm(chain)) == joint
 
 

@@ -64,6 +64,7 @@ def amplitude_of(problem: Problem, equation: Equation, angle: sp.Symbol, row: Ro
     if across == 0 and (problem.is_never_zero(along) or along.free_symbols <= {*problem.parameters}):
         return _along_the_coordinate(problem, naming, angle, (common, along), e)
     square = along**2 + across**2
+    never_vanishes = any(problem.is_never_zero(part) for part in (along, across, square))
     along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
     note = f"effective length of the arm that {angle.name} turns"
     effective = naming.length(f"effective_{angle.name}", along, across, note=note)
@@ -72,7 +73,7 @@ def amplitude_of(problem: Problem, equation: Equation, angle: sp.Symbol, row: Ro
     unit = sp.Integer(1) if _has_no_unit(problem, written_out) else problem.scale_of(equation)
     divisor, aimable = effective, None
     guard: tuple[Statement, ...] = ()
-    if problem.is_never_zero(square):
+    if never_vanishes:
         scale = common * (unit if is_moved else effective)
     else:
         scale = equation.scales.get(angle, common * unit)
