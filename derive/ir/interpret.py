@@ -177,10 +177,10 @@ def _let(let: Let) -> _Step:
     return bind
 
 
-def _require(condition: Array, otherwise: Status, status: NDArray[np.object_]) -> None:
+def _require(condition: Array, otherwise: Status | None, status: NDArray[np.object_]) -> None:
     if not np.all(condition):
         fails = np.logical_not(np.broadcast_to(condition, status.shape))
-        status[fails & (status == Status.OK)] = otherwise
+        status[fails & (status == Status.OK)] = otherwise or Status.OK
 
 
 def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> None:
@@ -247,8 +247,8 @@ def _loop(loop: Iterate) -> _Step:
     )
 
     def iterate(known: _State, status: _Statuses) -> None:
-        start: list[Array] = [np.asarray(value(known), declared) for value, declared in starts]
-        known.update(zip(names, start, strict=True))
+        start = (np.asarray(value(known), declared) for value, declared in starts)
+        known.update(zip(names, list(start), strict=True))
         done = np.zeros(status.shape, dtype=bool)
         counted = _REPEATS.get() or Repeats()
         for _ in range(loop.limit):
@@ -259,8 +259,7 @@ def _loop(loop: Iterate) -> _Step:
                 break
             following: list[Array] = [np.asarray(value(known), declared) for value, declared in followings]
             known.update({n: np.where(done, known[n], v) for n, v in zip(names, following, strict=True)})
-        if loop.otherwise is not None:
-            _require(done, loop.otherwise, status)
+        _require(done, loop.otherwise, status)
 
     return iterate
 

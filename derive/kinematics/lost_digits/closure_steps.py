@@ -12,22 +12,16 @@ leads to the same branch, the joint of its two roots is mirrored about the start
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, Turning
-from derive.equations.axes import reference_value
 from derive.equations.chain_splits import is_spatial
 from derive.ir.constants import (
     BOUNDARY,
     CONVERGED,
-    COST_OF_A_STALL,
     DEGREE,
-    DOUBTFUL,
-    FREE_ANGLE,
-    LATTICE,
     LEAST_DAMPING,
     LONGEST_STEP,
     NEARLY,
@@ -35,7 +29,6 @@ from derive.ir.constants import (
     REFINED,
     SCANNED,
     SHARE_OF_DAMPING,
-    STALLED,
 )
 from derive.ir.passes import normalise
 from derive.ir.primitives import NearestPeriod, Root, Select, ToReal, larger
@@ -43,7 +36,6 @@ from derive.ir.program import Iterate, Let, Output, Program, Require, Solve, Sta
 from derive.ir.symbols import (
     COORDINATE_NAMES,
     OFFSET,
-    POSITION,
     ROTATION_ENTRIES,
     SCALE,
     called,
@@ -54,32 +46,40 @@ from derive.ir.symbols import (
 from derive.kinematics.branches.assignment import Assignment, margin_lets
 from derive.kinematics.differential import jacobian_entries, jacobian_rows
 from derive.kinematics.inverse import Inverse
+from derive.kinematics.lost_digits.starts import (
+    AGAIN,
+    ANOTHER,
+    ATTEMPT,
+    BEFORE,
+    BESIDE,
+    ENDS,
+    FREE_TURN,
+    GOAL,
+    IS_MET,
+    LEFT,
+    LEFT_NOW,
+    MIRRORS,
+    NEAREST,
+    NEAREST_NOW,
+    NEAREST_TURN,
+    NEAREST_TURN_NOW,
+    SCAN_ENDS,
+    STEP,
+    TURN,
+    closed_form,
+    ending,
+    is_scan,
+    next_attempt,
+    refines,
+    tried,
+)
 
 MET = flag("met")
-LOST = "lost_digits_"
-"""How the names of flags begin that say that a value exceeds its bound, which lost digits may explain."""
-GOAL = {name: real(f"goal_{name.name}") for name in (*POSITION, *ROTATION_ENTRIES)}
-"""The names of the commanded pose in this program."""
 _ROTATED = (Turning.NONE, Turning.ABOUT_Z, Turning.DIRECTION, Turning.FULL)
 """The commanded rotations whose error is known."""
 _ZERO, _ONE = sp.Integer(0), sp.Integer(1)
 _FIRST = sp.Integer(9)
 """Larger than every error: the error before the first step."""
-_LEFT, _ATTEMPT, _BEFORE = count("passes_left"), count("attempt"), real("error_before")
-_ANOTHER, _MIRRORS, _IS_MET = flag("another"), flag("mirrors"), flag("pose_is_met")
-_LEFT_NOW = count("passes_left_now")
-_TURN, _BESIDE = real("turn_of_attempt"), real("turn_beside")
-_AGAIN = flag("from_the_met_pose")
-_ENDS = flag("no_start_is_left")
-_FREE, _FREE_TURN = real("free_angle"), real("free_turn")
-_NEAREST, _NEAREST_TURN = real("nearest_error"), real("nearest_turn")
-_NEAREST_NOW, _NEAREST_TURN_NOW = real("nearest_error_now"), real("nearest_turn_now")
-_STEP = sp.Rational(360, SCANNED)
-"""How far (degrees) free angles are turned from one attempt of the scan to the next."""
-_SCAN_ENDS = SCANNED + REFINED + 2
-"""The attempts: 0 from the given start, 1 with nearly free angles at the reference, then one of the scan each, some
-beside the nearest, ever closer, and this one from the nearest of all.
-"""
 
 
 @dataclass(frozen=True)
@@ -127,17 +127,13 @@ def started(joint: Joint) -> sp.Symbol:
     return real(f"start_{joint.key}")
 
 
-def _tried(joint: Joint) -> sp.Symbol:
-    return real(f"tried_{joint.key}")
-
-
 def meet_program(machine: Machine, branch: Program) -> Program:
     """The program that meets a pose, and tells whether it has."""
     joints = machine.mechanism.joints
     chosen = [Let(real(f"chosen_{j.key}"), _on_its_turn(j, branch)) for j in joints]
     near = {real(f"near_{j.key}") for j in joints}
     needed = [s for s in branch.lets() if s.name in near or s.name.name.startswith(("open_", "reference_"))]
-    outputs = [Output(MET.name, _IS_MET)]
+    outputs = [Output(MET.name, IS_MET)]
     outputs += [Output(f"found_{j.key}", let.name) for j, let in zip(joints, chosen, strict=True)]
     names = {name: given_name(name) for name in varying(machine, branch)}
     statements: tuple[Statement, ...] = (_loop(machine, branch), *needed, *chosen)
@@ -150,97 +146,37 @@ def meet_program(machine: Machine, branch: Program) -> Program:
 def _loop(machine: Machine, branch: Program) -> Iterate:
     """The steps from one start after the other."""
     joints = machine.mechanism.joints
-    closed, starts = _closed_form(machine.mechanism, branch)
+    closed, starts = closed_form(machine.mechanism, branch)
     following = count("next_attempt")
-    attempt = (*_attempt(following), *closed, _ending(closed))
+    attempt = (*next_attempt(following), *closed, ending(closed))
     step = (*_at_axes(machine), *_error(machine), *_sides(machine), *attempt, *_step(machine))
     return Iterate(
-        state=(*map(_tried, joints), _LEFT, _ATTEMPT, _BEFORE, _NEAREST, _NEAREST_TURN, _TURN, _BESIDE),
-        start=(*map(started, joints), sp.Integer(PASSES), _ZERO, _FIRST, _FIRST, _ZERO, _ZERO, _STEP),
+        state=(*map(tried, joints), LEFT, ATTEMPT, BEFORE, NEAREST, NEAREST_TURN, TURN, BESIDE),
+        start=(*map(started, joints), sp.Integer(PASSES), _ZERO, _FIRST, _FIRST, _ZERO, _ZERO, STEP),
         step=tuple(s for s in step if isinstance(s, Let | Solve)),
         following=(
             *(_next(machine, j, starts[j]) for j in joints),
-            Select(_ANOTHER, Select(_is_scan(following), _ZERO, sp.Integer(PASSES)), _LEFT_NOW),
-            Select(_ENDS, sp.Integer(_SCAN_ENDS + 1), following),
-            Select(sp.Or(_ANOTHER, _MIRRORS), _FIRST, real("error")),
-            _NEAREST_NOW,
-            _NEAREST_TURN_NOW,
-            _FREE_TURN,
-            Select(_refines(following), -_BESIDE / Select(sp.Gt(_BESIDE, 0), _ONE, sp.Integer(2)), _BESIDE),
+            Select(ANOTHER, Select(is_scan(following), _ZERO, sp.Integer(PASSES)), LEFT_NOW),
+            Select(ENDS, sp.Integer(SCAN_ENDS + 1), following),
+            Select(sp.Or(ANOTHER, MIRRORS), _FIRST, real("error")),
+            NEAREST_NOW,
+            NEAREST_TURN_NOW,
+            FREE_TURN,
+            Select(refines(following), -BESIDE / Select(sp.Gt(BESIDE, 0), _ONE, sp.Integer(2)), BESIDE),
         ),
-        done=sp.Or(_IS_MET, sp.And(_ANOTHER, sp.Gt(following, _SCAN_ENDS)), _ENDS),
+        done=sp.Or(IS_MET, sp.And(ANOTHER, sp.Gt(following, SCAN_ENDS)), ENDS),
         limit=3 * (PASSES + 1) + SCANNED + REFINED,
         otherwise=None,
         note="steps of damped least squares on the closure, from one start after the other",
     )
 
 
-def _attempt(following: sp.Symbol) -> tuple[Let, ...]:
-    """Whether another start is taken, which one, and what is free there."""
-    nearer = flag("is_nearer")
-    far = Select(_refines(following), _BESIDE, _ZERO)
-    cost = Select(sp.Gt(real("error"), STALLED * _BEFORE), sp.Integer(COST_OF_A_STALL), _ONE)
-    return (
-        Let(_ANOTHER, sp.Le(_LEFT, 0)),
-        Let(_LEFT_NOW, _LEFT - cost),
-        Let(following, _ATTEMPT + Select(_ANOTHER, _ONE, _ZERO)),
-        Let(_AGAIN, sp.And(_MIRRORS, sp.Gt(_LEFT, PASSES // 2)), "what is nearly free is known now"),
-        Let(_FREE, Select(sp.Or(_AGAIN, sp.Gt(following, 0)), DOUBTFUL, FREE_ANGLE)),
-        Let(nearer, sp.And(_is_scan(_ATTEMPT), sp.Lt(real("error"), _NEAREST))),
-        Let(_NEAREST_NOW, Select(nearer, real("error"), _NEAREST)),
-        Let(_NEAREST_TURN_NOW, Select(nearer, _TURN, _NEAREST_TURN)),
-        Let(
-            _FREE_TURN,
-            Select(sp.Gt(following, SCANNED + 1), _NEAREST_TURN_NOW + far, _STEP * ToReal(following - 1)),
-            "how far free angles are turned",
-        ),
-    )
-
-
-def _ending(closed: Sequence[Let]) -> Let:
-    """The flag that ends all attempts: another start is wanted, but no angle is nearly free, so that it is the same."""
-    tests = {test for let in closed for test in let.value.atoms(sp.StrictGreaterThan, sp.LessThan)}
-    known = [sp.Gt(test.lhs, test.rhs) for test in tests if test.rhs.has(_FREE)]
-    return Let(_ENDS, sp.And(_ANOTHER, *known))
-
-
-def _is_scan(attempt: sp.Symbol) -> sp.Basic:
-    """Whether an attempt is one of the scan: its start is rated, and no step is taken."""
-    return sp.And(sp.Gt(attempt, 1), sp.Lt(attempt, _SCAN_ENDS))
-
-
-def _refines(attempt: sp.Symbol) -> sp.Basic:
-    """Whether an attempt is one beside the nearest of the scan."""
-    return sp.And(sp.Gt(attempt, SCANNED + 1), sp.Lt(attempt, _SCAN_ENDS))
-
-
 def _on_its_turn(joint: Joint, branch: Program) -> sp.Expr:
     """The axis value on the turn that the branch would choose."""
     near = real(f"near_{joint.key}")
     if joint.is_geared or not any(let.name == near for let in branch.lets()):
-        return _tried(joint)
-    return NearestPeriod(_tried(joint), near)
-
-
-def _closed_form(mechanism: Mechanism, branch: Program) -> tuple[list[Let], dict[Joint, sp.Expr]]:
-    """The closed form of a start under names of its own, and the axis values in it."""
-    lets = branch.lets()
-    names = {let.name: called(f"closed_{let.name.name}", let.name) for let in lets} | GOAL
-    names |= {FREE_ANGLE: _FREE}
-    turned = {
-        reference_value(j): {
-            j.reference: Select(_AGAIN, _tried(j), j.reference + pow(LATTICE, k, SCANNED) * _FREE_TURN)
-        }
-        for k, j in enumerate(mechanism.joints)
-        if j.is_angle
-    }
-    found = [
-        Let(names[let.name], let.value.xreplace(turned.get(let.name, {})).xreplace(names), let.note)
-        for let in lets
-        if not let.name.name.startswith(LOST)
-    ]
-    starts = {j: o.value.xreplace(names) for j, o in zip(mechanism.joints, branch.outputs, strict=True)}
-    return found, starts
+        return tried(joint)
+    return NearestPeriod(tried(joint), near)
 
 
 def _at_axes(machine: Machine) -> list[Statement]:
@@ -258,7 +194,7 @@ def _at_axes(machine: Machine) -> list[Statement]:
             value = entries[r * width + k] * SCALE**power if j in machine.inverse.moving else _ZERO
             name = _rate(r, k)
             found[name] = Let(name, value)
-    axes = {j.axis: _tried(j) for j in mechanism.joints}
+    axes = {j.axis: tried(j) for j in mechanism.joints}
     return [rewritten(s, lambda e: e.xreplace(axes)) for s in found.values()]
 
 
@@ -303,22 +239,22 @@ def _turn(turning: Turning, here: sp.Matrix, goal: sp.Matrix) -> tuple[dict[str,
 
 def _sides(machine: Machine) -> list[Statement]:
     """Whether the pose is met, on the wanted branch or on another one."""
-    error, close, met = real("error"), flag("pose_is_close"), _IS_MET
+    error, close, met = real("error"), flag("pose_is_close"), IS_MET
     wrong = {a: flag(f"beside_{a.branch.name}") for a in machine.assignments}
     sides = [Let(w, sp.Lt(ToReal(a.sigma) * real(f"branch_{a.branch.name}"), -2 * NEARLY)) for a, w in wrong.items()]
-    is_last = sp.Or(sp.Gt(2 * error, _BEFORE), sp.Le(_LEFT, 0))
+    is_last = sp.Or(sp.Gt(2 * error, BEFORE), sp.Le(LEFT, 0))
     is_close = sp.Or(sp.Le(error, BOUNDARY), sp.And(sp.Le(error, CONVERGED), is_last))
     return [
         *sides,
         Let(close, is_close, "the error is rounding, and steps make it no smaller"),
         Let(met, sp.And(close, *(sp.Not(w) for w in wrong.values()), *_possible(machine))),
-        Let(_MIRRORS, sp.And(close, sp.Or(*wrong.values()))),
+        Let(MIRRORS, sp.And(close, sp.Or(*wrong.values()))),
     ]
 
 
 def _possible(machine: Machine) -> list[sp.Basic]:
     """The conditions of forward kinematics, such as those of positive quantities."""
-    axes = {j.axis: _tried(j) for j in machine.mechanism.joints}
+    axes = {j.axis: tried(j) for j in machine.mechanism.joints}
     refusals = (s for s in machine.at_axes if isinstance(s, Require) and s.otherwise is Status.IMPOSSIBLE)
     return [s.condition.xreplace(axes) for s in refusals]
 
@@ -351,7 +287,7 @@ def _next(machine: Machine, joint: Joint, start: sp.Expr) -> sp.Expr:
     branch; or the step.
     """
     unit = 1 / DEGREE if joint.is_angle else SCALE
-    moved = _tried(joint) + real("shrinking") * real(f"step_{joint.key}") * unit
+    moved = tried(joint) + real("shrinking") * real(f"step_{joint.key}") * unit
     beside = [flag(f"beside_{a.branch.name}") for a in machine.assignments if a.determinant.step == joint.symbol]
-    mirrored = Select(beside[0], 2 * start - _tried(joint), _tried(joint)) if beside else _tried(joint)
-    return Select(sp.Or(_ANOTHER, _AGAIN), start, Select(_MIRRORS, mirrored, moved))
+    mirrored = Select(beside[0], 2 * start - tried(joint), tried(joint)) if beside else tried(joint)
+    return Select(sp.Or(ANOTHER, AGAIN), start, Select(MIRRORS, mirrored, moved))

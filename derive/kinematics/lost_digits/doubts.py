@@ -18,8 +18,6 @@ from derive.ir.primitives import Select
 from derive.ir.program import Call, Let, Program, Require, Statement, Status, binds, reads
 from derive.ir.symbols import Flag, cosine, flag, names_in, real, sine
 from derive.kinematics.lost_digits.closure_steps import (
-    GOAL,
-    LOST,
     MET,
     Machine,
     given_name,
@@ -27,6 +25,7 @@ from derive.kinematics.lost_digits.closure_steps import (
     started,
     varying,
 )
+from derive.kinematics.lost_digits.starts import GOAL, LOST
 
 _EXACTLY = {1 + BOUNDARY / 2: sp.Integer(1), BOUNDARY / 2: sp.Integer(0)}
 """A bound without what it allows for rounding."""
