@@ -247,8 +247,8 @@ def _loop(loop: Iterate) -> _Step:
     )
 
     def iterate(known: _State, status: _Statuses) -> None:
-        start = (np.asarray(value(known), declared) for value, declared in starts)
-        known.update(zip(names, list(start), strict=True))
+        start: list[Array] = [np.asarray(value(known), declared) for value, declared in starts]
+        known.update(zip(names, start, strict=True))
         done = np.zeros(status.shape, dtype=bool)
         counted = _REPEATS.get() or Repeats()
         for _ in range(loop.limit):
