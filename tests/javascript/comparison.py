@@ -135,7 +135,10 @@ class Comparison:
         for number, (one, other) in enumerate(zip(expected, answer["slots"], strict=True)):
             place = f"slot {number}"
             self._equal(f"{place}, status", int(one.status), other["status"])
-            self._equal(f"{place}, configuration", list(one.configuration), other["configuration"])
+            is_known = one.axes is None or self._margin(one.axes) > SINGULAR
+            count = None if is_known else self.robot.made.BRANCHES  # turns are those of axes that are known
+            known, told = (list(given[:count]) for given in (one.configuration, other["configuration"]))
+            self._equal(f"{place}, configuration", known, told)
             if one.axes is None:
                 self._reason(place, question, one.configuration, other)
             elif other["status"] == 0:
