@@ -129,7 +129,7 @@ def test_parameters_are_those_of_the_description(mechanism: Mechanism, machines:
     if mechanism.assembly is not None:
         expected += [f"{mechanism.assembly.name}_{mechanism.assembly.names[1]}", "min_type2_margin"]
     if mechanism.is_platform:
-        expected += [*(f"home_{b.name}_{b.names[1]}" for b in mechanism.branches), "min_type2_margin"]
+        expected += [*(f"home_{b.name}_{b.names[1]}" for b in mechanism.branches), "min_type2_margin", "check_forward"]
     assert [p.name for p in machines[0].robot.PARAMETERS] == [*expected, "check_limits", "warning_distance"]
     assert all(p.meaning and p.range for p in machines[0].robot.PARAMETERS)
 
