@@ -29,7 +29,7 @@ def planted(mechanism: Mechanism) -> Planted:
     for method, pattern in (
         ("FindPose", r"^(aBranches\[\d\]) :=[^;]*;\n"),
         ("FindPose", r"^(FindPose) :=[^;]*;\n"),
-        ("SolveBranch", rf"^(a\.a[0-{max(axes - 1, 0)}]) :=[^;]*;\n"),
+        ("SolveBranch", rf"^(a\.a[0-{max(axes - 1, 0)}]) :=[^;]*;(?:  // .*)?\n"),
         ("FindMargins", r"^(FindMargins) :=[^;]*;\n"),
         ("ReadInputs", r"^(checkLimits) := xCheckLimits;\n"),
         ("SolveBranch", r"^(SolveBranch) := Softkin_Names\.NoError;\n"),
