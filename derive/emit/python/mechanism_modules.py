@@ -29,7 +29,7 @@ from derive.emit.python.runtime import templates
 from derive.emit.python.straight_line.finish import Function
 from derive.emit.python.straight_line.unrolled import Unrolled, is_trusted, trusted_branch, unrolled
 from derive.ir.passes import untold
-from derive.ir.program import FindRoot
+from derive.ir.program import FindRoot, Iterate
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 from derive.report.reasons import reasons_of
@@ -99,6 +99,7 @@ def _class_context(kin: Kinematics, arrays: Sequence[Method], lean: Unrolled | N
         ],
         "chooses_by_lengths": chooses_by_lengths(kin.mechanism),
         "has_doubts": has_doubts(kin),
+        "binds_in_loops": any(isinstance(s, Iterate) and s.otherwise is None for p in kin.shared for s in p.body),
         "margins": tuple(m.name for m in kin.margins),
         "every_root": _every_root(scalar),
         "methods": [
