@@ -18,6 +18,8 @@ from derive.ir.constants import DEGREE
 _RIGHT = sp.pi / 2
 _ANY_DECIMALS = 1e-6
 """An angle as near to a multiple of 90° as this (radians) is that multiple, however many decimals it has."""
+_LONG_DECIMALS = 1e-9
+"""A decimal as near to a whole degree as this (radians) is that degree."""
 _DECIMALS = 4
 """A decimal with at least this many digits that equals a rounded multiple of 90° is that multiple."""
 _NEARLY = 0.01
@@ -89,16 +91,22 @@ def _wrong_turn(mechanism: Mechanism, factor: Factor) -> Iterator[str]:
             yield f"{place} of the chain converts {joint.name}, which is in radians already: leave out radians()"
 
 
-def with_right_angles(mechanism: Mechanism) -> Mechanism:
-    """The mechanism with the exact multiples of 90° in its chain, however they are written: `90*DEGREE`, `1.5708`."""
+def with_exact_angles(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with the exact multiples of 90° in its chain, however they are written: `90*DEGREE`, `1.5708`; and
+    with exact whole degrees for long decimals, 45° for `0.7853981634`.
+    """
     if mechanism.chain is None:
         return mechanism
-    return replace(mechanism, chain=Chain(tuple(map(_with_right_angle, mechanism.chain.factors))))
+    return replace(mechanism, chain=Chain(tuple(map(_with_exact_angle, mechanism.chain.factors))))
 
 
-def _with_right_angle(factor: Factor) -> Factor:
+def _with_exact_angle(factor: Factor) -> Factor:
     number = number_in(factor.amount) if factor.motion is Motion.TURN else sp.Integer(0)
     exact = as_right_angles(number)
+    if exact is None and number.has(sp.Float):
+        degrees = round(in_radians(number) * 180 / float(sp.pi))
+        exact = degrees * sp.pi / 180
+        exact = exact if abs(in_radians(number) - float(exact)) <= _LONG_DECIMALS else None
     if exact is None or exact == number:
         return factor
     return replace(factor, amount=sp.expand(factor.amount) - number + exact)

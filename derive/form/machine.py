@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from derive.description.amounts import with_right_angles
+from derive.description.amounts import with_exact_angles
 from derive.description.mechanism import Mechanism
 from derive.form.chain import with_normal_chain
 from derive.form.exact import with_exact_numbers
@@ -20,6 +20,6 @@ def in_form(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> M
 
     further: the symbols of parameters and joints whose names equalled a derived one in earlier attempts, and how often.
     """
-    own = with_normal_chain(with_right_angles(with_inner_names(mechanism, further)))
+    own = with_normal_chain(with_exact_angles(with_inner_names(mechanism, further)))
     geared = with_gears(own)  # a turn written in two parts is one by now
     return with_named_numbers(with_named_loop_angles(with_plain_rods(with_exact_numbers(geared))))

@@ -68,7 +68,9 @@ SCANNED = 61
 REFINED = 16
 """So many more beside the nearest, ever closer."""
 LATTICE = 17
-"""Every further free angle is turned this many times as far, so that several have the values of a lattice."""
+"""The angle of joint k, counted from 0, is turned this to the power of k times as far, modulo `SCANNED`: the values of
+several free angles are a lattice. It is prime to `SCANNED`.
+"""
 PASSES = 64
 """The largest number of steps from each start: next to a double root every step leaves a third of the error."""
 STALLED = sp.Float("0.999")

@@ -17,7 +17,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.description.amounts import with_right_angles
+from derive.description.amounts import with_exact_angles
 from derive.description.mechanism import ROTATION, Mechanism, Turning, X, Y, Z
 from derive.geometry.frames import Motion
 from derive.ir.constants import DEGREE
@@ -115,7 +115,7 @@ def closure_of(described: Mechanism, machine: Mechanism) -> Closure:
     machine: what was derived of it. It gives the names of its inputs in programs, and says what the signs of branches
     and of an assembly mode mean that the description does not name.
     """
-    described, count = with_right_angles(described), len(described.joints)
+    described, count = with_exact_angles(described), len(described.joints)
     q, axes, pose = ca.SX.sym("q", count), ca.SX.sym("axes", count), ca.SX.sym("pose", len(POSE))
     columns = _columns(described, machine)
     p = ca.SX.sym("p", len(columns))

@@ -91,14 +91,15 @@ def answers(machine: Made, frame: softkin.Frame, axes: list[float]) -> Answers:
 
 
 def are_same(machine: Made, one: Array, other: Array, frame: softkin.Frame) -> bool:
-    """Whether two answers are one solution. Where a search finds a double root, half of its digits are rounding: there
-    both have to close."""
+    """Whether two answers are one solution. Of a double root half of the digits are rounding: there both have to close.
+    Beside one of a search the machine may move while its flange stands, and rounding decides which root is the nearest.
+    """
     if np.allclose(one, other, rtol=0.0, atol=_SAME * machine.reach):
         return True
-    is_double = is_searched(machine) and min(np.abs(margins(machine, other.tolist()))) < _DOUBLE
+    is_double = any(min(np.abs(margins(machine, axes.tolist()))) < _DOUBLE for axes in (one, other))
     pose = np.array([frame.position]), np.array([frame.rotation])
     closes = all(machine.error(axes[None], *pose).max() <= _CLOSED for axes in (one, other))
-    return is_double and closes and bool(np.abs(one - other).max() <= _NEAR_DOUBLE)
+    return is_double and closes and (is_searched(machine) or bool(np.abs(one - other).max() <= _NEAR_DOUBLE))
 
 
 @EVERY

@@ -124,6 +124,7 @@ def given_name(name: sp.Symbol) -> sp.Symbol:
 
 
 def started(joint: Joint) -> sp.Symbol:
+    """The axis value that the branch gives to start from."""
     return real(f"start_{joint.key}")
 
 
@@ -283,8 +284,8 @@ def _step(machine: Machine) -> list[Statement]:
 
 
 def _next(machine: Machine, joint: Joint, start: sp.Expr) -> sp.Expr:
-    """The axis value behind a step: the start of the next attempt; the mirror image, where the pose is met on another
-    branch; or the step.
+    """The axis value behind a step: the start of the next attempt; where the pose is met on another branch, the closed
+    form with what is known there, or the mirror image; else the step.
     """
     unit = 1 / DEGREE if joint.is_angle else SCALE
     moved = tried(joint) + real("shrinking") * real(f"step_{joint.key}") * unit

@@ -75,7 +75,7 @@ def meeting(machine: Machine, branch: Program) -> Program:
     given |= {given_name(name): name for name in varying(machine, branch)}
     arguments = tuple((n, given[n]) for n in meet.inputs if n in given)
     names = (MET, *(real(f"found_{j.key}") for j in joints))
-    note = "digits were lost: the pose is met by steps on the closure"
+    note = "if digits were lost, steps on the closure meet the pose"
     call = Call(meet, arguments, names, note, sp.Or(*flags))
     refusals: list[Statement] = []
     for s in branch.requires():

@@ -36,6 +36,7 @@ _ZERO, _ONE = sp.Integer(0), sp.Integer(1)
 
 
 def tried(joint: Joint) -> sp.Symbol:
+    """The axis value at which a pass is."""
     return real(f"tried_{joint.key}")
 
 

@@ -10,7 +10,7 @@ from random import Random
 
 import sympy as sp
 
-from derive.description.amounts import as_right_angles, number_in, with_right_angles, without_decimals
+from derive.description.amounts import as_right_angles, number_in, with_exact_angles, without_decimals
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role, Turning
 from derive.geometry.frames import Motion
 from derive.ir.program import Program
@@ -129,7 +129,7 @@ def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
     """
     if kin.mechanism.search is not None:
         return Exact(0, "its roots are searched along a joint")
-    described = _with_exact_ends(with_right_angles(described))
+    described = _with_exact_ends(with_exact_angles(described))
     try:
         return _checked(kin, described)
     except Disagreement:

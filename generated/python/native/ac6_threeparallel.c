@@ -749,7 +749,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* A6: whole turns added */
   const double axis_a6 = softkin_on_turn(k->offset_a6 + softkin_angle_of(sin_q6, cos_q6)*SOFTKIN_RADIAN,
       near_a6);
-  /* digits were lost: the pose is met by steps on the closure */
+  /* if digits were lost, steps on the closure meet the pose */
   double results[7] = {0.0};
   if (lost_digits_37) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, sigma_elbow, sigma_shoulder,

@@ -808,7 +808,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* A6: whole turns added */
   const double axis_a6 = softkin_on_turn(k->offset_a6
       + softkin_angle_of(direction_y_q6, direction_x_q6)*SOFTKIN_RADIAN, near_a6);
-  /* digits were lost: the pose is met by steps on the closure */
+  /* if digits were lost, steps on the closure meet the pose */
   double results[7] = {0.0};
   if (lost_digits_23) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, sigma_arm, sigma_elbow,

@@ -459,7 +459,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* A3: whole turns added */
   const double axis_a3 = softkin_on_turn(k->offset_a3 + softkin_angle_of(sin_q3, cos_q3)*SOFTKIN_RADIAN,
       near_a3);
-  /* digits were lost: the pose is met by steps on the closure */
+  /* if digits were lost, steps on the closure meet the pose */
   double results[4] = {0.0};
   if (lost_digits_19) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, sigma_arm, sigma_elbow, turn_a1, turn_a2, turn_a3, x,

@@ -106,7 +106,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 58fbea170ef62974"
+    KEY = "ac6_threeparallel 59a8b03501bd6536"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1076,7 +1076,7 @@ class Ac6ThreeParallel(Mechanism):
         axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0) * RADIAN  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
-        # digits were lost: the pose is met by steps on the closure
+        # if digits were lost, steps on the closure meet the pose
         if lost_digits_37:
             found = self._meet_pose(
                 (

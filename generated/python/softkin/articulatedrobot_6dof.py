@@ -109,7 +109,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof 9f16f0e7d29985da"
+    KEY = "articulatedrobot_6dof 4446a417b1ccc603"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1168,7 +1168,7 @@ class ArticulatedRobot6DOF(Mechanism):
         axis_a6 = offset_a6 + arctan2(direction_y_q6, direction_x_q6 + 0.0) * RADIAN  # A6: whole turns added
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
-        # digits were lost: the pose is met by steps on the closure
+        # if digits were lost, steps on the closure meet the pose
         if lost_digits_23:
             found = self._meet_pose(
                 (

@@ -973,7 +973,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         axis_a3 = offset_a3 + (angle_a2 + angle_a3_from_a2) * RADIAN
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        # digits were lost: the pose is met by steps on the closure
+        # if digits were lost, steps on the closure meet the pose
         if lost_digits_16:
             found = self._meet_point(
                 (

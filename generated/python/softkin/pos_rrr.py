@@ -98,7 +98,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr 16c92cb298038f44"
+    KEY = "pos_rrr 613eeccc81801b63"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -918,7 +918,7 @@ class PosRRR(OffsetKinematics):
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        # digits were lost: the pose is met by steps on the closure
+        # if digits were lost, steps on the closure meet the pose
         if lost_digits_19:
             found = self._meet_pose(
                 (
@@ -1138,7 +1138,7 @@ class PosRRR(OffsetKinematics):
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        # digits were lost: the pose is met by steps on the closure
+        # if digits were lost, steps on the closure meet the pose
         if lost_digits_21:
             found = self._meet_point(
                 (

@@ -130,7 +130,7 @@ PLANTED: Mapping[str, Planted] = {
         lambda m: in_chain(m, {A2.symbol: -A2.symbol}),
     ),
     "a right angle read as two": Planted(
-        "with_right_angles",
+        "with_exact_angles",
         scara(Rz(A1 + 1.5708) * Tx(REACH) * Rz(A2) * Tx(FIRST) * Rz(A3) * Tz(Z), REACH, FIRST),
         lambda m: in_chain(m, {sp.pi: 2 * sp.pi}),
     ),

@@ -798,7 +798,7 @@ class ArrayPrograms(Programs):
         require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
         require(status, lost_digits_37 | (absolute(cos_q3) <= 1.0000000000005), Status.UNREACHABLE)
-        # digits were lost: the pose is met by steps on the closure
+        # if digits were lost, steps on the closure meet the pose
         found = run_where(
             lost_digits_37,
             self.meet_pose,
