@@ -21,7 +21,9 @@ def check_jointless(kin: Kinematics, closure: Closure) -> tuple[int, float]:
     count = len(parameters)
     pose = np.stack([np.broadcast_to(outputs[name], count) for name in POSE], axis=1)
     expected = closure.frame(np.zeros((count, 0)), parameters)[:, :, 0]
-    error = float(np.max(np.abs(pose - expected)))
+    reach = np.maximum(np.abs(expected[:, :3]).max(axis=1, keepdims=True), np.finfo(float).tiny)
+    unit = np.where(np.arange(len(POSE)) < 3, reach, 1.0)
+    error = float(np.max(np.abs(pose - expected) / unit))
     if error > CLOSURE_TOLERANCE or np.any(status != Status.OK):
         raise Disagreement(f"the frame of a mechanism without joints: error {error:.1e}")
     return count, error

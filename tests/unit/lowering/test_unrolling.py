@@ -17,6 +17,7 @@ from derive.ir.program import Iterate, Let, Output, Program, Require, Solve, Sta
 from derive.ir.symbols import REFUSAL, Sign, called, choices, count, real, suffixed
 from derive.ir.verify import BrokenProgram, verify
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.lost_digits.doubts import without_meeting
 from derive.lowering.unrolling import is_straight, unroll
 from derive.optimize.without_periods import specialised, without_chosen_turns
 from tests.mechanisms import kinematics_of
@@ -176,7 +177,7 @@ def test_every_slot_is_the_branch_of_its_signs(name: str) -> None:
     """The unrolled program answers each slot as the program of one branch does, with fewer statements."""
     kin = kinematics(name)
     signs = tuple(Sign(count(f"sigma_{b.name}"), b.names) for b in kin.branches)
-    looped = with_limits(kin.branch, kin.limits)
+    looped = with_limits(without_meeting(kin.branch), kin.limits)
     unrolled = verify(unroll(looped, signs))
     assert len(unrolled.body) < max(2, 2 ** len(signs)) * len(looped.body)
     assert check_equal(looped, unrolled, signs, random_inputs(kin, 400)) > 100
