@@ -11,7 +11,8 @@ from tests.catalogue.calls.robots import NAMES, poses, robots
 
 MANY = 100_000
 MOST = 1.3
-SEARCHED = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
+SLOW = ("Kin_Ac6_RZRYRYRXRYRZ_J6Offset", "Kin_Hexapod", "Softkin_Hexaglide", "Softkin_Planar_3RRR")
+"""Machines of which one row takes long."""
 
 
 def on_the_way(name: str, rows: int) -> tuple[float, float]:
@@ -30,26 +31,20 @@ def on_the_way(name: str, rows: int) -> tuple[float, float]:
         tracemalloc.stop()
 
 
-ITERATED = ("Kin_Hexapod", "Softkin_Hexaglide")
-"""Machines of which one row takes long."""
-
-
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(n, marks=[pytest.mark.slow] if n in ITERATED else []) for n in NAMES if n != SEARCHED],
-)
+@pytest.mark.parametrize("name", [n for n in NAMES if n not in SLOW])
 def test_the_peak_is_hardly_more_than_the_result(name: str) -> None:
     """Traced, without the input."""
     size, more = on_the_way(name, MANY)
     assert size + more <= MOST * size
 
 
-def test_a_root_scan_takes_few_rows_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("name", SLOW)
+def test_few_rows_are_taken_at_once(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """As many rows together as of a batch of 100,000, in a shorter one: what is on the way stays."""
     from softkin import _batch
 
-    robot = robots(SEARCHED)[0].made
+    robot = robots(name)[0].made
     together = _batch._rows_together(robot._array_programs().VALUES, MANY, 2**robot.BRANCHES, len(robot.AXES))
     monkeypatch.setattr(_batch, "_rows_together", lambda *given: together)
-    size, more = on_the_way(SEARCHED, 3 * together)
+    size, more = on_the_way(name, 3 * together)
     assert more <= (MOST - 1.0) * size / (3 * together) * MANY

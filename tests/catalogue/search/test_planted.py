@@ -12,6 +12,7 @@ from softkin import Status
 from derive.mechanisms.kin_ac6_rzryryrxryrz_j6offset import MECHANISM
 from tests.catalogue.search.arms import Array
 from tests.catalogue.search.planted import ARM, KINDS, OFFSETS, Planted, planted
+from tests.catalogue.shares import share
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled
 
@@ -22,10 +23,12 @@ REGULAR = 1e-3
 
 def check_answers(case: Planted) -> None:
     """Every pose is answered on its own branch, and met."""
-    positions, rotations, configurations, _ = case.robot.forward_batch(case.axes)
-    found, statuses = case.robot.inverse_batch(positions, rotations, configurations, case.references)
+    asked = share(len(case.axes))
+    axes, references = case.axes[asked], case.references[asked]
+    positions, rotations, configurations, _ = case.robot.forward_batch(axes)
+    found, statuses = case.robot.inverse_batch(positions, rotations, configurations, references)
     refused = np.flatnonzero(statuses != Status.OK)
-    example = case.axes[refused[:1]].tolist()
+    example = axes[refused[:1]].tolist()
     assert not len(refused), f"offset {case.lateral}: {len(refused)} refused, such as {example}"
     reached, turned, _, _ = case.robot.forward_batch(found)
     assert np.abs(reached - positions).max() < 1e-6

@@ -1,0 +1,18 @@
+"""Which poses of a sweep each core is asked: the native one all, the one in Python a fifth where there are many.
+
+Both answer by the same program, which the tests of the native half show; Python takes a hundred times as long for it.
+"""
+
+from __future__ import annotations
+
+import os
+
+IS_NATIVE = os.environ["SOFTKIN_CORE"] == "native"
+EACH = 5
+"""It has no factor in common with the four right angles of a turn, so that no joint stands still in a share of a grid."""
+MANY = 1000
+
+
+def share(count: int) -> slice:
+    """The rows that are asked of so many."""
+    return slice(None, None, 1 if IS_NATIVE or count < MANY else EACH)
