@@ -9,7 +9,7 @@ import os
 
 IS_NATIVE = os.environ["SOFTKIN_CORE"] == "native"
 EACH = 5
-"""It has no factor in common with the four right angles of a turn, so that no joint stands still in a share of a grid."""
+"""It is odd: in a share of a grid of four right angles no joint stands still."""
 MANY = 1000
 
 
