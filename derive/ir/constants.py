@@ -65,7 +65,7 @@ DOUBTFUL = sp.Float("1e-2")
 """A step whose margin is at most this may have lost digits that a later step needs; there its angle is set free."""
 SCANNED = 61
 """The values of free angles that are tried, all around the circle, to find the start that is nearest to a pose."""
-REFINED = 16
+REFINED = 26
 """So many more beside the nearest, ever closer."""
 LATTICE = 17
 """The angle of joint k, counted from 0, is turned this to the power of k times as far, modulo `SCANNED`: the values of

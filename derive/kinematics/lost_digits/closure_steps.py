@@ -58,6 +58,7 @@ from derive.kinematics.lost_digits.starts import (
     IS_MET,
     LEFT,
     LEFT_NOW,
+    LEFT_OVER,
     MIRRORS,
     NEAREST,
     NEAREST_NOW,
@@ -150,7 +151,7 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
     closed, starts = closed_form(machine.mechanism, branch)
     following = count("next_attempt")
     attempt = (*next_attempt(following), *closed, ending(closed))
-    step = (*_at_axes(machine), *_error(machine), *_sides(machine), *attempt, *_step(machine))
+    step = (*_at_axes(machine), *_error(machine), *_sides(machine), *_step(machine), *attempt)
     return Iterate(
         state=(*map(tried, joints), LEFT, ATTEMPT, BEFORE, NEAREST, NEAREST_TURN, TURN, BESIDE),
         start=(*map(started, joints), sp.Integer(PASSES), _ZERO, _FIRST, _FIRST, _ZERO, _ZERO, STEP),
@@ -276,6 +277,11 @@ def _step(machine: Machine) -> list[Statement]:
         Solve(tuple(multipliers), matrix, tuple(real(f"error_{k + 1}") for k in range(size))),
         *(Let(n, v) for n, v in zip(steps, jacobian.T * sp.Matrix(multipliers), strict=True)),
         Let(length, Root(sp.Add(*[s**2 for s in steps]))),
+        Let(
+            LEFT_OVER,
+            damping * Root(sp.Add(*[m**2 for m in multipliers])) + length**2,
+            "of the error, behind a step: what it does not reach, and its curvature",
+        ),
         Let(
             real("shrinking"),
             Select(sp.Gt(length, LONGEST_STEP), LONGEST_STEP / Select(sp.Gt(length, LONGEST_STEP), length, _ONE), _ONE),

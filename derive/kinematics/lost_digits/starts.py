@@ -24,6 +24,7 @@ TURN, BESIDE = real("turn_of_attempt"), real("turn_beside")
 AGAIN = flag("from_the_met_pose")
 ENDS = flag("no_start_is_left")
 FREE, FREE_TURN = real("free_angle"), real("free_turn")
+LEFT_OVER = real("error_left_over")
 NEAREST, NEAREST_TURN = real("nearest_error"), real("nearest_turn")
 NEAREST_NOW, NEAREST_TURN_NOW = real("nearest_error_now"), real("nearest_turn_now")
 STEP = sp.Rational(360, SCANNED)
@@ -51,8 +52,8 @@ def next_attempt(following: sp.Symbol) -> tuple[Let, ...]:
         Let(following, ATTEMPT + Select(ANOTHER, _ONE, _ZERO)),
         Let(AGAIN, sp.And(MIRRORS, sp.Gt(LEFT, PASSES // 2)), "what is nearly free is known now"),
         Let(FREE, Select(sp.Or(AGAIN, sp.Gt(following, 0)), DOUBTFUL, FREE_ANGLE)),
-        Let(nearer, sp.And(is_scan(ATTEMPT), sp.Lt(real("error"), NEAREST))),
-        Let(NEAREST_NOW, Select(nearer, real("error"), NEAREST)),
+        Let(nearer, sp.And(is_scan(ATTEMPT), sp.Lt(LEFT_OVER, NEAREST))),
+        Let(NEAREST_NOW, Select(nearer, LEFT_OVER, NEAREST)),
         Let(NEAREST_TURN_NOW, Select(nearer, TURN, NEAREST_TURN)),
         Let(
             FREE_TURN,

@@ -201,30 +201,31 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       y_at_q3, r21_at_q23, y_at_q4, y_at_q5, y_at_q6, d6_times_r22_at_q5, y, wrist_y, branch_shoulder,
       sin_q3, r11_at_q5, q6, sin_q6, cos_q6, r11_at_q6, r21_at_q5, r21_at_q6, r31_at_q5, r31_at_q6,
       r13_at_q6, r23_at_q6, r33_at_q6, r32_at_q5, error_1, error_2, sin_q2, z_at_q3, sin_q23, z_at_q4,
-      z_at_q6, z, error_3, error_4, error_5, error_6, value_in_error, error, free_angle, nearest_turn_now,
-      free_turn, closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1, closed_cos_q1,
-      closed_sin_q1, closed_r21_from_q1, closed_r22_from_q1, closed_radius_q6, closed_q6_radius_of_q5,
-      closed_cos_q5, closed_reference_a6, closed_along_q6, closed_length_q6, closed_cos_q6, closed_across_q6,
-      closed_sin_q6, closed_r31_from_q1_before_q6, closed_r31_from_q1_before_q56, closed_wrist_x_from_q1,
-      closed_r33_from_q1_before_q6, closed_wrist_z_from_q1, closed_reach, closed_axis_a1, rate_1_1, rate_2_1,
-      z_minus_d1, cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4,
-      rate_1_4, y_minus_y_at_q5, rate_1_5, z_minus_z_at_q6, y_minus_y_at_q6, rate_1_6, product_in_damping,
-      damping, product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, rate_2_4, x_minus_x_at_q5,
-      rate_2_5, x_minus_x_at_q6, rate_2_6, product_1_2, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6,
-      product_1_3, rate_1_2_plus_rate_1_3_plus_rate_1_4, product_1_4, product_1_5, product_1_6, product_2_2,
-      product_2_3, rate_2_2_plus_rate_2_3_plus_rate_2_4, product_2_4, product_2_5, product_2_6, product_3_3,
-      rate_3_2_plus_rate_3_3_plus_rate_3_4, product_3_4, product_3_5, product_3_6, product_4_4, product_4_5,
-      product_4_6, product_5_5, product_5_6, product_6_6, multiplier_1, multiplier_2, multiplier_3,
-      multiplier_4, multiplier_5, multiplier_6, step_a1, sum_in_step_a2, step_a2, step_a3, step_a4, step_a5,
-      step_a6, step_length, shrinking, closed_reference_a2, closed_one_less_cos_q3, closed_one_plus_cos_q3,
-      closed_cos_q3, closed_arm_along_q2, closed_sine_square_q3, closed_sin_q3, closed_arm_across_q2,
-      closed_direction_x_q2, closed_direction_y_q2, closed_angle_q2, closed_axis_a2, closed_angle_q3,
-      closed_axis_a3, closed_angle_with_q4, closed_axis_a4, closed_axis_a5, closed_axis_a6,
-      nearest_error_now, shared_quotient;
+      z_at_q6, z, error_3, error_4, error_5, error_6, value_in_error, error, free_angle, product_in_damping,
+      damping, rate_1_1, z_minus_d1, cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3,
+      z_minus_z_at_q4, rate_1_4, y_minus_y_at_q5, rate_1_5, z_minus_z_at_q6, y_minus_y_at_q6, rate_1_6,
+      product_1_1, rate_2_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, rate_2_4,
+      x_minus_x_at_q5, rate_2_5, x_minus_x_at_q6, rate_2_6, product_1_2, rate_3_2, rate_3_3, rate_3_4,
+      rate_3_5, rate_3_6, product_1_3, rate_1_2_plus_rate_1_3_plus_rate_1_4, product_1_4, product_1_5,
+      product_1_6, product_2_2, product_2_3, rate_2_2_plus_rate_2_3_plus_rate_2_4, product_2_4, product_2_5,
+      product_2_6, product_3_3, rate_3_2_plus_rate_3_3_plus_rate_3_4, product_3_4, product_3_5, product_3_6,
+      product_4_4, product_4_5, product_4_6, product_5_5, product_5_6, product_6_6, multiplier_1,
+      multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6, step_a1, sum_in_step_a2, step_a2,
+      step_a3, step_a4, step_a5, step_a6, step_length, error_left_over, nearest_turn_now, free_turn,
+      closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1, closed_cos_q1, closed_sin_q1,
+      closed_r21_from_q1, closed_r22_from_q1, closed_radius_q6, closed_q6_radius_of_q5, closed_cos_q5,
+      closed_reference_a6, closed_along_q6, closed_length_q6, closed_cos_q6, closed_across_q6, closed_sin_q6,
+      closed_r31_from_q1_before_q6, closed_r31_from_q1_before_q56, closed_wrist_x_from_q1,
+      closed_r33_from_q1_before_q6, closed_wrist_z_from_q1, closed_reach, shrinking, closed_axis_a1,
+      closed_reference_a2, closed_one_less_cos_q3, closed_one_plus_cos_q3, closed_cos_q3,
+      closed_arm_along_q2, closed_sine_square_q3, closed_sin_q3, closed_arm_across_q2, closed_direction_x_q2,
+      closed_direction_y_q2, closed_angle_q2, closed_axis_a2, closed_angle_q3, closed_axis_a3,
+      closed_angle_with_q4, closed_axis_a4, closed_axis_a5, closed_axis_a6, nearest_error_now,
+      shared_quotient;
   int next_attempt, passes_left_now;
   bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, mirrors,
       from_the_met_pose, is_nearer, no_start_is_left;
-  for (int pass = 0; pass < 272; pass += 1) {
+  for (int pass = 0; pass < 282; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -311,58 +312,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_wrist);
     from_the_met_pose = mirrors && (passes_left > 32); /* what is nearly free is known now */
     free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 1e-11;
-    is_nearer = (attempt > 1) && (attempt < 79) && (error < nearest_error);
-    nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
-    /* how far free angles are turned */
-    free_turn = next_attempt > 62 ? nearest_turn_now
-        + ((next_attempt > 62) && (next_attempt < 79) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
-    closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
-        *SOFTKIN_DEGREE;
-    free_angle_times_machine_scale = free_angle*k->machine_scale;
-    closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
-        ? closed_distance_q1*closed_distance_q1 : 1.0;
-    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    closed_cos_q1 = closed_distance_q1 > free_angle_times_machine_scale
-        ? (closed_ahead_q1*closed_wrist_x - closed_wrist_y*k->d4)/closed_divisor_q1
-        : cos(closed_reference_a1);
-    closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
-        ? (closed_ahead_q1*closed_wrist_y + closed_wrist_x*k->d4)/closed_divisor_q1
-        : sin(closed_reference_a1);
-    closed_r21_from_q1 = closed_cos_q1*goal_r21 - closed_sin_q1*goal_r11;
-    closed_r22_from_q1 = closed_cos_q1*goal_r22 - closed_sin_q1*goal_r12;
-    /* polar coordinates: the radius at angle q6 */
-    closed_radius_q6 = sqrt(closed_r21_from_q1*closed_r21_from_q1 + closed_r22_from_q1*closed_r22_from_q1);
-    closed_q6_radius_of_q5 = closed_radius_q6*closed_sign_wrist;
-    /* cosine and sine of q5 from the q6 radius and r22 equations */
-    closed_cos_q5 = closed_sin_q1*goal_r13 - closed_cos_q1*goal_r23;
-    closed_reference_a6 = ((from_the_met_pose ? tried_a6 : 21.0*free_turn + given_ref_a6) - k->offset_a6)
-        *SOFTKIN_DEGREE;
-    /* polar coordinates: angle q6 from the r21 and r23 equations */
-    closed_along_q6 = -closed_r21_from_q1*closed_sign_wrist;
-    closed_length_q6 = closed_radius_q6 > free_angle ? closed_radius_q6 : 1.0;
-    /* at a singularity: the angle of the reference */
-    closed_cos_q6 = closed_radius_q6 > free_angle ? closed_along_q6/closed_length_q6
-        : cos(closed_reference_a6);
-    closed_across_q6 = closed_r22_from_q1*closed_sign_wrist;
-    closed_sin_q6 = closed_radius_q6 > free_angle ? closed_across_q6/closed_length_q6
-        : sin(closed_reference_a6);
-    closed_r31_from_q1_before_q6 = closed_cos_q6*goal_r31 - closed_sin_q6*goal_r32;
-    closed_r31_from_q1_before_q56 = closed_cos_q5*closed_r31_from_q1_before_q6
-        - closed_q6_radius_of_q5*goal_r33;
-    /* coordinate of the point that the remaining links must reach */
-    closed_wrist_x_from_q1 = closed_ahead_q1 - closed_r31_from_q1_before_q56*k->d5;
-    closed_r33_from_q1_before_q6 = closed_cos_q6*goal_r32 + closed_sin_q6*goal_r31;
-    /* coordinate of the point that the remaining links must reach */
-    closed_wrist_z_from_q1 = closed_wrist_z + closed_r33_from_q1_before_q6*k->d5 - k->d1;
-    /* distance that the remaining links must span */
-    closed_reach = sqrt(closed_wrist_x_from_q1*closed_wrist_x_from_q1
-        + closed_wrist_z_from_q1*closed_wrist_z_from_q1);
-    no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
-        && (closed_radius_q6 > free_angle) && (closed_reach > free_angle_times_machine_scale);
-    closed_axis_a1 = softkin_on_turn(k->offset_a1
-        + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
+    product_in_damping = 0.001*error;
+    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
     rate_1_1 = -k->one_by_machine_scale*y;
-    rate_2_1 = k->one_by_machine_scale*x;
     z_minus_d1 = z - k->d1;
     cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
     rate_1_2 = -z_minus_d1*cos_q1_times_one_by_machine_scale;
@@ -375,10 +327,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     z_minus_z_at_q6 = z - z_at_q6;
     y_minus_y_at_q6 = y - y_at_q6;
     rate_1_6 = (r32_at_q5*y_minus_y_at_q6 - r22_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale;
-    product_in_damping = 0.001*error;
-    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
     product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4
         + rate_1_5*rate_1_5 + rate_1_6*rate_1_6;
+    rate_2_1 = k->one_by_machine_scale*x;
     sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
     rate_2_2 = -z_minus_d1*sin_q1_times_one_by_machine_scale;
     rate_2_3 = -z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
@@ -444,7 +395,61 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         - multiplier_5*r22_at_q5 - multiplier_6*r32_at_q5;
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3 + step_a4*step_a4
         + step_a5*step_a5 + step_a6*step_a6);
+    /* of the error, behind a step: what it does not reach, and its curvature */
+    error_left_over = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3
+        + multiplier_4*multiplier_4 + multiplier_5*multiplier_5 + multiplier_6*multiplier_6)*damping
+        + step_length*step_length;
+    is_nearer = (attempt > 1) && (attempt < 89) && (error_left_over < nearest_error);
+    nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
+    /* how far free angles are turned */
+    free_turn = next_attempt > 62 ? nearest_turn_now
+        + ((next_attempt > 62) && (next_attempt < 89) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
+    closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
+        *SOFTKIN_DEGREE;
+    free_angle_times_machine_scale = free_angle*k->machine_scale;
+    closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? closed_distance_q1*closed_distance_q1 : 1.0;
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
+    closed_cos_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*closed_wrist_x - closed_wrist_y*k->d4)/closed_divisor_q1
+        : cos(closed_reference_a1);
+    closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*closed_wrist_y + closed_wrist_x*k->d4)/closed_divisor_q1
+        : sin(closed_reference_a1);
+    closed_r21_from_q1 = closed_cos_q1*goal_r21 - closed_sin_q1*goal_r11;
+    closed_r22_from_q1 = closed_cos_q1*goal_r22 - closed_sin_q1*goal_r12;
+    /* polar coordinates: the radius at angle q6 */
+    closed_radius_q6 = sqrt(closed_r21_from_q1*closed_r21_from_q1 + closed_r22_from_q1*closed_r22_from_q1);
+    closed_q6_radius_of_q5 = closed_radius_q6*closed_sign_wrist;
+    /* cosine and sine of q5 from the q6 radius and r22 equations */
+    closed_cos_q5 = closed_sin_q1*goal_r13 - closed_cos_q1*goal_r23;
+    closed_reference_a6 = ((from_the_met_pose ? tried_a6 : 21.0*free_turn + given_ref_a6) - k->offset_a6)
+        *SOFTKIN_DEGREE;
+    /* polar coordinates: angle q6 from the r21 and r23 equations */
+    closed_along_q6 = -closed_r21_from_q1*closed_sign_wrist;
+    closed_length_q6 = closed_radius_q6 > free_angle ? closed_radius_q6 : 1.0;
+    /* at a singularity: the angle of the reference */
+    closed_cos_q6 = closed_radius_q6 > free_angle ? closed_along_q6/closed_length_q6
+        : cos(closed_reference_a6);
+    closed_across_q6 = closed_r22_from_q1*closed_sign_wrist;
+    closed_sin_q6 = closed_radius_q6 > free_angle ? closed_across_q6/closed_length_q6
+        : sin(closed_reference_a6);
+    closed_r31_from_q1_before_q6 = closed_cos_q6*goal_r31 - closed_sin_q6*goal_r32;
+    closed_r31_from_q1_before_q56 = closed_cos_q5*closed_r31_from_q1_before_q6
+        - closed_q6_radius_of_q5*goal_r33;
+    /* coordinate of the point that the remaining links must reach */
+    closed_wrist_x_from_q1 = closed_ahead_q1 - closed_r31_from_q1_before_q56*k->d5;
+    closed_r33_from_q1_before_q6 = closed_cos_q6*goal_r32 + closed_sin_q6*goal_r31;
+    /* coordinate of the point that the remaining links must reach */
+    closed_wrist_z_from_q1 = closed_wrist_z + closed_r33_from_q1_before_q6*k->d5 - k->d1;
+    /* distance that the remaining links must span */
+    closed_reach = sqrt(closed_wrist_x_from_q1*closed_wrist_x_from_q1
+        + closed_wrist_z_from_q1*closed_wrist_z_from_q1);
+    no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
+        && (closed_radius_q6 > free_angle) && (closed_reach > free_angle_times_machine_scale);
     shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
+    closed_axis_a1 = softkin_on_turn(k->offset_a1
+        + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
     closed_reference_a2 = ((from_the_met_pose ? tried_a2 : 17.0*free_turn + given_ref_a2) - k->offset_a2)
         *SOFTKIN_DEGREE;
     /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
@@ -477,9 +482,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     closed_axis_a6 = softkin_on_turn(k->offset_a6
         + softkin_angle_of(closed_sin_q6, closed_cos_q6)*SOFTKIN_RADIAN, closed_near_a6);
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
-    nearest_error_now = is_nearer ? error : nearest_error;
+    nearest_error_now = is_nearer ? error_left_over : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 79))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 89))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -497,13 +502,13 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a6 = (another || from_the_met_pose ? closed_axis_a6
         : (mirrors ? (beside_wrist ? 2.0*closed_axis_a6 - tried_a6 : tried_a6) : tried_a6
         + shared_quotient*step_a6));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 79) ? 0 : 64) : passes_left_now);
-    attempt = (no_start_is_left ? 80 : next_attempt);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 89) ? 0 : 64) : passes_left_now);
+    attempt = (no_start_is_left ? 90 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     nearest_error = nearest_error_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
-    turn_beside = ((next_attempt > 62) && (next_attempt < 79) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
+    turn_beside = ((next_attempt > 62) && (next_attempt < 89) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
         : turn_beside);
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);

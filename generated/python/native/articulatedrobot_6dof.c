@@ -242,27 +242,28 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       branch_elbow, r33_at_q4, r31_at_q5, r12_at_q4, r13_at_q5, q6, sin_q6, cos_q6, r13_at_q6, r22_at_q4,
       r23_at_q5, r23_at_q6, r32_at_q4, r33_at_q5, r33_at_q6, r12_at_q6, r22_at_q6, r32_at_q6, error_1,
       error_2, cos_q2, z_at_q3, z_at_q4, z_at_q5, z, error_3, error_4, error_5, error_6, value_in_error,
-      error, free_angle, nearest_turn_now, free_turn, closed_reference_a1, free_angle_times_machine_scale,
-      closed_divisor_q1, closed_cos_q1, closed_sin_q1, closed_r13_from_q1, closed_reference_a2,
-      closed_length_q2, closed_cos_q2, closed_sin_q2, closed_sin_q23, closed_cos_q23, closed_r33_from_q123,
-      closed_r23_from_q1, closed_radius_q4, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1,
+      error, free_angle, product_in_damping, damping, rate_1_1, z_minus_d1,
       cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4,
-      y_minus_y_at_q4, rate_1_4, z_minus_z_at_q5, y_minus_y_at_q5, rate_1_5, rate_1_6, product_in_damping,
-      damping, product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, x_minus_x_at_q4, rate_2_4,
-      x_minus_x_at_q5, rate_2_5, rate_2_6, product_1_2, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6,
-      product_1_3, rate_1_2_plus_rate_1_3, product_1_4, product_1_5, product_1_6, product_2_2, product_2_3,
+      y_minus_y_at_q4, rate_1_4, z_minus_z_at_q5, y_minus_y_at_q5, rate_1_5, rate_1_6, product_1_1, rate_2_1,
+      sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, x_minus_x_at_q4, rate_2_4, x_minus_x_at_q5,
+      rate_2_5, rate_2_6, product_1_2, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6, product_1_3,
+      rate_1_2_plus_rate_1_3, product_1_4, product_1_5, product_1_6, product_2_2, product_2_3,
       rate_2_2_plus_rate_2_3, product_2_4, product_2_5, product_2_6, product_3_3, rate_3_2_plus_rate_3_3,
       product_3_4, product_3_5, product_3_6, product_4_4, product_4_5, product_4_6, product_5_5, product_5_6,
       product_6_6, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6,
-      step_a1, sum_in_step_a2, step_a2, step_a3, step_a4, step_a5, step_a6, step_length, shrinking,
-      closed_axis_a2, closed_reference_a4, closed_direction_x_q4, closed_direction_y_q4, closed_axis_a4,
-      closed_r13_from_q123, closed_q4_radius_of_q5, closed_axis_a5, closed_r22_from_q1, closed_r12_from_q1,
-      closed_r32_from_q123, closed_direction_x_q6, closed_r21_from_q1, closed_r11_from_q1,
-      closed_r31_from_q123, closed_direction_y_q6, closed_axis_a6, nearest_error_now, shared_quotient;
+      step_a1, sum_in_step_a2, step_a2, step_a3, step_a4, step_a5, step_a6, step_length, error_left_over,
+      nearest_turn_now, free_turn, closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1,
+      closed_cos_q1, closed_sin_q1, closed_r13_from_q1, closed_reference_a2, closed_length_q2, closed_cos_q2,
+      closed_sin_q2, closed_sin_q23, closed_cos_q23, closed_r33_from_q123, closed_r23_from_q1,
+      closed_radius_q4, shrinking, closed_axis_a1, closed_axis_a2, closed_reference_a4,
+      closed_direction_x_q4, closed_direction_y_q4, closed_axis_a4, closed_r13_from_q123,
+      closed_q4_radius_of_q5, closed_axis_a5, closed_r22_from_q1, closed_r12_from_q1, closed_r32_from_q123,
+      closed_direction_x_q6, closed_r21_from_q1, closed_r11_from_q1, closed_r31_from_q123,
+      closed_direction_y_q6, closed_axis_a6, nearest_error_now, shared_quotient;
   int next_attempt, passes_left_now;
   bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, mirrors,
       from_the_met_pose, is_nearer, no_start_is_left;
-  for (int pass = 0; pass < 272; pass += 1) {
+  for (int pass = 0; pass < 282; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -354,46 +355,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
     from_the_met_pose = mirrors && (passes_left > 32); /* what is nearly free is known now */
     free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 1e-11;
-    is_nearer = (attempt > 1) && (attempt < 79) && (error < nearest_error);
-    nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
-    /* how far free angles are turned */
-    free_turn = next_attempt > 62 ? nearest_turn_now
-        + ((next_attempt > 62) && (next_attempt < 79) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
-    closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
-        *SOFTKIN_DEGREE;
-    free_angle_times_machine_scale = free_angle*k->machine_scale;
-    closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
-        ? closed_distance_q1*closed_distance_q1 : 1.0;
-    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    closed_cos_q1 = closed_distance_q1 > free_angle_times_machine_scale
-        ? (closed_ahead_q1*closed_wrist_x - closed_wrist_y*k->d3)/closed_divisor_q1
-        : cos(closed_reference_a1);
-    closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
-        ? (closed_ahead_q1*closed_wrist_y + closed_wrist_x*k->d3)/closed_divisor_q1
-        : sin(closed_reference_a1);
-    closed_r13_from_q1 = closed_cos_q1*goal_r13 + closed_sin_q1*goal_r23;
-    closed_reference_a2 = ((from_the_met_pose ? tried_a2 : 17.0*free_turn + given_ref_a2) - k->offset_a2)
-        *SOFTKIN_DEGREE;
-    closed_length_q2 = (closed_reach > free_angle_times_machine_scale) && (sum_in_closed_length_q2 > 0.0)
-        ? softkin_root(sum_in_closed_length_q2) : 1.0;
-    /* at a singularity: the angle of the reference */
-    closed_cos_q2 = closed_reach > free_angle_times_machine_scale ? closed_along_q2/closed_length_q2
-        : cos(closed_reference_a2);
-    closed_sin_q2 = closed_reach > free_angle_times_machine_scale ? closed_across_q2/closed_length_q2
-        : sin(closed_reference_a2);
-    closed_sin_q23 = closed_cos_q2*closed_sin_q3 + closed_cos_q3*closed_sin_q2;
-    closed_cos_q23 = closed_cos_q2*closed_cos_q3 - closed_sin_q2*closed_sin_q3;
-    closed_r33_from_q123 = closed_cos_q23*goal_r33 - closed_r13_from_q1*closed_sin_q23;
-    closed_r23_from_q1 = closed_cos_q1*goal_r23 - closed_sin_q1*goal_r13;
-    /* polar coordinates: the radius at angle q4 */
-    closed_radius_q4 = sqrt(closed_r23_from_q1*closed_r23_from_q1
-        + closed_r33_from_q123*closed_r33_from_q123);
-    no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
-        && (closed_radius_q4 > free_angle) && (closed_reach > free_angle_times_machine_scale);
-    closed_axis_a1 = softkin_on_turn(k->offset_a1
-        + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
+    product_in_damping = 0.001*error;
+    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
     rate_1_1 = -k->one_by_machine_scale*y;
-    rate_2_1 = k->one_by_machine_scale*x;
     z_minus_d1 = z - k->d1;
     cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
     rate_1_2 = -z_minus_d1*cos_q1_times_one_by_machine_scale;
@@ -406,10 +370,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     y_minus_y_at_q5 = y - y_at_q5;
     rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5);
     rate_1_6 = k->one_by_machine_scale*(r21_at_q5*z_minus_z_at_q5 - r31_at_q5*y_minus_y_at_q5);
-    product_in_damping = 0.001*error;
-    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
     product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4
         + rate_1_5*rate_1_5 + rate_1_6*rate_1_6;
+    rate_2_1 = k->one_by_machine_scale*x;
     sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
     rate_2_2 = -z_minus_d1*sin_q1_times_one_by_machine_scale;
     rate_2_3 = -z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
@@ -484,7 +447,49 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         + multiplier_5*r21_at_q5 + multiplier_6*r31_at_q5;
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3 + step_a4*step_a4
         + step_a5*step_a5 + step_a6*step_a6);
+    /* of the error, behind a step: what it does not reach, and its curvature */
+    error_left_over = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3
+        + multiplier_4*multiplier_4 + multiplier_5*multiplier_5 + multiplier_6*multiplier_6)*damping
+        + step_length*step_length;
+    is_nearer = (attempt > 1) && (attempt < 89) && (error_left_over < nearest_error);
+    nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
+    /* how far free angles are turned */
+    free_turn = next_attempt > 62 ? nearest_turn_now
+        + ((next_attempt > 62) && (next_attempt < 89) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
+    closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
+        *SOFTKIN_DEGREE;
+    free_angle_times_machine_scale = free_angle*k->machine_scale;
+    closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? closed_distance_q1*closed_distance_q1 : 1.0;
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
+    closed_cos_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*closed_wrist_x - closed_wrist_y*k->d3)/closed_divisor_q1
+        : cos(closed_reference_a1);
+    closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*closed_wrist_y + closed_wrist_x*k->d3)/closed_divisor_q1
+        : sin(closed_reference_a1);
+    closed_r13_from_q1 = closed_cos_q1*goal_r13 + closed_sin_q1*goal_r23;
+    closed_reference_a2 = ((from_the_met_pose ? tried_a2 : 17.0*free_turn + given_ref_a2) - k->offset_a2)
+        *SOFTKIN_DEGREE;
+    closed_length_q2 = (closed_reach > free_angle_times_machine_scale) && (sum_in_closed_length_q2 > 0.0)
+        ? softkin_root(sum_in_closed_length_q2) : 1.0;
+    /* at a singularity: the angle of the reference */
+    closed_cos_q2 = closed_reach > free_angle_times_machine_scale ? closed_along_q2/closed_length_q2
+        : cos(closed_reference_a2);
+    closed_sin_q2 = closed_reach > free_angle_times_machine_scale ? closed_across_q2/closed_length_q2
+        : sin(closed_reference_a2);
+    closed_sin_q23 = closed_cos_q2*closed_sin_q3 + closed_cos_q3*closed_sin_q2;
+    closed_cos_q23 = closed_cos_q2*closed_cos_q3 - closed_sin_q2*closed_sin_q3;
+    closed_r33_from_q123 = closed_cos_q23*goal_r33 - closed_r13_from_q1*closed_sin_q23;
+    closed_r23_from_q1 = closed_cos_q1*goal_r23 - closed_sin_q1*goal_r13;
+    /* polar coordinates: the radius at angle q4 */
+    closed_radius_q4 = sqrt(closed_r23_from_q1*closed_r23_from_q1
+        + closed_r33_from_q123*closed_r33_from_q123);
+    no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
+        && (closed_radius_q4 > free_angle) && (closed_reach > free_angle_times_machine_scale);
     shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
+    closed_axis_a1 = softkin_on_turn(k->offset_a1
+        + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
     closed_axis_a2 = softkin_on_turn(k->offset_a2
         + softkin_angle_of(closed_sin_q2, closed_cos_q2)*SOFTKIN_RADIAN, closed_near_a2);
     closed_reference_a4 = ((from_the_met_pose ? tried_a4 : 33.0*free_turn + given_ref_a4) - k->offset_a4)
@@ -515,9 +520,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     closed_axis_a6 = softkin_on_turn(k->offset_a6
         + softkin_angle_of(closed_direction_y_q6, closed_direction_x_q6)*SOFTKIN_RADIAN, closed_near_a6);
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
-    nearest_error_now = is_nearer ? error : nearest_error;
+    nearest_error_now = is_nearer ? error_left_over : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 79))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 89))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -535,13 +540,13 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
     tried_a6 = (another || from_the_met_pose ? closed_axis_a6
         : (mirrors ? tried_a6 : tried_a6 + shared_quotient*step_a6));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 79) ? 0 : 64) : passes_left_now);
-    attempt = (no_start_is_left ? 80 : next_attempt);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 89) ? 0 : 64) : passes_left_now);
+    attempt = (no_start_is_left ? 90 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     nearest_error = nearest_error_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
-    turn_beside = ((next_attempt > 62) && (next_attempt < 79) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
+    turn_beside = ((next_attempt > 62) && (next_attempt < 89) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
         : turn_beside);
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);

@@ -135,11 +135,11 @@ softkin_regular_all wrist3_regular_all;
 
 const softkin_native softkin_machines[] = {
     {"ac6_rzryryrxryrz_j6offset ed59c7855294de2f", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
-    {"ac6_threeparallel 59a8b03501bd6536", &ac6_threeparallel_mechanism,
+    {"ac6_threeparallel 329eee2824b12060", &ac6_threeparallel_mechanism,
         {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
     {"ac6_txtytzryrxrz ac3745f001f1f084", &ac6_txtytzryrxrz_mechanism,
         {ac6_txtytzryrxrz_regular, ac6_txtytzryrxrz_regular_all}},
-    {"articulatedrobot_6dof 4446a417b1ccc603", &articulatedrobot_6dof_mechanism,
+    {"articulatedrobot_6dof 9ccf3e0e16ef9815", &articulatedrobot_6dof_mechanism,
         {articulatedrobot_6dof_regular, articulatedrobot_6dof_regular_all}},
     {"bipod_rotary d973252ce7289b03", &bipod_rotary_mechanism,
         {bipod_rotary_regular, bipod_rotary_regular_all}},
@@ -174,7 +174,7 @@ const softkin_native softkin_machines[] = {
     {"planar_3rrr f04a9ff596d0873e", &planar_3rrr_mechanism, {NULL, NULL}},
     {"polar 63e63aa1adf79828", &polar_mechanism, {polar_regular, NULL}},
     {"polar_z b7a26f180c0cd0f3", &polar_z_mechanism, {polar_z_regular, NULL}},
-    {"pos_rrr 613eeccc81801b63", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
+    {"pos_rrr ae67f8d8c54473be", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
     {"scara2_z ff39094f55362158", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},
     {"scara3_ccz a8cd7b2dce6d210f", &scara3_ccz_mechanism, {scara3_ccz_regular, scara3_ccz_regular_all}},
     {"scara3_z 81f1601a0b406156", &scara3_z_mechanism, {scara3_z_regular, scara3_z_regular_all}},

@@ -165,17 +165,17 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   double q1, sin_q1, cos_q1, x_at_q2, q2, sin_q2, r13_at_q2, x_at_q3, q3, q2_plus_q3, cos_q23, r11_at_q23,
       sin_q23, r13_at_q23, x, y_at_q2, r23_at_q2, y_at_q3, r21_at_q23, r23_at_q23, y, branch_arm, sin_q3,
       cos_q3, branch_elbow, error_1, error_2, cos_q2, z_at_q3, z, error_3, error, free_angle,
-      free_angle_times_machine_scale, nearest_turn_now, free_turn, closed_reference_a1, closed_divisor_q1,
-      closed_cos_q1, closed_sin_q1, closed_axis_a1, rate_1_1, rate_2_1, z_minus_d1,
-      cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, product_in_damping, damping,
-      product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, product_1_2, rate_3_2, rate_3_3,
-      product_1_3, product_2_2, product_2_3, product_3_3, multiplier_1, multiplier_2, multiplier_3, step_a1,
-      step_a2, step_a3, step_length, shrinking, closed_reference_a2, closed_direction_x_q2,
-      closed_direction_y_q2, closed_axis_a2, nearest_error_now, shared_quotient;
+      free_angle_times_machine_scale, rate_1_1, rate_2_1, z_minus_d1, cos_q1_times_one_by_machine_scale,
+      rate_1_2, z_minus_z_at_q3, rate_1_3, product_in_damping, damping, product_1_1,
+      sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, product_1_2, rate_3_2, rate_3_3, product_1_3,
+      product_2_2, product_2_3, product_3_3, multiplier_1, multiplier_2, multiplier_3, step_a1, step_a2,
+      step_a3, step_length, shrinking, error_left_over, nearest_turn_now, free_turn, closed_reference_a1,
+      closed_divisor_q1, closed_cos_q1, closed_sin_q1, closed_axis_a1, closed_reference_a2,
+      closed_direction_x_q2, closed_direction_y_q2, closed_axis_a2, nearest_error_now, shared_quotient;
   int next_attempt, passes_left_now;
   bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, mirrors, from_the_met_pose,
       no_start_is_left, is_nearer;
-  for (int pass = 0; pass < 272; pass += 1) {
+  for (int pass = 0; pass < 282; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -222,22 +222,6 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     free_angle_times_machine_scale = free_angle*k->machine_scale;
     no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
         && (closed_reach > free_angle_times_machine_scale);
-    is_nearer = (attempt > 1) && (attempt < 79) && (error < nearest_error);
-    nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
-    /* how far free angles are turned */
-    free_turn = next_attempt > 62 ? nearest_turn_now
-        + ((next_attempt > 62) && (next_attempt < 79) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
-    closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
-        *SOFTKIN_DEGREE;
-    closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
-        ? closed_distance_q1*closed_distance_q1 : 1.0;
-    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    closed_cos_q1 = closed_distance_q1 > free_angle_times_machine_scale
-        ? (closed_ahead_q1*goal_x - k->d3*goal_y)/closed_divisor_q1 : cos(closed_reference_a1);
-    closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
-        ? (closed_ahead_q1*goal_y + k->d3*goal_x)/closed_divisor_q1 : sin(closed_reference_a1);
-    closed_axis_a1 = softkin_on_turn(k->offset_a1
-        + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
     rate_1_1 = -k->one_by_machine_scale*y;
     rate_2_1 = k->one_by_machine_scale*x;
     z_minus_d1 = z - k->d1;
@@ -269,6 +253,25 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     step_a3 = multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3);
     shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
+    /* of the error, behind a step: what it does not reach, and its curvature */
+    error_left_over = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3)
+        *damping + step_length*step_length;
+    is_nearer = (attempt > 1) && (attempt < 89) && (error_left_over < nearest_error);
+    nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
+    /* how far free angles are turned */
+    free_turn = next_attempt > 62 ? nearest_turn_now
+        + ((next_attempt > 62) && (next_attempt < 89) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
+    closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
+        *SOFTKIN_DEGREE;
+    closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? closed_distance_q1*closed_distance_q1 : 1.0;
+    /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
+    closed_cos_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*goal_x - k->d3*goal_y)/closed_divisor_q1 : cos(closed_reference_a1);
+    closed_sin_q1 = closed_distance_q1 > free_angle_times_machine_scale
+        ? (closed_ahead_q1*goal_y + k->d3*goal_x)/closed_divisor_q1 : sin(closed_reference_a1);
+    closed_axis_a1 = softkin_on_turn(k->offset_a1
+        + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
     closed_reference_a2 = ((from_the_met_pose ? tried_a2 : 17.0*free_turn + given_ref_a2) - k->offset_a2)
         *SOFTKIN_DEGREE;
     /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
@@ -281,9 +284,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     closed_axis_a2 = softkin_on_turn(k->offset_a2
         + softkin_angle_of(closed_direction_y_q2, closed_direction_x_q2)*SOFTKIN_RADIAN, closed_near_a2);
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
-    nearest_error_now = is_nearer ? error : nearest_error;
+    nearest_error_now = is_nearer ? error_left_over : nearest_error;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 79))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 89))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -294,13 +297,13 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a3 = (another || from_the_met_pose ? closed_axis_a3
         : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
         + shared_quotient*step_a3));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 79) ? 0 : 64) : passes_left_now);
-    attempt = (no_start_is_left ? 80 : next_attempt);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 89) ? 0 : 64) : passes_left_now);
+    attempt = (no_start_is_left ? 90 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     nearest_error = nearest_error_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
-    turn_beside = ((next_attempt > 62) && (next_attempt < 79) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
+    turn_beside = ((next_attempt > 62) && (next_attempt < 89) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
         : turn_beside);
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);

@@ -35,9 +35,9 @@ counted together):
     inverse: 86 additions, 89 multiplications, 12 divisions, 6 square roots, 6 sines
     inverse, all 8 branches: 495 additions, 376 multiplications, 52 divisions, 17 square roots, 34 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 96618 additions, 126799 multiplications, 4899 divisions, 1092
-    square roots, 6807 sines
-    steps of damped least squares on the closure, from one start after the other: at most 272 passes, all of
+    a branch at a singular pose, in addition: 101860 additions, 133715 multiplications, 5079 divisions, 1414
+    square roots, 7057 sines
+    steps of damped least squares on the closure, from one start after the other: at most 282 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -109,7 +109,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof 4446a417b1ccc603"
+    KEY = "articulatedrobot_6dof 9ccf3e0e16ef9815"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -418,7 +418,7 @@ class ArticulatedRobot6DOF(Mechanism):
             turn_of_attempt,
             turn_beside,
         ) = start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(272):
+        for _ in range(282):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -546,69 +546,9 @@ class ArticulatedRobot6DOF(Mechanism):
             mirrors = pose_is_close and (beside_arm or beside_elbow or beside_hand)
             from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
             free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
-            is_nearer = (attempt > 1) and (attempt < 79) and (error < nearest_error)
-            nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
-            # how far free angles are turned
-            free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 79) else 0.0)
-                if next_attempt > 62
-                else -360.0 * (1 - next_attempt) / 61.0
-            )
-            closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
-            free_angle_times_machine_scale = free_angle * machine_scale
-            closed_divisor_q1 = (
-                closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
-            )
-            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
-            closed_cos_q1 = (
-                (closed_ahead_q1 * closed_wrist_x - closed_wrist_y * d3) / closed_divisor_q1
-                if closed_distance_q1 > free_angle_times_machine_scale
-                else cos(closed_reference_a1)
-            )
-            closed_sin_q1 = (
-                (closed_ahead_q1 * closed_wrist_y + closed_wrist_x * d3) / closed_divisor_q1
-                if closed_distance_q1 > free_angle_times_machine_scale
-                else sin(closed_reference_a1)
-            )
-            closed_r13_from_q1 = closed_cos_q1 * goal_r13 + closed_sin_q1 * goal_r23
-            closed_reference_a2 = (
-                (tried_a2 if from_the_met_pose else 17.0 * free_turn + given_ref_a2) - offset_a2
-            ) * DEGREE
-            closed_length_q2 = (
-                (sqrt(sum_in_closed_length_q2) if sum_in_closed_length_q2 > 0.0 else 0.0)
-                if (closed_reach > free_angle_times_machine_scale) and (sum_in_closed_length_q2 > 0.0)
-                else 1.0
-            )
-            # at a singularity: the angle of the reference
-            closed_cos_q2 = (
-                closed_along_q2 / closed_length_q2
-                if closed_reach > free_angle_times_machine_scale
-                else cos(closed_reference_a2)
-            )
-            closed_sin_q2 = (
-                closed_across_q2 / closed_length_q2
-                if closed_reach > free_angle_times_machine_scale
-                else sin(closed_reference_a2)
-            )
-            closed_sin_q23 = closed_cos_q2 * closed_sin_q3 + closed_cos_q3 * closed_sin_q2
-            closed_cos_q23 = closed_cos_q2 * closed_cos_q3 - closed_sin_q2 * closed_sin_q3
-            closed_r33_from_q123 = closed_cos_q23 * goal_r33 - closed_r13_from_q1 * closed_sin_q23
-            closed_r23_from_q1 = closed_cos_q1 * goal_r23 - closed_sin_q1 * goal_r13
-            # polar coordinates: the radius at angle q4
-            closed_radius_q4 = sqrt(
-                closed_r23_from_q1 * closed_r23_from_q1 + closed_r33_from_q123 * closed_r33_from_q123
-            )
-            no_start_is_left = (
-                another
-                and (closed_distance_q1 > free_angle_times_machine_scale)
-                and (closed_radius_q4 > free_angle)
-                and (closed_reach > free_angle_times_machine_scale)
-            )
-            closed_axis_a1 = nearest_period(
-                offset_a1 + arctan2(closed_sin_q1 + 0.0, closed_cos_q1 + 0.0) * RADIAN, closed_near_a1
-            )
+            product_in_damping = 0.001 * error
+            damping = max(1e-13, product_in_damping)
             rate_1_1 = -one_by_machine_scale * y
-            rate_2_1 = one_by_machine_scale * x
             z_minus_d1 = z - d1
             cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
             rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
@@ -621,8 +561,6 @@ class ArticulatedRobot6DOF(Mechanism):
             y_minus_y_at_q5 = y - y_at_q5
             rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
             rate_1_6 = one_by_machine_scale * (r21_at_q5 * z_minus_z_at_q5 - r31_at_q5 * y_minus_y_at_q5)
-            product_in_damping = 0.001 * error
-            damping = max(1e-13, product_in_damping)
             product_1_1 = (
                 damping
                 + rate_1_1 * rate_1_1
@@ -632,6 +570,7 @@ class ArticulatedRobot6DOF(Mechanism):
                 + rate_1_5 * rate_1_5
                 + rate_1_6 * rate_1_6
             )
+            rate_2_1 = one_by_machine_scale * x
             sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
             rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
             rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
@@ -775,7 +714,81 @@ class ArticulatedRobot6DOF(Mechanism):
                 + step_a5 * step_a5
                 + step_a6 * step_a6
             )
+            # of the error, behind a step: what it does not reach, and its curvature
+            error_left_over = (
+                sqrt(
+                    multiplier_1 * multiplier_1
+                    + multiplier_2 * multiplier_2
+                    + multiplier_3 * multiplier_3
+                    + multiplier_4 * multiplier_4
+                    + multiplier_5 * multiplier_5
+                    + multiplier_6 * multiplier_6
+                )
+                * damping
+                + step_length * step_length
+            )
+            is_nearer = (attempt > 1) and (attempt < 89) and (error_left_over < nearest_error)
+            nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
+            # how far free angles are turned
+            free_turn = (
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 89) else 0.0)
+                if next_attempt > 62
+                else -360.0 * (1 - next_attempt) / 61.0
+            )
+            closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
+            free_angle_times_machine_scale = free_angle * machine_scale
+            closed_divisor_q1 = (
+                closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = (
+                (closed_ahead_q1 * closed_wrist_x - closed_wrist_y * d3) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else cos(closed_reference_a1)
+            )
+            closed_sin_q1 = (
+                (closed_ahead_q1 * closed_wrist_y + closed_wrist_x * d3) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else sin(closed_reference_a1)
+            )
+            closed_r13_from_q1 = closed_cos_q1 * goal_r13 + closed_sin_q1 * goal_r23
+            closed_reference_a2 = (
+                (tried_a2 if from_the_met_pose else 17.0 * free_turn + given_ref_a2) - offset_a2
+            ) * DEGREE
+            closed_length_q2 = (
+                (sqrt(sum_in_closed_length_q2) if sum_in_closed_length_q2 > 0.0 else 0.0)
+                if (closed_reach > free_angle_times_machine_scale) and (sum_in_closed_length_q2 > 0.0)
+                else 1.0
+            )
+            # at a singularity: the angle of the reference
+            closed_cos_q2 = (
+                closed_along_q2 / closed_length_q2
+                if closed_reach > free_angle_times_machine_scale
+                else cos(closed_reference_a2)
+            )
+            closed_sin_q2 = (
+                closed_across_q2 / closed_length_q2
+                if closed_reach > free_angle_times_machine_scale
+                else sin(closed_reference_a2)
+            )
+            closed_sin_q23 = closed_cos_q2 * closed_sin_q3 + closed_cos_q3 * closed_sin_q2
+            closed_cos_q23 = closed_cos_q2 * closed_cos_q3 - closed_sin_q2 * closed_sin_q3
+            closed_r33_from_q123 = closed_cos_q23 * goal_r33 - closed_r13_from_q1 * closed_sin_q23
+            closed_r23_from_q1 = closed_cos_q1 * goal_r23 - closed_sin_q1 * goal_r13
+            # polar coordinates: the radius at angle q4
+            closed_radius_q4 = sqrt(
+                closed_r23_from_q1 * closed_r23_from_q1 + closed_r33_from_q123 * closed_r33_from_q123
+            )
+            no_start_is_left = (
+                another
+                and (closed_distance_q1 > free_angle_times_machine_scale)
+                and (closed_radius_q4 > free_angle)
+                and (closed_reach > free_angle_times_machine_scale)
+            )
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
+            closed_axis_a1 = nearest_period(
+                offset_a1 + arctan2(closed_sin_q1 + 0.0, closed_cos_q1 + 0.0) * RADIAN, closed_near_a1
+            )
             closed_axis_a2 = nearest_period(
                 offset_a2 + arctan2(closed_sin_q2 + 0.0, closed_cos_q2 + 0.0) * RADIAN, closed_near_a2
             )
@@ -815,9 +828,9 @@ class ArticulatedRobot6DOF(Mechanism):
                 offset_a6 + arctan2(closed_direction_y_q6 + 0.0, closed_direction_x_q6 + 0.0) * RADIAN, closed_near_a6
             )
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            nearest_error_now = error if is_nearer else nearest_error
+            nearest_error_now = error_left_over if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 79)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -861,15 +874,15 @@ class ArticulatedRobot6DOF(Mechanism):
                 if another or from_the_met_pose
                 else (tried_a6 if mirrors else tried_a6 + shared_quotient * step_a6)
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 79) else 64) if another else passes_left_now
-            attempt = 80 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
+            attempt = 90 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 79)
+                if (next_attempt > 62) and (next_attempt < 89)
                 else turn_beside
             )
         chosen_a1 = tried_a1

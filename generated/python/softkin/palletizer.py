@@ -323,7 +323,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             turn_of_attempt,
             turn_beside,
         ) = start_a1, start_a2, start_a3, start_a4, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(272):
+        for _ in range(282):
             a1 = (tried_a1 - offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -373,11 +373,53 @@ class Palletizer(OffsetKinematics, TwistChoice):
             mirrors = pose_is_close and (beside_elbow or beside_shoulder)
             from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
             free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
-            is_nearer = (attempt > 1) and (attempt < 79) and (error < nearest_error)
+            product_in_damping = 0.001 * error
+            damping = max(1e-13, product_in_damping)
+            rate_1_1 = -one_by_machine_scale * y
+            z_minus_z_at_a2_a3 = z - z_at_a2_a3
+            sum_in_rate_1_2 = base_height + z_minus_z_at_a2_a3 - z
+            rate_1_2 = -one_by_machine_scale * sum_in_rate_1_2 * cos_a1
+            sum_in_rate_1_3 = z_at_a3 + z_minus_z_at_a2_a3 - z
+            rate_1_3 = one_by_machine_scale * sum_in_rate_1_3 * cos_a1
+            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            rate_2_1 = one_by_machine_scale * x
+            rate_2_2 = -one_by_machine_scale * sum_in_rate_1_2 * sin_a1
+            rate_2_3 = one_by_machine_scale * sum_in_rate_1_3 * sin_a1
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            x_minus_x_at_a2_a3 = x - x_at_a2_a3
+            y_minus_y_at_a2_a3 = y - y_at_a2_a3
+            rate_3_2 = one_by_machine_scale * (
+                (x_at_a2 + x_minus_x_at_a2_a3 - x) * cos_a1 + (y_at_a2 + y_minus_y_at_a2_a3 - y) * sin_a1
+            )
+            rate_3_3 = -one_by_machine_scale * (
+                (x_at_a3 + x_minus_x_at_a2_a3 - x) * cos_a1 + (y_at_a3 + y_minus_y_at_a2_a3 - y) * sin_a1
+            )
+            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
+            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
+            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            _, multiplier_1, multiplier_2, multiplier_3 = solve(
+                (
+                    (product_1_1, product_1_2, product_1_3),
+                    (product_1_2, product_2_2, product_2_3),
+                    (product_1_3, product_2_3, product_3_3),
+                ),
+                ((error_1,), (error_2,), (error_3,)),
+            )
+            step_a1 = multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
+            # of the error, behind a step: what it does not reach, and its curvature
+            error_left_over = (
+                sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
+                + step_length * step_length
+            )
+            is_nearer = (attempt > 1) and (attempt < 89) and (error_left_over < nearest_error)
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 79) else 0.0)
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 89) else 0.0)
                 if next_attempt > 62
                 else -360.0 * (1 - next_attempt) / 61.0
             )
@@ -408,6 +450,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 and (closed_distance_a1 > free_angle_times_machine_scale)
                 and (closed_reach > free_angle_times_machine_scale)
             )
+            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
             closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             closed_divisor_a1 = (
                 closed_distance_a1 * closed_distance_a1 if closed_distance_a1 > free_angle_times_machine_scale else 1.0
@@ -426,44 +469,6 @@ class Palletizer(OffsetKinematics, TwistChoice):
             closed_axis_a1 = nearest_period(
                 offset_a1 + arctan2(closed_sin_a1 + 0.0, closed_cos_a1 + 0.0) * RADIAN, closed_near_a1
             )
-            rate_1_1 = -one_by_machine_scale * y
-            rate_2_1 = one_by_machine_scale * x
-            z_minus_z_at_a2_a3 = z - z_at_a2_a3
-            sum_in_rate_1_2 = base_height + z_minus_z_at_a2_a3 - z
-            rate_1_2 = -one_by_machine_scale * sum_in_rate_1_2 * cos_a1
-            sum_in_rate_1_3 = z_at_a3 + z_minus_z_at_a2_a3 - z
-            rate_1_3 = one_by_machine_scale * sum_in_rate_1_3 * cos_a1
-            product_in_damping = 0.001 * error
-            damping = max(1e-13, product_in_damping)
-            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
-            rate_2_2 = -one_by_machine_scale * sum_in_rate_1_2 * sin_a1
-            rate_2_3 = one_by_machine_scale * sum_in_rate_1_3 * sin_a1
-            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
-            x_minus_x_at_a2_a3 = x - x_at_a2_a3
-            y_minus_y_at_a2_a3 = y - y_at_a2_a3
-            rate_3_2 = one_by_machine_scale * (
-                (x_at_a2 + x_minus_x_at_a2_a3 - x) * cos_a1 + (y_at_a2 + y_minus_y_at_a2_a3 - y) * sin_a1
-            )
-            rate_3_3 = -one_by_machine_scale * (
-                (x_at_a3 + x_minus_x_at_a2_a3 - x) * cos_a1 + (y_at_a3 + y_minus_y_at_a2_a3 - y) * sin_a1
-            )
-            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
-            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
-            product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
-            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
-            _, multiplier_1, multiplier_2, multiplier_3 = solve(
-                (
-                    (product_1_1, product_1_2, product_1_3),
-                    (product_1_2, product_2_2, product_2_3),
-                    (product_1_3, product_2_3, product_3_3),
-                ),
-                ((error_1,), (error_2,), (error_3,)),
-            )
-            step_a1 = multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
-            step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
-            step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
-            step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
-            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
             closed_reference_a2 = (
                 (tried_a2 if from_the_met_pose else 17.0 * free_turn + given_ref_a2) - offset_a2
             ) * DEGREE
@@ -508,9 +513,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) * RADIAN, closed_near_a3
             )
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            nearest_error_now = error if is_nearer else nearest_error
+            nearest_error_now = error_left_over if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 79)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -532,15 +537,15 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 else (tried_a3 if mirrors else tried_a3 + shared_quotient * step_a3)
             )
             tried_a4 = given_ref_a4 if another or from_the_met_pose else tried_a4
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 79) else 64) if another else passes_left_now
-            attempt = 80 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
+            attempt = 90 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 79)
+                if (next_attempt > 62) and (next_attempt < 89)
                 else turn_beside
             )
         chosen_a1 = tried_a1

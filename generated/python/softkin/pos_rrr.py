@@ -26,9 +26,9 @@ counted together):
     forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
     inverse: 46 additions, 39 multiplications, 7 divisions, 4 square roots, 3 sines
     inverse, all 4 branches: 161 additions, 118 multiplications, 20 divisions, 9 square roots, 10 sines
-    a branch at a singular pose, in addition: 24244 additions, 34845 multiplications, 2723 divisions, 548
-    square roots, 3813 sines
-    steps of damped least squares on the closure, from one start after the other: at most 272 passes, all of
+    a branch at a singular pose, in addition: 25980 additions, 37535 multiplications, 2823 divisions, 850
+    square roots, 3953 sines
+    steps of damped least squares on the closure, from one start after the other: at most 282 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -98,7 +98,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr 613eeccc81801b63"
+    KEY = "pos_rrr ae67f8d8c54473be"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -307,7 +307,7 @@ class PosRRR(OffsetKinematics):
             turn_of_attempt,
             turn_beside,
         ) = start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(272):
+        for _ in range(282):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -357,32 +357,6 @@ class PosRRR(OffsetKinematics):
                 and (closed_distance_q1 > free_angle_times_machine_scale)
                 and (closed_reach > free_angle_times_machine_scale)
             )
-            is_nearer = (attempt > 1) and (attempt < 79) and (error < nearest_error)
-            nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
-            # how far free angles are turned
-            free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 79) else 0.0)
-                if next_attempt > 62
-                else -360.0 * (1 - next_attempt) / 61.0
-            )
-            closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
-            closed_divisor_q1 = (
-                closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
-            )
-            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
-            closed_cos_q1 = (
-                (closed_ahead_q1 * goal_x - d3 * goal_y) / closed_divisor_q1
-                if closed_distance_q1 > free_angle_times_machine_scale
-                else cos(closed_reference_a1)
-            )
-            closed_sin_q1 = (
-                (closed_ahead_q1 * goal_y + d3 * goal_x) / closed_divisor_q1
-                if closed_distance_q1 > free_angle_times_machine_scale
-                else sin(closed_reference_a1)
-            )
-            closed_axis_a1 = nearest_period(
-                offset_a1 + arctan2(closed_sin_q1 + 0.0, closed_cos_q1 + 0.0) * RADIAN, closed_near_a1
-            )
             rate_1_1 = -one_by_machine_scale * y
             rate_2_1 = one_by_machine_scale * x
             z_minus_d1 = z - d1
@@ -416,6 +390,37 @@ class PosRRR(OffsetKinematics):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
+            # of the error, behind a step: what it does not reach, and its curvature
+            error_left_over = (
+                sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
+                + step_length * step_length
+            )
+            is_nearer = (attempt > 1) and (attempt < 89) and (error_left_over < nearest_error)
+            nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
+            # how far free angles are turned
+            free_turn = (
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 89) else 0.0)
+                if next_attempt > 62
+                else -360.0 * (1 - next_attempt) / 61.0
+            )
+            closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
+            closed_divisor_q1 = (
+                closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = (
+                (closed_ahead_q1 * goal_x - d3 * goal_y) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else cos(closed_reference_a1)
+            )
+            closed_sin_q1 = (
+                (closed_ahead_q1 * goal_y + d3 * goal_x) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else sin(closed_reference_a1)
+            )
+            closed_axis_a1 = nearest_period(
+                offset_a1 + arctan2(closed_sin_q1 + 0.0, closed_cos_q1 + 0.0) * RADIAN, closed_near_a1
+            )
             closed_reference_a2 = (
                 (tried_a2 if from_the_met_pose else 17.0 * free_turn + given_ref_a2) - offset_a2
             ) * DEGREE
@@ -435,9 +440,9 @@ class PosRRR(OffsetKinematics):
                 offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
             )
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            nearest_error_now = error if is_nearer else nearest_error
+            nearest_error_now = error_left_over if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 79)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -462,15 +467,15 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 79) else 64) if another else passes_left_now
-            attempt = 80 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
+            attempt = 90 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 79)
+                if (next_attempt > 62) and (next_attempt < 89)
                 else turn_beside
             )
         chosen_a1 = tried_a1
@@ -590,7 +595,7 @@ class PosRRR(OffsetKinematics):
             turn_of_attempt,
             turn_beside,
         ) = start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(272):
+        for _ in range(282):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -643,32 +648,6 @@ class PosRRR(OffsetKinematics):
                 and (closed_distance_q1 > free_angle_times_machine_scale)
                 and (closed_reach > free_angle_times_machine_scale)
             )
-            is_nearer = (attempt > 1) and (attempt < 79) and (error < nearest_error)
-            nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
-            # how far free angles are turned
-            free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 79) else 0.0)
-                if next_attempt > 62
-                else -360.0 * (1 - next_attempt) / 61.0
-            )
-            closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
-            closed_divisor_q1 = (
-                closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
-            )
-            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
-            closed_cos_q1 = (
-                (closed_ahead_q1 * goal_x + closed_tool_y * goal_y) / closed_divisor_q1
-                if closed_distance_q1 > free_angle_times_machine_scale
-                else cos(closed_reference_a1)
-            )
-            closed_sin_q1 = (
-                (closed_ahead_q1 * goal_y - closed_tool_y * goal_x) / closed_divisor_q1
-                if closed_distance_q1 > free_angle_times_machine_scale
-                else sin(closed_reference_a1)
-            )
-            closed_axis_a1 = nearest_period(
-                offset_a1 + arctan2(closed_sin_q1 + 0.0, closed_cos_q1 + 0.0) * RADIAN, closed_near_a1
-            )
             rate_1_1 = -one_by_machine_scale * y
             rate_2_1 = one_by_machine_scale * x
             z_minus_d1 = z - d1
@@ -702,6 +681,37 @@ class PosRRR(OffsetKinematics):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
+            # of the error, behind a step: what it does not reach, and its curvature
+            error_left_over = (
+                sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
+                + step_length * step_length
+            )
+            is_nearer = (attempt > 1) and (attempt < 89) and (error_left_over < nearest_error)
+            nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
+            # how far free angles are turned
+            free_turn = (
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 89) else 0.0)
+                if next_attempt > 62
+                else -360.0 * (1 - next_attempt) / 61.0
+            )
+            closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
+            closed_divisor_q1 = (
+                closed_distance_q1 * closed_distance_q1 if closed_distance_q1 > free_angle_times_machine_scale else 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = (
+                (closed_ahead_q1 * goal_x + closed_tool_y * goal_y) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else cos(closed_reference_a1)
+            )
+            closed_sin_q1 = (
+                (closed_ahead_q1 * goal_y - closed_tool_y * goal_x) / closed_divisor_q1
+                if closed_distance_q1 > free_angle_times_machine_scale
+                else sin(closed_reference_a1)
+            )
+            closed_axis_a1 = nearest_period(
+                offset_a1 + arctan2(closed_sin_q1 + 0.0, closed_cos_q1 + 0.0) * RADIAN, closed_near_a1
+            )
             closed_reference_a2 = (
                 (tried_a2 if from_the_met_pose else 17.0 * free_turn + given_ref_a2) - offset_a2
             ) * DEGREE
@@ -721,9 +731,9 @@ class PosRRR(OffsetKinematics):
                 offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
             )
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            nearest_error_now = error if is_nearer else nearest_error
+            nearest_error_now = error_left_over if is_nearer else nearest_error
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 79)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -748,15 +758,15 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 79) else 64) if another else passes_left_now
-            attempt = 80 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
+            attempt = 90 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             nearest_error = nearest_error_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 79)
+                if (next_attempt > 62) and (next_attempt < 89)
                 else turn_beside
             )
         chosen_a1 = tried_a1

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 428
+    VALUES = 429
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -136,7 +136,7 @@ class ArrayPrograms(Programs):
         ) = initial(
             start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
         )
-        for _ in range(272):
+        for _ in range(282):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -261,73 +261,9 @@ class ArrayPrograms(Programs):
             mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_wrist)
             from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
             free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 79) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
-            # how far free angles are turned
-            free_turn = select(
-                next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 79), turn_beside, 0.0),
-                -360.0 * (1 - next_attempt) / 61.0,
-            )
-            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
-            free_angle_times_machine_scale = free_angle * k.machine_scale
-            closed_divisor_q1 = select(
-                closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
-            )
-            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
-            closed_cos_q1 = select(
-                closed_distance_q1 > free_angle_times_machine_scale,
-                (closed_ahead_q1 * closed_wrist_x - closed_wrist_y * k.d4) / closed_divisor_q1,
-                cos(closed_reference_a1),
-            )
-            closed_sin_q1 = select(
-                closed_distance_q1 > free_angle_times_machine_scale,
-                (closed_ahead_q1 * closed_wrist_y + closed_wrist_x * k.d4) / closed_divisor_q1,
-                sin(closed_reference_a1),
-            )
-            closed_r21_from_q1 = closed_cos_q1 * goal_r21 - closed_sin_q1 * goal_r11
-            closed_r22_from_q1 = closed_cos_q1 * goal_r22 - closed_sin_q1 * goal_r12
-            # polar coordinates: the radius at angle q6
-            closed_radius_q6 = sqrt(closed_r21_from_q1 * closed_r21_from_q1 + closed_r22_from_q1 * closed_r22_from_q1)
-            closed_q6_radius_of_q5 = given_sigma_wrist * closed_radius_q6
-            # cosine and sine of q5 from the q6 radius and r22 equations
-            closed_cos_q5 = closed_sin_q1 * goal_r13 - closed_cos_q1 * goal_r23
-            closed_reference_a6 = (
-                select(from_the_met_pose, tried_a6, 21.0 * free_turn + given_ref_a6) - k.offset_a6
-            ) * DEGREE
-            # polar coordinates: angle q6 from the r21 and r23 equations
-            closed_along_q6 = -given_sigma_wrist * closed_r21_from_q1
-            closed_length_q6 = select(closed_radius_q6 > free_angle, closed_radius_q6, 1.0)
-            # at a singularity: the angle of the reference
-            closed_cos_q6 = select(
-                closed_radius_q6 > free_angle, closed_along_q6 / closed_length_q6, cos(closed_reference_a6)
-            )
-            closed_across_q6 = given_sigma_wrist * closed_r22_from_q1
-            closed_sin_q6 = select(
-                closed_radius_q6 > free_angle, closed_across_q6 / closed_length_q6, sin(closed_reference_a6)
-            )
-            closed_r31_from_q1_before_q6 = closed_cos_q6 * goal_r31 - closed_sin_q6 * goal_r32
-            closed_r31_from_q1_before_q56 = (
-                closed_cos_q5 * closed_r31_from_q1_before_q6 - closed_q6_radius_of_q5 * goal_r33
-            )
-            # coordinate of the point that the remaining links must reach
-            closed_wrist_x_from_q1 = closed_ahead_q1 - closed_r31_from_q1_before_q56 * k.d5
-            closed_r33_from_q1_before_q6 = closed_cos_q6 * goal_r32 + closed_sin_q6 * goal_r31
-            # coordinate of the point that the remaining links must reach
-            closed_wrist_z_from_q1 = closed_wrist_z + closed_r33_from_q1_before_q6 * k.d5 - k.d1
-            # distance that the remaining links must span
-            closed_reach = sqrt(
-                closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
-            )
-            no_start_is_left = (
-                another
-                & (closed_distance_q1 > free_angle_times_machine_scale)
-                & (closed_radius_q6 > free_angle)
-                & (closed_reach > free_angle_times_machine_scale)
-            )
-            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
+            product_in_damping = 0.001 * error
+            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
             rate_1_1 = -k.one_by_machine_scale * y
-            rate_2_1 = k.one_by_machine_scale * x
             z_minus_d1 = z - k.d1
             cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
             rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
@@ -340,8 +276,6 @@ class ArrayPrograms(Programs):
             z_minus_z_at_q6 = z - z_at_q6
             y_minus_y_at_q6 = y - y_at_q6
             rate_1_6 = (r32_at_q5 * y_minus_y_at_q6 - r22_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
-            product_in_damping = 0.001 * error
-            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
             product_1_1 = (
                 damping
                 + rate_1_1 * rate_1_1
@@ -351,6 +285,7 @@ class ArrayPrograms(Programs):
                 + rate_1_5 * rate_1_5
                 + rate_1_6 * rate_1_6
             )
+            rate_2_1 = k.one_by_machine_scale * x
             sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
             rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
             rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
@@ -461,7 +396,85 @@ class ArrayPrograms(Programs):
                 + step_a5 * step_a5
                 + step_a6 * step_a6
             )
+            # of the error, behind a step: what it does not reach, and its curvature
+            error_left_over = (
+                sqrt(
+                    multiplier_1 * multiplier_1
+                    + multiplier_2 * multiplier_2
+                    + multiplier_3 * multiplier_3
+                    + multiplier_4 * multiplier_4
+                    + multiplier_5 * multiplier_5
+                    + multiplier_6 * multiplier_6
+                )
+                * damping
+                + step_length * step_length
+            )
+            is_nearer = (attempt > 1) & (attempt < 89) & (error_left_over < nearest_error)
+            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
+            # how far free angles are turned
+            free_turn = select(
+                next_attempt > 62,
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 89), turn_beside, 0.0),
+                -360.0 * (1 - next_attempt) / 61.0,
+            )
+            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            closed_divisor_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * closed_wrist_x - closed_wrist_y * k.d4) / closed_divisor_q1,
+                cos(closed_reference_a1),
+            )
+            closed_sin_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * closed_wrist_y + closed_wrist_x * k.d4) / closed_divisor_q1,
+                sin(closed_reference_a1),
+            )
+            closed_r21_from_q1 = closed_cos_q1 * goal_r21 - closed_sin_q1 * goal_r11
+            closed_r22_from_q1 = closed_cos_q1 * goal_r22 - closed_sin_q1 * goal_r12
+            # polar coordinates: the radius at angle q6
+            closed_radius_q6 = sqrt(closed_r21_from_q1 * closed_r21_from_q1 + closed_r22_from_q1 * closed_r22_from_q1)
+            closed_q6_radius_of_q5 = given_sigma_wrist * closed_radius_q6
+            # cosine and sine of q5 from the q6 radius and r22 equations
+            closed_cos_q5 = closed_sin_q1 * goal_r13 - closed_cos_q1 * goal_r23
+            closed_reference_a6 = (
+                select(from_the_met_pose, tried_a6, 21.0 * free_turn + given_ref_a6) - k.offset_a6
+            ) * DEGREE
+            # polar coordinates: angle q6 from the r21 and r23 equations
+            closed_along_q6 = -given_sigma_wrist * closed_r21_from_q1
+            closed_length_q6 = select(closed_radius_q6 > free_angle, closed_radius_q6, 1.0)
+            # at a singularity: the angle of the reference
+            closed_cos_q6 = select(
+                closed_radius_q6 > free_angle, closed_along_q6 / closed_length_q6, cos(closed_reference_a6)
+            )
+            closed_across_q6 = given_sigma_wrist * closed_r22_from_q1
+            closed_sin_q6 = select(
+                closed_radius_q6 > free_angle, closed_across_q6 / closed_length_q6, sin(closed_reference_a6)
+            )
+            closed_r31_from_q1_before_q6 = closed_cos_q6 * goal_r31 - closed_sin_q6 * goal_r32
+            closed_r31_from_q1_before_q56 = (
+                closed_cos_q5 * closed_r31_from_q1_before_q6 - closed_q6_radius_of_q5 * goal_r33
+            )
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_x_from_q1 = closed_ahead_q1 - closed_r31_from_q1_before_q56 * k.d5
+            closed_r33_from_q1_before_q6 = closed_cos_q6 * goal_r32 + closed_sin_q6 * goal_r31
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_z_from_q1 = closed_wrist_z + closed_r33_from_q1_before_q6 * k.d5 - k.d1
+            # distance that the remaining links must span
+            closed_reach = sqrt(
+                closed_wrist_x_from_q1 * closed_wrist_x_from_q1 + closed_wrist_z_from_q1 * closed_wrist_z_from_q1
+            )
+            no_start_is_left = (
+                another
+                & (closed_distance_q1 > free_angle_times_machine_scale)
+                & (closed_radius_q6 > free_angle)
+                & (closed_reach > free_angle_times_machine_scale)
+            )
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
             closed_reference_a2 = (
                 select(from_the_met_pose, tried_a2, 17.0 * free_turn + given_ref_a2) - k.offset_a2
             ) * DEGREE
@@ -501,9 +514,9 @@ class ArrayPrograms(Programs):
             )
             closed_axis_a6 = nearest_period(k.offset_a6 + atan2(closed_sin_q6, closed_cos_q6) / DEGREE, closed_near_a6)
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            nearest_error_now = select(is_nearer, error, nearest_error)
+            nearest_error_now = select(is_nearer, error_left_over, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 79))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
             if settled(done, status):
                 break
             (
@@ -580,14 +593,14 @@ class ArrayPrograms(Programs):
                             tried_a6 + shared_quotient * step_a6,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 79), 0, 64), passes_left_now),
-                    select(no_start_is_left, 80, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
+                    select(no_start_is_left, 90, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 79),
+                        (next_attempt > 62) & (next_attempt < 89),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),

@@ -37,7 +37,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 253
+    VALUES = 254
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def meet_point(self, given: Values, status: Codes) -> Values:
@@ -97,7 +97,7 @@ class ArrayPrograms(Programs):
             turn_of_attempt,
             turn_beside,
         ) = initial(start_a1, start_a2, start_a3, start_a4, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
-        for _ in range(272):
+        for _ in range(282):
             a1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -147,65 +147,16 @@ class ArrayPrograms(Programs):
             mirrors = pose_is_close & (beside_elbow | beside_shoulder)
             from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
             free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
-            is_nearer = (attempt > 1) & (attempt < 79) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
-            # how far free angles are turned
-            free_turn = select(
-                next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 79), turn_beside, 0.0),
-                -360.0 * (1 - next_attempt) / 61.0,
-            )
-            closed_reference_a4 = (
-                select(from_the_met_pose, tried_a4, 33.0 * free_turn + given_ref_a4) - k.offset_a4
-            ) * DEGREE
-            closed_cos_a4 = cos(closed_reference_a4)
-            closed_sin_a4 = sin(closed_reference_a4)
-            # commanded point, in the frame of the last moving joint
-            closed_tool_x = k.wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
-            # commanded point, in the frame of the last moving joint
-            closed_tool_y = closed_cos_a4 * given_point_y + closed_sin_a4 * given_point_x
-            # Pythagoras: square of the distance ahead of the axis
-            closed_ahead_squared_a1 = (closed_distance_a1 + closed_tool_y) * (closed_distance_a1 - closed_tool_y)
-            # how far ahead of the axis the point is; negative: behind it
-            closed_ahead_a1 = root(closed_ahead_squared_a1) * given_sigma_shoulder
-            # coordinate of the point that the remaining links must reach
-            closed_wrist_x_from_a1 = closed_ahead_a1 - closed_tool_x - k.shoulder_offset
-            # distance that the remaining links must span
-            closed_reach = sqrt(
-                closed_wrist_x_from_a1 * closed_wrist_x_from_a1 + closed_wrist_z_from_a1 * closed_wrist_z_from_a1
-            )
-            free_angle_times_machine_scale = free_angle * k.machine_scale
-            no_start_is_left = (
-                another
-                & (closed_distance_a1 > free_angle_times_machine_scale)
-                & (closed_reach > free_angle_times_machine_scale)
-            )
-            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
-            closed_divisor_a1 = select(
-                closed_distance_a1 > free_angle_times_machine_scale, closed_distance_a1 * closed_distance_a1, 1.0
-            )
-            # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
-            closed_cos_a1 = select(
-                closed_distance_a1 > free_angle_times_machine_scale,
-                (closed_ahead_a1 * goal_x + closed_tool_y * goal_y) / closed_divisor_a1,
-                cos(closed_reference_a1),
-            )
-            closed_sin_a1 = select(
-                closed_distance_a1 > free_angle_times_machine_scale,
-                (closed_ahead_a1 * goal_y - closed_tool_y * goal_x) / closed_divisor_a1,
-                sin(closed_reference_a1),
-            )
-            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_a1, closed_cos_a1) / DEGREE, closed_near_a1)
+            product_in_damping = 0.001 * error
+            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
             rate_1_1 = -k.one_by_machine_scale * y
-            rate_2_1 = k.one_by_machine_scale * x
             z_minus_z_at_a2_a3 = z - z_at_a2_a3
             sum_in_rate_1_2 = k.base_height + z_minus_z_at_a2_a3 - z
             rate_1_2 = -k.one_by_machine_scale * sum_in_rate_1_2 * cos_a1
             sum_in_rate_1_3 = z_at_a3 + z_minus_z_at_a2_a3 - z
             rate_1_3 = k.one_by_machine_scale * sum_in_rate_1_3 * cos_a1
-            product_in_damping = 0.001 * error
-            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
             product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            rate_2_1 = k.one_by_machine_scale * x
             rate_2_2 = -k.one_by_machine_scale * sum_in_rate_1_2 * sin_a1
             rate_2_3 = k.one_by_machine_scale * sum_in_rate_1_3 * sin_a1
             product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
@@ -233,7 +184,61 @@ class ArrayPrograms(Programs):
             step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
+            # of the error, behind a step: what it does not reach, and its curvature
+            error_left_over = (
+                sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
+                + step_length * step_length
+            )
+            is_nearer = (attempt > 1) & (attempt < 89) & (error_left_over < nearest_error)
+            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
+            # how far free angles are turned
+            free_turn = select(
+                next_attempt > 62,
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 89), turn_beside, 0.0),
+                -360.0 * (1 - next_attempt) / 61.0,
+            )
+            closed_reference_a4 = (
+                select(from_the_met_pose, tried_a4, 33.0 * free_turn + given_ref_a4) - k.offset_a4
+            ) * DEGREE
+            closed_cos_a4 = cos(closed_reference_a4)
+            closed_sin_a4 = sin(closed_reference_a4)
+            # commanded point, in the frame of the last moving joint
+            closed_tool_x = k.wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
+            # commanded point, in the frame of the last moving joint
+            closed_tool_y = closed_cos_a4 * given_point_y + closed_sin_a4 * given_point_x
+            # Pythagoras: square of the distance ahead of the axis
+            closed_ahead_squared_a1 = (closed_distance_a1 + closed_tool_y) * (closed_distance_a1 - closed_tool_y)
+            # how far ahead of the axis the point is; negative: behind it
+            closed_ahead_a1 = root(closed_ahead_squared_a1) * given_sigma_shoulder
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_x_from_a1 = closed_ahead_a1 - closed_tool_x - k.shoulder_offset
+            # distance that the remaining links must span
+            closed_reach = sqrt(
+                closed_wrist_x_from_a1 * closed_wrist_x_from_a1 + closed_wrist_z_from_a1 * closed_wrist_z_from_a1
+            )
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            no_start_is_left = (
+                another
+                & (closed_distance_a1 > free_angle_times_machine_scale)
+                & (closed_reach > free_angle_times_machine_scale)
+            )
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
+            closed_divisor_a1 = select(
+                closed_distance_a1 > free_angle_times_machine_scale, closed_distance_a1 * closed_distance_a1, 1.0
+            )
+            # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_a1 = select(
+                closed_distance_a1 > free_angle_times_machine_scale,
+                (closed_ahead_a1 * goal_x + closed_tool_y * goal_y) / closed_divisor_a1,
+                cos(closed_reference_a1),
+            )
+            closed_sin_a1 = select(
+                closed_distance_a1 > free_angle_times_machine_scale,
+                (closed_ahead_a1 * goal_y - closed_tool_y * goal_x) / closed_divisor_a1,
+                sin(closed_reference_a1),
+            )
+            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_a1, closed_cos_a1) / DEGREE, closed_near_a1)
             closed_reference_a2 = (
                 select(from_the_met_pose, tried_a2, 17.0 * free_turn + given_ref_a2) - k.offset_a2
             ) * DEGREE
@@ -276,9 +281,9 @@ class ArrayPrograms(Programs):
                 k.offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) / DEGREE, closed_near_a3
             )
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            nearest_error_now = select(is_nearer, error, nearest_error)
+            nearest_error_now = select(is_nearer, error_left_over, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 79))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
             if settled(done, status):
                 break
             (
@@ -329,14 +334,14 @@ class ArrayPrograms(Programs):
                         select(mirrors, tried_a3, tried_a3 + shared_quotient * step_a3),
                     ),
                     select(another | from_the_met_pose, given_ref_a4, tried_a4),
-                    select(another, select((next_attempt > 1) & (next_attempt < 79), 0, 64), passes_left_now),
-                    select(no_start_is_left, 80, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
+                    select(no_start_is_left, 90, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 79),
+                        (next_attempt > 62) & (next_attempt < 89),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 411
+    VALUES = 413
     JACOBIAN_ROWS = (0, 1, 2)
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
@@ -118,7 +118,7 @@ class ArrayPrograms(Programs):
             turn_of_attempt,
             turn_beside,
         ) = initial(start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
-        for _ in range(272):
+        for _ in range(282):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -168,30 +168,6 @@ class ArrayPrograms(Programs):
                 & (closed_distance_q1 > free_angle_times_machine_scale)
                 & (closed_reach > free_angle_times_machine_scale)
             )
-            is_nearer = (attempt > 1) & (attempt < 79) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
-            # how far free angles are turned
-            free_turn = select(
-                next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 79), turn_beside, 0.0),
-                -360.0 * (1 - next_attempt) / 61.0,
-            )
-            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
-            closed_divisor_q1 = select(
-                closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
-            )
-            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
-            closed_cos_q1 = select(
-                closed_distance_q1 > free_angle_times_machine_scale,
-                (closed_ahead_q1 * goal_x - k.d3 * goal_y) / closed_divisor_q1,
-                cos(closed_reference_a1),
-            )
-            closed_sin_q1 = select(
-                closed_distance_q1 > free_angle_times_machine_scale,
-                (closed_ahead_q1 * goal_y + k.d3 * goal_x) / closed_divisor_q1,
-                sin(closed_reference_a1),
-            )
-            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
             rate_1_1 = -k.one_by_machine_scale * y
             rate_2_1 = k.one_by_machine_scale * x
             z_minus_d1 = z - k.d1
@@ -225,6 +201,35 @@ class ArrayPrograms(Programs):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+            # of the error, behind a step: what it does not reach, and its curvature
+            error_left_over = (
+                sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
+                + step_length * step_length
+            )
+            is_nearer = (attempt > 1) & (attempt < 89) & (error_left_over < nearest_error)
+            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
+            # how far free angles are turned
+            free_turn = select(
+                next_attempt > 62,
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 89), turn_beside, 0.0),
+                -360.0 * (1 - next_attempt) / 61.0,
+            )
+            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
+            closed_divisor_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * goal_x - k.d3 * goal_y) / closed_divisor_q1,
+                cos(closed_reference_a1),
+            )
+            closed_sin_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * goal_y + k.d3 * goal_x) / closed_divisor_q1,
+                sin(closed_reference_a1),
+            )
+            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
             closed_reference_a2 = (
                 select(from_the_met_pose, tried_a2, 17.0 * free_turn + given_ref_a2) - k.offset_a2
             ) * DEGREE
@@ -244,9 +249,9 @@ class ArrayPrograms(Programs):
                 k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
             )
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            nearest_error_now = select(is_nearer, error, nearest_error)
+            nearest_error_now = select(is_nearer, error_left_over, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 79))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
             if settled(done, status):
                 break
             (
@@ -298,14 +303,14 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 79), 0, 64), passes_left_now),
-                    select(no_start_is_left, 80, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
+                    select(no_start_is_left, 90, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 79),
+                        (next_attempt > 62) & (next_attempt < 89),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),
@@ -406,7 +411,7 @@ class ArrayPrograms(Programs):
             turn_of_attempt,
             turn_beside,
         ) = initial(start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
-        for _ in range(272):
+        for _ in range(282):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -459,30 +464,6 @@ class ArrayPrograms(Programs):
                 & (closed_distance_q1 > free_angle_times_machine_scale)
                 & (closed_reach > free_angle_times_machine_scale)
             )
-            is_nearer = (attempt > 1) & (attempt < 79) & (error < nearest_error)
-            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
-            # how far free angles are turned
-            free_turn = select(
-                next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 79), turn_beside, 0.0),
-                -360.0 * (1 - next_attempt) / 61.0,
-            )
-            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
-            closed_divisor_q1 = select(
-                closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
-            )
-            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
-            closed_cos_q1 = select(
-                closed_distance_q1 > free_angle_times_machine_scale,
-                (closed_ahead_q1 * goal_x + closed_tool_y * goal_y) / closed_divisor_q1,
-                cos(closed_reference_a1),
-            )
-            closed_sin_q1 = select(
-                closed_distance_q1 > free_angle_times_machine_scale,
-                (closed_ahead_q1 * goal_y - closed_tool_y * goal_x) / closed_divisor_q1,
-                sin(closed_reference_a1),
-            )
-            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
             rate_1_1 = -k.one_by_machine_scale * y
             rate_2_1 = k.one_by_machine_scale * x
             z_minus_d1 = z - k.d1
@@ -516,6 +497,35 @@ class ArrayPrograms(Programs):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+            # of the error, behind a step: what it does not reach, and its curvature
+            error_left_over = (
+                sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
+                + step_length * step_length
+            )
+            is_nearer = (attempt > 1) & (attempt < 89) & (error_left_over < nearest_error)
+            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
+            # how far free angles are turned
+            free_turn = select(
+                next_attempt > 62,
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 89), turn_beside, 0.0),
+                -360.0 * (1 - next_attempt) / 61.0,
+            )
+            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
+            closed_divisor_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale, closed_distance_q1 * closed_distance_q1, 1.0
+            )
+            # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * goal_x + closed_tool_y * goal_y) / closed_divisor_q1,
+                cos(closed_reference_a1),
+            )
+            closed_sin_q1 = select(
+                closed_distance_q1 > free_angle_times_machine_scale,
+                (closed_ahead_q1 * goal_y - closed_tool_y * goal_x) / closed_divisor_q1,
+                sin(closed_reference_a1),
+            )
+            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_q1, closed_cos_q1) / DEGREE, closed_near_a1)
             closed_reference_a2 = (
                 select(from_the_met_pose, tried_a2, 17.0 * free_turn + given_ref_a2) - k.offset_a2
             ) * DEGREE
@@ -535,9 +545,9 @@ class ArrayPrograms(Programs):
                 k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
             )
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            nearest_error_now = select(is_nearer, error, nearest_error)
+            nearest_error_now = select(is_nearer, error_left_over, nearest_error)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 79))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
             if settled(done, status):
                 break
             (
@@ -589,14 +599,14 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 79), 0, 64), passes_left_now),
-                    select(no_start_is_left, 80, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
+                    select(no_start_is_left, 90, next_attempt),
                     select(another | mirrors, 9.0, error),
                     nearest_error_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 79),
+                        (next_attempt > 62) & (next_attempt < 89),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),
