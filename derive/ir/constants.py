@@ -17,6 +17,8 @@ BOUNDARY = sp.Float("1e-12")
 """A normalised radicand negative by at most this is zero: the boundary belongs to the workspace."""
 ROUNDING = sp.Float("1e-12")
 """A motion of the pose smaller than this share of the machine is rounding."""
+SQUARES = sp.Float("1e-15")
+"""The rounding of a sum of squares of lengths, as a share of the squared scale of the machine."""
 LARGEST = sp.Integer(10) ** 9
 """Inputs larger in size than this are refused."""
 ROTATION = sp.Float("1e-4")

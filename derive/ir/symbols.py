@@ -146,6 +146,8 @@ TRIED, SIDE, FREED, FREED_ANGLE = real("tried"), count("side"), count("freed"), 
 PLACE = (TRIED, SIDE, FREED, FREED_ANGLE)
 """The arguments that say where a trial is made: see `FindRoot`."""
 
+BOUND_OF = "bound_of_"
+"""How the names of bounds begin that allow for the rounding of a machine whose lengths differ much: 1, but for that."""
 REFUSAL = "refusal"
 """An output of a branch: 0 where it has a solution, else the number of its status, which is its place in `Status`."""
 

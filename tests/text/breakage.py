@@ -121,7 +121,7 @@ WRONG = {
     ),
     "AxesToCartesian: a byte without a meaning": Break(_BYTES, "cd := ", "bytes.abyData[30] := 7;\ncd := "),
     "CartesianToAxes: a tie": Break(_INVERSE, "least - tie", "least + 1.0E6"),
-    "CartesianToAxes: a tolerance": Break(_BRANCH, "ABS(cosA2) <= 1.0000000000005", "ABS(cosA2) <= 0.9"),
+    "CartesianToAxes: a tolerance": Break(_BRANCH, "ABS(cosA2) <= boundOfCosA2", "ABS(cosA2) <= 0.9"),
     "CartesianToAxes: an error": Break(
         _BRANCH,
         "iReason := 2;\n    SolveBranch := Softkin_Names.Unreachable",

@@ -16,7 +16,7 @@ from derive.ir.constants import BOUNDARY, DOUBTFUL
 from derive.ir.passes import depending_on, normalise
 from derive.ir.primitives import Select
 from derive.ir.program import Call, Let, Program, Require, Statement, Status, binds, reads
-from derive.ir.symbols import Flag, cosine, flag, names_in, real, sine
+from derive.ir.symbols import BOUND_OF, Flag, cosine, flag, names_in, real, sine
 from derive.kinematics.lost_digits.closure_steps import (
     MET,
     Machine,
@@ -39,7 +39,8 @@ def with_doubts(machine: Machine, statements: Sequence[Statement]) -> tuple[Stat
         doubts = _doubts(machine, statements, place) if may_refuse else []
         if isinstance(s, Require) and doubts:
             within, lost = flag(f"within_{place}"), flag(f"{LOST}{place}")
-            found.append(Let(within, s.condition.xreplace(_EXACTLY)))
+            bounds = {n: sp.Integer(1) for n in names_in(s.condition) if n.name.startswith(BOUND_OF)}
+            found.append(Let(within, s.condition.xreplace(_EXACTLY | bounds)))
             found.append(Let(lost, sp.And(sp.Not(within), sp.Or(*doubts))))
             found.append(replace(s, condition=sp.Or(s.condition, lost)))
         else:

@@ -9,12 +9,13 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
     double *SOFTKIN_RESTRICT misses) {
   const ac6_threeparallel_machine *k = machine;
-  const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3, a3 = k->a3, d1 = k->d1,
-      d4 = k->d4, d5 = k->d5, d6 = k->d6, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5,
-      mid_a6 = k->mid_a6, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
-      offset_a4 = k->offset_a4, offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
-      product_in_lost_digits_37 = k->product_in_lost_digits_37,
+  const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3, a3 = k->a3,
+      bound_of_cos_q3 = k->bound_of_cos_q3, d1 = k->d1, d4 = k->d4, d5 = k->d5, d6 = k->d6,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
+      product_in_lost_digits_38 = k->product_in_lost_digits_38,
       quotient_in_closed_cos_q3 = k->quotient_in_closed_cos_q3,
       quotient_in_closed_sin_q3 = k->quotient_in_closed_sin_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
@@ -76,14 +77,14 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach);
     const double cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)*quotient_in_closed_cos_q3;
-    const bool within_37 = fabs(cos_q3) <= 1.0;
-    const bool lost_digits_37 = (!within_37)
+    const bool within_38 = fabs(cos_q3) <= 1.0;
+    const bool lost_digits_38 = (!within_38)
         && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01)
-        || (fabs(ahead_q1) <= product_in_lost_digits_37));
+        || (fabs(ahead_q1) <= product_in_lost_digits_38));
     /* digits may be lost */
-    missed += !lost_digits_37 ? 0.0 : 1.0;
+    missed += !lost_digits_38 ? 0.0 : 1.0;
     /* q3: out of reach */
-    missed += fabs(cos_q3) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += fabs(cos_q3) <= bound_of_cos_q3 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double axis_a1 = offset_a1 + softkin_lane_angle(sin_q1, cos_q1)*SOFTKIN_RADIAN;
     const double arm_along_q2 = a2 + a3*cos_q3;
@@ -125,12 +126,13 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const ac6_threeparallel_machine *k = machine;
-  const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3, a3 = k->a3, d1 = k->d1,
-      d4 = k->d4, d5 = k->d5, d6 = k->d6, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5,
-      mid_a6 = k->mid_a6, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
-      offset_a4 = k->offset_a4, offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
-      product_in_lost_digits_37 = k->product_in_lost_digits_37,
+  const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3, a3 = k->a3,
+      bound_of_cos_q3 = k->bound_of_cos_q3, d1 = k->d1, d4 = k->d4, d5 = k->d5, d6 = k->d6,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
+      product_in_lost_digits_38 = k->product_in_lost_digits_38,
       quotient_in_closed_cos_q3 = k->quotient_in_closed_cos_q3,
       quotient_in_closed_sin_q3 = k->quotient_in_closed_sin_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
@@ -198,11 +200,11 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double one_plus_cos_q3_left_down = (reach_left_down - a2_minus_a3)*(a2_minus_a3 + reach_left_down);
     const double cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)
         *quotient_in_closed_cos_q3;
-    const bool within_37_left_down = fabs(cos_q3_left_down) <= 1.0;
-    const bool lost_digits_37_left_down = (!within_37_left_down)
-        && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_37));
+    const bool within_38_left_down = fabs(cos_q3_left_down) <= 1.0;
+    const bool lost_digits_38_left_down = (!within_38_left_down)
+        && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
     /* digits may be lost */
-    missed += !lost_digits_37_left_down ? 0.0 : 1.0;
+    missed += !lost_digits_38_left_down ? 0.0 : 1.0;
     const double r31_from_q1_before_q56_left_up = -r31_from_q1_before_q56_left_down;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x_from_q1_left_up = -ahead_q1_right - d5*r31_from_q1_before_q56_left_up;
@@ -218,11 +220,11 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double one_plus_cos_q3_left_up = (reach_left_up - a2_minus_a3)*(a2_minus_a3 + reach_left_up);
     const double cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)
         *quotient_in_closed_cos_q3;
-    const bool within_37_left_up = fabs(cos_q3_left_up) <= 1.0;
-    const bool lost_digits_37_left_up = (!within_37_left_up)
-        && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_37));
+    const bool within_38_left_up = fabs(cos_q3_left_up) <= 1.0;
+    const bool lost_digits_38_left_up = (!within_38_left_up)
+        && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
     /* digits may be lost */
-    missed += !lost_digits_37_left_up ? 0.0 : 1.0;
+    missed += !lost_digits_38_left_up ? 0.0 : 1.0;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_right = (ahead_q1_right_times_wrist_x - d4_times_wrist_y)/distance_q1_squared;
     const double sin_q1_right = (ahead_q1_right_times_wrist_y + d4_times_wrist_x)/distance_q1_squared;
@@ -259,11 +261,11 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         *(a2_minus_a3 + reach_right_down);
     const double cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)
         *quotient_in_closed_cos_q3;
-    const bool within_37_right_down = fabs(cos_q3_right_down) <= 1.0;
-    const bool lost_digits_37_right_down = (!within_37_right_down)
-        && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_37));
+    const bool within_38_right_down = fabs(cos_q3_right_down) <= 1.0;
+    const bool lost_digits_38_right_down = (!within_38_right_down)
+        && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
     /* digits may be lost */
-    missed += !lost_digits_37_right_down ? 0.0 : 1.0;
+    missed += !lost_digits_38_right_down ? 0.0 : 1.0;
     const double r31_from_q1_before_q56_right_up = -r31_from_q1_before_q56_right_down;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x_from_q1_right_up = ahead_q1_right - d5*r31_from_q1_before_q56_right_up;
@@ -279,17 +281,17 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double one_plus_cos_q3_right_up = (reach_right_up - a2_minus_a3)*(a2_minus_a3 + reach_right_up);
     const double cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)
         *quotient_in_closed_cos_q3;
-    const bool within_37_right_up = fabs(cos_q3_right_up) <= 1.0;
-    const bool lost_digits_37_right_up = (!within_37_right_up)
-        && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_37));
+    const bool within_38_right_up = fabs(cos_q3_right_up) <= 1.0;
+    const bool lost_digits_38_right_up = (!within_38_right_up)
+        && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
     /* digits may be lost */
-    missed += !lost_digits_37_right_up ? 0.0 : 1.0;
+    missed += !lost_digits_38_right_up ? 0.0 : 1.0;
     missed += reach_left_down > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += reach_left_up > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += reach_right_down > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += reach_right_up > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* q3: out of reach */
-    const double refusal_left_down = fabs(cos_q3_left_down) <= 1.0000000000005 ? 0 : 3;
+    const double refusal_left_down = fabs(cos_q3_left_down) <= bound_of_cos_q3 ? 0 : 3;
     const double axis_a1_left = offset_a1 + softkin_lane_angle(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
     const double arm_along_q2_left_down = a2 + a3*cos_q3_left_down;
     /* sine squared, times the squared scale */
@@ -317,7 +319,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double axis_a6_left_down = offset_a6
         + softkin_lane_angle(r22_from_q1_left_by_radius_q6_left, cos_q6_left_down)*SOFTKIN_RADIAN;
     /* q3: out of reach */
-    const double refusal_left_up = fabs(cos_q3_left_up) <= 1.0000000000005 ? 0 : 3;
+    const double refusal_left_up = fabs(cos_q3_left_up) <= bound_of_cos_q3 ? 0 : 3;
     const double arm_along_q2_left_up = a2 + a3*cos_q3_left_up;
     /* sine squared, times the squared scale */
     const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
@@ -352,7 +354,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double axis_a4_left_down_up = offset_a4
         + (angle_q3_left_up_up + angle_with_q4_left_up - angle_q2_left_down_up)*SOFTKIN_RADIAN;
     /* q3: out of reach */
-    const double refusal_right_down = fabs(cos_q3_right_down) <= 1.0000000000005 ? 0 : 3;
+    const double refusal_right_down = fabs(cos_q3_right_down) <= bound_of_cos_q3 ? 0 : 3;
     const double axis_a1_right = offset_a1 + softkin_lane_angle(sin_q1_right, cos_q1_right)*SOFTKIN_RADIAN;
     const double arm_along_q2_right_down = a2 + a3*cos_q3_right_down;
     /* sine squared, times the squared scale */
@@ -381,7 +383,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double axis_a6_right_down = offset_a6
         + softkin_lane_angle(r22_from_q1_right_by_radius_q6_right, cos_q6_right_down)*SOFTKIN_RADIAN;
     /* q3: out of reach */
-    const double refusal_right_up = fabs(cos_q3_right_up) <= 1.0000000000005 ? 0 : 3;
+    const double refusal_right_up = fabs(cos_q3_right_up) <= bound_of_cos_q3 ? 0 : 3;
     const double arm_along_q2_right_up = a2 + a3*cos_q3_right_up;
     /* sine squared, times the squared scale */
     const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;

@@ -690,12 +690,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3 = (reach - k->a2_minus_a3)*(k->a2_minus_a3 + reach);
   const double cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)*k->quotient_in_closed_cos_q3;
-  const bool within_37 = fabs(cos_q3) <= 1.0;
-  const bool lost_digits_37 = (!within_37)
+  const bool within_38 = fabs(cos_q3) <= 1.0;
+  const bool lost_digits_38 = (!within_38)
       && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01)
-      || (fabs(ahead_q1) <= k->product_in_lost_digits_37));
+      || (fabs(ahead_q1) <= k->product_in_lost_digits_38));
   /* q3: out of reach */
-  if (!(lost_digits_37 || (fabs(cos_q3) <= 1.0000000000005))) {
+  if (!(lost_digits_38 || (fabs(cos_q3) <= k->bound_of_cos_q3))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
         : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
@@ -756,7 +756,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       near_a6);
   /* if digits were lost, steps on the closure meet the pose */
   double results[7] = {0.0};
-  if (lost_digits_37) {
+  if (lost_digits_38) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, sigma_elbow, sigma_shoulder,
         sigma_wrist, turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6, r11, r12, r13, r21, r22, r23, r31,
         r32, r33, x, y, z, axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6};
@@ -769,7 +769,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       found_a5 = results[5], found_a6 = results[6];
   const bool met = results[0] != 0.0;
   /* q3: out of reach */
-  if (!(met || (fabs(cos_q3) <= 1.0000000000005))) {
+  if (!(met || (fabs(cos_q3) <= k->bound_of_cos_q3))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
         : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
@@ -1173,9 +1173,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       *(k->a2_minus_a3 + reach_left_down);
   const double cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)
       *k->quotient_in_closed_cos_q3;
-  const bool within_37_left_down = fabs(cos_q3_left_down) <= 1.0;
-  const bool lost_digits_37_left_down = (!within_37_left_down)
-      && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_37));
+  const bool within_38_left_down = fabs(cos_q3_left_down) <= 1.0;
+  const bool lost_digits_38_left_down = (!within_38_left_down)
+      && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
   const double angle_with_q4_left_down = softkin_angle_of(r31_from_q1_before_q56_left_down,
       r33_from_q1_before_q6_left_down);
   const double axis_a6_left_down = k->offset_a6
@@ -1194,7 +1194,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     angle_with_q4_left_up = softkin_angle_of(r31_from_q1_before_q56_left_up, r33_from_q1_before_q6_left_up);
     axis_a6_left_up = k->offset_a6 + softkin_angle_of(sin_q6_left_up, cos_q6_left_up)*SOFTKIN_RADIAN;
   }
-  if (!(!lost_digits_37_left_down)) {
+  if (!(!lost_digits_38_left_down)) {
     return false;
   }
   /* coordinate of the point that the remaining links must reach */
@@ -1210,10 +1210,10 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_plus_cos_q3_left_up = (reach_left_up - k->a2_minus_a3)*(k->a2_minus_a3 + reach_left_up);
   const double cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)
       *k->quotient_in_closed_cos_q3;
-  const bool within_37_left_up = fabs(cos_q3_left_up) <= 1.0;
-  const bool lost_digits_37_left_up = (!within_37_left_up)
-      && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_37));
-  if (!(!lost_digits_37_left_up)) {
+  const bool within_38_left_up = fabs(cos_q3_left_up) <= 1.0;
+  const bool lost_digits_38_left_up = (!within_38_left_up)
+      && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
+  if (!(!lost_digits_38_left_up)) {
     return false;
   }
   const double r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right;
@@ -1260,9 +1260,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       *(k->a2_minus_a3 + reach_right_down);
   const double cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)
       *k->quotient_in_closed_cos_q3;
-  const bool within_37_right_down = fabs(cos_q3_right_down) <= 1.0;
-  const bool lost_digits_37_right_down = (!within_37_right_down)
-      && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_37));
+  const bool within_38_right_down = fabs(cos_q3_right_down) <= 1.0;
+  const bool lost_digits_38_right_down = (!within_38_right_down)
+      && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
   const double angle_with_q4_right_down = softkin_angle_of(r31_from_q1_before_q56_right_down,
       r33_from_q1_before_q6_right_down);
   const double axis_a6_right_down = k->offset_a6
@@ -1282,7 +1282,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         r33_from_q1_before_q6_right_up);
     axis_a6_right_up = k->offset_a6 + softkin_angle_of(sin_q6_right_up, cos_q6_right_up)*SOFTKIN_RADIAN;
   }
-  if (!(!lost_digits_37_right_down)) {
+  if (!(!lost_digits_38_right_down)) {
     return false;
   }
   /* coordinate of the point that the remaining links must reach */
@@ -1298,14 +1298,14 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_plus_cos_q3_right_up = (reach_right_up - k->a2_minus_a3)*(k->a2_minus_a3 + reach_right_up);
   const double cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)
       *k->quotient_in_closed_cos_q3;
-  const bool within_37_right_up = fabs(cos_q3_right_up) <= 1.0;
-  const bool lost_digits_37_right_up = (!within_37_right_up)
-      && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_37));
-  if (!(!lost_digits_37_right_up)) {
+  const bool within_38_right_up = fabs(cos_q3_right_up) <= 1.0;
+  const bool lost_digits_38_right_up = (!within_38_right_up)
+      && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
+  if (!(!lost_digits_38_right_up)) {
     return false;
   }
   /* q3: out of reach */
-  const int refusal_left_down = fabs(cos_q3_left_down) <= 1.0000000000005 ? 0 : 3;
+  const int refusal_left_down = fabs(cos_q3_left_down) <= k->bound_of_cos_q3 ? 0 : 3;
   const double axis_a1_left = k->offset_a1 + softkin_angle_of(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
   /* sine squared, times the squared scale */
   const double sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down;
@@ -1334,7 +1334,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       + (angle_with_q4_left_down - angle_q2_left_up_down - angle_q3_left_up_down)*SOFTKIN_RADIAN;
   const double quotient_in_axis_a5_left_down = softkin_angle_of(radius_q6_left, cos_q5_left)*SOFTKIN_RADIAN;
   const double axis_a5_left_down = k->offset_a5 + quotient_in_axis_a5_left_down;
-  const int refusal_left_up = fabs(cos_q3_left_up) <= 1.0000000000005 ? 0 : 3; /* q3: out of reach */
+  /* q3: out of reach */
+  const int refusal_left_up = fabs(cos_q3_left_up) <= k->bound_of_cos_q3 ? 0 : 3;
   /* sine squared, times the squared scale */
   const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
   const double sin_q3_left_up_up = softkin_root(sine_square_q3_left_up)*k->quotient_in_closed_sin_q3;
@@ -1372,7 +1373,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a4_left_down_up = k->offset_a4
       + (angle_q3_left_up_up + angle_with_q4_left_up - angle_q2_left_down_up)*SOFTKIN_RADIAN;
   /* q3: out of reach */
-  const int refusal_right_down = fabs(cos_q3_right_down) <= 1.0000000000005 ? 0 : 3;
+  const int refusal_right_down = fabs(cos_q3_right_down) <= k->bound_of_cos_q3 ? 0 : 3;
   const double axis_a1_right = k->offset_a1 + softkin_angle_of(sin_q1_right, cos_q1_right)*SOFTKIN_RADIAN;
   /* sine squared, times the squared scale */
   const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
@@ -1403,7 +1404,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       *SOFTKIN_RADIAN;
   const double axis_a5_right_down = k->offset_a5 + quotient_in_axis_a5_right_down;
   /* q3: out of reach */
-  const int refusal_right_up = fabs(cos_q3_right_up) <= 1.0000000000005 ? 0 : 3;
+  const int refusal_right_up = fabs(cos_q3_right_up) <= k->bound_of_cos_q3 ? 0 : 3;
   /* sine squared, times the squared scale */
   const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
   const double sin_q3_right_up_up = softkin_root(sine_square_q3_right_up)*k->quotient_in_closed_sin_q3;
@@ -1542,8 +1543,10 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale = fabs(p->a2) + fabs(p->a3); /* characteristic length of the machine */
   /* rounding error of a squared length */
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
+  /* 1, and rounding of squared lengths */
+  const double bound_of_cos_q3 = 1.0000000000005 + 5e-16*machine_scale*machine_scale/(p->a2*p->a3);
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
-  const double product_in_lost_digits_37 = 0.01*machine_scale;
+  const double product_in_lost_digits_38 = 0.01*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double a2_plus_a3 = p->a2 + p->a3;
   const double a2_minus_a3 = p->a2 - p->a3;
@@ -1587,8 +1590,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a6 = p->offset_a6;
   made.machine_scale = machine_scale;
   made.rounding_q1 = rounding_q1;
+  made.bound_of_cos_q3 = bound_of_cos_q3;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
-  made.product_in_lost_digits_37 = product_in_lost_digits_37;
+  made.product_in_lost_digits_38 = product_in_lost_digits_38;
   made.one_by_machine_scale = one_by_machine_scale;
   made.a2_plus_a3 = a2_plus_a3;
   made.a2_minus_a3 = a2_minus_a3;

@@ -10,6 +10,7 @@ void palletizer_regular(const void *machine, const softkin_lanes *given,
     double *SOFTKIN_RESTRICT misses) {
   const palletizer_machine *k = machine;
   const double base_height_plus_wrist_offset_z = k->base_height_plus_wrist_offset_z,
+      bound_of_cos_swing_a3_from_a2 = k->bound_of_cos_swing_a3_from_a2,
       half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
@@ -53,7 +54,7 @@ void palletizer_regular(const void *machine, const softkin_lanes *given,
     const double cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2)
         *quotient_in_closed_cos_swing_a3_from_a2;
     /* a3_from_a2: out of reach */
-    missed += fabs(cos_swing_a3_from_a2) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += fabs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2 ? 0.0 : 1.0;
     missed += radius_a1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the reference */
@@ -98,6 +99,7 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const palletizer_machine *k = machine;
   const double base_height_plus_wrist_offset_z = k->base_height_plus_wrist_offset_z,
+      bound_of_cos_swing_a3_from_a2 = k->bound_of_cos_swing_a3_from_a2,
       half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
@@ -148,7 +150,7 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
     const double cos_swing_a3_from_a2_front = (one_plus_cos_a3_from_a2_front - one_less_cos_a3_from_a2_front)
         *quotient_in_closed_cos_swing_a3_from_a2;
     /* a3_from_a2: out of reach */
-    const double refusal_front = fabs(cos_swing_a3_from_a2_front) <= 1.0000000000005 ? 0 : 3;
+    const double refusal_front = fabs(cos_swing_a3_from_a2_front) <= bound_of_cos_swing_a3_from_a2 ? 0 : 3;
     const double angle_a1_front = softkin_lane_angle(y, x);
     const double axis_a1_front = offset_a1 + angle_a1_front*SOFTKIN_RADIAN;
     const double arm_along_a2_front = link_length_1 - link_length_2*cos_swing_a3_from_a2_front;
@@ -186,7 +188,7 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
     const double cos_swing_a3_from_a2_back = (one_plus_cos_a3_from_a2_back - one_less_cos_a3_from_a2_back)
         *quotient_in_closed_cos_swing_a3_from_a2;
     /* a3_from_a2: out of reach */
-    const double refusal_back = fabs(cos_swing_a3_from_a2_back) <= 1.0000000000005 ? 0 : 3;
+    const double refusal_back = fabs(cos_swing_a3_from_a2_back) <= bound_of_cos_swing_a3_from_a2 ? 0 : 3;
     const double axis_a1_back = 180.0 + axis_a1_front;
     const double arm_along_a2_back = link_length_1 - link_length_2*cos_swing_a3_from_a2_back;
     /* sine squared, times the squared scale */

@@ -208,7 +208,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double cos_swing_a3_from_a2 = (one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2)
       *k->quotient_in_closed_cos_swing_a3_from_a2;
   /* a3_from_a2: out of reach */
-  if (!(fabs(cos_swing_a3_from_a2) <= 1.0000000000005)) {
+  if (!(fabs(cos_swing_a3_from_a2) <= k->bound_of_cos_swing_a3_from_a2)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "a3_from_a2: out of reach", "u",
         (reach - k->link_length_1_plus_link_length_2 > fabs(k->link_length_1_minus_link_length_2) - reach
         ? reach - k->link_length_1_plus_link_length_2 : fabs(k->link_length_1_minus_link_length_2) - reach),
@@ -553,7 +553,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double cos_swing_a3_from_a2_front = (one_plus_cos_a3_from_a2_front - one_less_cos_a3_from_a2_front)
       *k->quotient_in_closed_cos_swing_a3_from_a2;
   /* a3_from_a2: out of reach */
-  const int refusal_front = fabs(cos_swing_a3_from_a2_front) <= 1.0000000000005 ? 0 : 3;
+  const int refusal_front = fabs(cos_swing_a3_from_a2_front) <= k->bound_of_cos_swing_a3_from_a2 ? 0 : 3;
   double direction_x_a1_front, direction_y_a1_front, direction_x_a1_back, direction_y_a1_back;
   if (radius_a1 > k->machine_scale_times_free_angle) {
     /* polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the reference */
@@ -619,7 +619,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double cos_swing_a3_from_a2_back = (one_plus_cos_a3_from_a2_back - one_less_cos_a3_from_a2_back)
       *k->quotient_in_closed_cos_swing_a3_from_a2;
   /* a3_from_a2: out of reach */
-  const int refusal_back = fabs(cos_swing_a3_from_a2_back) <= 1.0000000000005 ? 0 : 3;
+  const int refusal_back = fabs(cos_swing_a3_from_a2_back) <= k->bound_of_cos_swing_a3_from_a2 ? 0 : 3;
   double axis_a1_back, axis_a4_back;
   if (radius_a1 > k->machine_scale_times_free_angle) {
     axis_a1_back = 180.0 + axis_a1_front;
@@ -716,6 +716,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   /* characteristic length of the machine */
   const double machine_scale = p->link_length_1 + p->link_length_2 + p->shoulder_offset;
+  /* 1, and rounding of squared lengths */
+  const double bound_of_cos_swing_a3_from_a2 = 1.0000000000005
+      + 5e-16*machine_scale*machine_scale/(p->link_length_1*p->link_length_2);
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
@@ -752,6 +755,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a2 = p->offset_a2;
   made.offset_a3 = p->offset_a3;
   made.offset_a4 = p->offset_a4;
+  made.bound_of_cos_swing_a3_from_a2 = bound_of_cos_swing_a3_from_a2;
   made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;

@@ -97,10 +97,10 @@ typedef struct {
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_a4, highest_a4, mid_a4, lowest_elbow, highest_elbow, base_height, shoulder_offset,
       link_length_1, link_length_2, wrist_offset_x, wrist_offset_z, offset_a1, offset_a2, offset_a3,
-      offset_a4, link_length_1_minus_link_length_2, machine_scale_times_free_angle, one_by_machine_scale,
-      link_length_1_plus_link_length_2, half_by_link_length_1_by_link_length_2,
-      quotient_in_closed_cos_swing_a3_from_a2, shoulder_offset_plus_wrist_offset_x,
-      base_height_plus_wrist_offset_z;
+      offset_a4, bound_of_cos_swing_a3_from_a2, link_length_1_minus_link_length_2,
+      machine_scale_times_free_angle, one_by_machine_scale, link_length_1_plus_link_length_2,
+      half_by_link_length_1_by_link_length_2, quotient_in_closed_cos_swing_a3_from_a2,
+      shoulder_offset_plus_wrist_offset_x, base_height_plus_wrist_offset_z;
   bool single_a1, single_a2, single_a3, single_a4;
 } palletizer_machine;
 

@@ -9,7 +9,8 @@ void pcc_regular(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
     double *SOFTKIN_RESTRICT misses) {
   const pcc_machine *k = machine;
-  const double half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
+  const double bound_of_cos_a2_from_a1 = k->bound_of_cos_a2_from_a1,
+      half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
       link_length_2 = k->link_length_2, machine_scale = k->machine_scale,
@@ -34,7 +35,7 @@ void pcc_regular(const void *machine, const softkin_lanes *given,
     const double cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)
         *quotient_in_cos_a2_from_a1;
     /* a2_from_a1: out of reach */
-    missed += fabs(cos_a2_from_a1) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += fabs(cos_a2_from_a1) <= bound_of_cos_a2_from_a1 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1;
     const double sign_elbow = sigma_elbow; /* elbow: +1 right, -1 left */
@@ -64,7 +65,8 @@ void pcc_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const pcc_machine *k = machine;
-  const double half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
+  const double bound_of_cos_a2_from_a1 = k->bound_of_cos_a2_from_a1,
+      half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
       link_length_2 = k->link_length_2, machine_scale = k->machine_scale,
@@ -88,7 +90,7 @@ void pcc_regular_all(const void *machine, const softkin_lanes *given,
     const double cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)
         *quotient_in_cos_a2_from_a1;
     /* a2_from_a1: out of reach */
-    missed += fabs(cos_a2_from_a1) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += fabs(cos_a2_from_a1) <= bound_of_cos_a2_from_a1 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1;
     /* sine squared, times the squared scale */

@@ -133,7 +133,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)
       *k->quotient_in_cos_a2_from_a1;
   /* a2_from_a1: out of reach */
-  if (!(fabs(cos_a2_from_a1) <= 1.0000000000005)) {
+  if (!(fabs(cos_a2_from_a1) <= k->bound_of_cos_a2_from_a1)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "a2_from_a1: out of reach", "u",
         (reach - k->machine_scale > fabs(k->link_length_1_minus_link_length_2) - reach ? reach
         - k->machine_scale : fabs(k->link_length_1_minus_link_length_2) - reach), 0);
@@ -348,7 +348,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       *(k->link_length_1_minus_link_length_2 + reach);
   const double cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)
       *k->quotient_in_cos_a2_from_a1;
-  if (!(fabs(cos_a2_from_a1) <= 1.0000000000005)) {
+  if (!(fabs(cos_a2_from_a1) <= k->bound_of_cos_a2_from_a1)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 2);
   }
   /* sine squared, times the squared scale */
@@ -406,6 +406,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   /* characteristic length of the machine */
   const double machine_scale = p->link_length_1 + p->link_length_2;
+  /* 1, and rounding of squared lengths */
+  const double bound_of_cos_a2_from_a1 = 1.0000000000005
+      + 5e-16*machine_scale*machine_scale/(p->link_length_1*p->link_length_2);
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
@@ -426,6 +429,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a1 = p->offset_a1;
   made.offset_a2 = p->offset_a2;
   made.machine_scale = machine_scale;
+  made.bound_of_cos_a2_from_a1 = bound_of_cos_a2_from_a1;
   made.machine_scale_times_plane = machine_scale_times_plane;
   made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;

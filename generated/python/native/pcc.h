@@ -70,9 +70,9 @@ typedef struct {
   /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[PCC_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_elbow, highest_elbow,
-      link_length_1, link_length_2, offset_a1, offset_a2, machine_scale, machine_scale_times_plane,
-      link_length_1_minus_link_length_2, machine_scale_times_free_angle, quotient_in_cos_a2_from_a1,
-      half_by_link_length_1_by_link_length_2;
+      link_length_1, link_length_2, offset_a1, offset_a2, machine_scale, bound_of_cos_a2_from_a1,
+      machine_scale_times_plane, link_length_1_minus_link_length_2, machine_scale_times_free_angle,
+      quotient_in_cos_a2_from_a1, half_by_link_length_1_by_link_length_2;
   bool single_a1, single_a2;
 } pcc_machine;
 

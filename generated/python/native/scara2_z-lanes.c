@@ -11,6 +11,7 @@ void scara2_z_regular(const void *machine, const softkin_lanes *given,
   const scara2_z_machine *k = machine;
   const double arm_length_1 = k->arm_length_1,
       arm_length_1_minus_arm_length_2 = k->arm_length_1_minus_arm_length_2, arm_length_2 = k->arm_length_2,
+      bound_of_cos_a2 = k->bound_of_cos_a2,
       half_by_arm_length_1_by_arm_length_2 = k->half_by_arm_length_1_by_arm_length_2,
       machine_scale = k->machine_scale, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
       mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
@@ -29,7 +30,7 @@ void scara2_z_regular(const void *machine, const softkin_lanes *given,
         *(arm_length_1_minus_arm_length_2 + reach);
     const double cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)*quotient_in_cos_a2;
     /* a2: out of reach */
-    missed += fabs(cos_a2) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += fabs(cos_a2) <= bound_of_cos_a2 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_a1 = arm_length_1 + arm_length_2*cos_a2;
     const double sign_elbow = sigma_elbow; /* elbow: +1 right, -1 left */
@@ -59,6 +60,7 @@ void scara2_z_regular_all(const void *machine, const softkin_lanes *given,
   const scara2_z_machine *k = machine;
   const double arm_length_1 = k->arm_length_1,
       arm_length_1_minus_arm_length_2 = k->arm_length_1_minus_arm_length_2, arm_length_2 = k->arm_length_2,
+      bound_of_cos_a2 = k->bound_of_cos_a2,
       half_by_arm_length_1_by_arm_length_2 = k->half_by_arm_length_1_by_arm_length_2,
       machine_scale = k->machine_scale, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
       mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
@@ -76,7 +78,7 @@ void scara2_z_regular_all(const void *machine, const softkin_lanes *given,
         *(arm_length_1_minus_arm_length_2 + reach);
     const double cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)*quotient_in_cos_a2;
     /* a2: out of reach */
-    missed += fabs(cos_a2) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += fabs(cos_a2) <= bound_of_cos_a2 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_a1 = arm_length_1 + arm_length_2*cos_a2;
     /* sine squared, times the squared scale */

@@ -69,8 +69,9 @@ typedef struct {
   /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[SCARA2_Z_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_z, highest_z, arm_length_1,
-      arm_length_2, offset_a1, offset_a2, offset_z, machine_scale, arm_length_1_minus_arm_length_2,
-      machine_scale_times_free_angle, quotient_in_cos_a2, half_by_arm_length_1_by_arm_length_2;
+      arm_length_2, offset_a1, offset_a2, offset_z, machine_scale, bound_of_cos_a2,
+      arm_length_1_minus_arm_length_2, machine_scale_times_free_angle, quotient_in_cos_a2,
+      half_by_arm_length_1_by_arm_length_2;
   bool single_a1, single_a2;
 } scara2_z_machine;
 

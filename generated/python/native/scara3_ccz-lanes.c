@@ -9,7 +9,8 @@ void scara3_ccz_regular(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
     double *SOFTKIN_RESTRICT misses) {
   const scara3_ccz_machine *k = machine;
-  const double half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
+  const double bound_of_cos_a2 = k->bound_of_cos_a2,
+      half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
       link_length_2 = k->link_length_2, machine_scale = k->machine_scale,
@@ -30,7 +31,7 @@ void scara3_ccz_regular(const void *machine, const softkin_lanes *given,
         *(link_length_1_minus_link_length_2 + reach);
     const double cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)*quotient_in_cos_a2;
     /* a2: out of reach */
-    missed += fabs(cos_a2) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += fabs(cos_a2) <= bound_of_cos_a2 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_a1 = link_length_1 + link_length_2*cos_a2;
     const double sign_elbow = sigma_elbow; /* elbow: +1 right, -1 left */
@@ -58,7 +59,8 @@ void scara3_ccz_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const scara3_ccz_machine *k = machine;
-  const double half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
+  const double bound_of_cos_a2 = k->bound_of_cos_a2,
+      half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
       link_length_2 = k->link_length_2, machine_scale = k->machine_scale,
@@ -78,7 +80,7 @@ void scara3_ccz_regular_all(const void *machine, const softkin_lanes *given,
         *(link_length_1_minus_link_length_2 + reach);
     const double cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)*quotient_in_cos_a2;
     /* a2: out of reach */
-    missed += fabs(cos_a2) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += fabs(cos_a2) <= bound_of_cos_a2 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_a1 = link_length_1 + link_length_2*cos_a2;
     /* sine squared, times the squared scale */

@@ -69,8 +69,9 @@ typedef struct {
   /** The ranges in force, infinite where there is no limit. */
   softkin_ends ends[SCARA3_CCZ_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, link_length_1,
-      link_length_2, offset_a1, offset_a2, offset_a3, machine_scale, link_length_1_minus_link_length_2,
-      machine_scale_times_free_angle, quotient_in_cos_a2, half_by_link_length_1_by_link_length_2;
+      link_length_2, offset_a1, offset_a2, offset_a3, machine_scale, bound_of_cos_a2,
+      link_length_1_minus_link_length_2, machine_scale_times_free_angle, quotient_in_cos_a2,
+      half_by_link_length_1_by_link_length_2;
   bool single_a1, single_a2;
 } scara3_ccz_machine;
 

@@ -166,7 +166,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       *(k->arm_length_1_minus_arm_length_2 + reach);
   const double cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)*k->quotient_in_cos_a2;
   /* a2: out of reach */
-  if (!(fabs(cos_a2) <= 1.0000000000005)) {
+  if (!(fabs(cos_a2) <= k->bound_of_cos_a2)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "u",
         (reach - k->arm_length_1_plus_arm_length_2 > fabs(k->arm_length_1_minus_arm_length_2) - reach ? reach
         - k->arm_length_1_plus_arm_length_2 : fabs(k->arm_length_1_minus_arm_length_2) - reach), 0);
@@ -386,7 +386,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_plus_cos_a2 = (reach - k->arm_length_1_minus_arm_length_2)
       *(k->arm_length_1_minus_arm_length_2 + reach);
   const double cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)*k->quotient_in_cos_a2;
-  if (!(fabs(cos_a2) <= 1.0000000000005)) {
+  if (!(fabs(cos_a2) <= k->bound_of_cos_a2)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 2);
   }
   /* sine squared, times the squared scale */
@@ -459,6 +459,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   /* characteristic length of the machine */
   const double machine_scale = p->arm_length_1 + p->arm_length_2 + p->arm_length_3;
+  /* 1, and rounding of squared lengths */
+  const double bound_of_cos_a2 = 1.0000000000005
+      + 5e-16*machine_scale*machine_scale/(p->arm_length_1*p->arm_length_2);
   const double arm_length_1_minus_arm_length_2 = p->arm_length_1 - p->arm_length_2;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double arm_length_1_plus_arm_length_2 = p->arm_length_1 + p->arm_length_2;
@@ -485,6 +488,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a2 = p->offset_a2;
   made.offset_a3 = p->offset_a3;
   made.offset_z = p->offset_z;
+  made.bound_of_cos_a2 = bound_of_cos_a2;
   made.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2;

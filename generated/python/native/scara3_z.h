@@ -82,7 +82,7 @@ typedef struct {
   softkin_ends ends[SCARA3_Z_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_z, highest_z, arm_length_1, arm_length_2, arm_length_3, offset_a1, offset_a2, offset_a3,
-      offset_z, arm_length_1_minus_arm_length_2, machine_scale_times_free_angle,
+      offset_z, bound_of_cos_a2, arm_length_1_minus_arm_length_2, machine_scale_times_free_angle,
       arm_length_1_plus_arm_length_2, quotient_in_cos_a2, half_by_arm_length_1_by_arm_length_2;
   bool single_a1, single_a2, single_a3;
 } scara3_z_machine;

@@ -9,7 +9,8 @@ void scara3_zccc_regular(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
     double *SOFTKIN_RESTRICT misses) {
   const scara3_zccc_machine *k = machine;
-  const double half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
+  const double bound_of_cos_a3 = k->bound_of_cos_a3,
+      half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
       link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
@@ -50,7 +51,7 @@ void scara3_zccc_regular(const void *machine, const softkin_lanes *given,
         *(link_length_1_minus_link_length_2 + reach);
     const double cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)*quotient_in_cos_a3;
     /* a3: out of reach */
-    missed += fabs(cos_a3) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += fabs(cos_a3) <= bound_of_cos_a3 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double axis_a1 = offset_a1 + z;
     const double arm_along_a2 = link_length_1 + link_length_2*cos_a3;
@@ -85,7 +86,8 @@ void scara3_zccc_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const scara3_zccc_machine *k = machine;
-  const double half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
+  const double bound_of_cos_a3 = k->bound_of_cos_a3,
+      half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
       link_length_1_plus_link_length_2 = k->link_length_1_plus_link_length_2,
@@ -125,7 +127,7 @@ void scara3_zccc_regular_all(const void *machine, const softkin_lanes *given,
         *(link_length_1_minus_link_length_2 + reach);
     const double cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)*quotient_in_cos_a3;
     /* a3: out of reach */
-    missed += fabs(cos_a3) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += fabs(cos_a3) <= bound_of_cos_a3 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double axis_a1 = offset_a1 + z;
     const double arm_along_a2 = link_length_1 + link_length_2*cos_a3;

@@ -9,7 +9,7 @@ void scara4_cczc_zccoupled_regular(const void *machine, const softkin_lanes *giv
     double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES],
     double *SOFTKIN_RESTRICT misses) {
   const scara4_cczc_zccoupled_machine *k = machine;
-  const double flange_down = k->flange_down ? 1.0 : 0.0,
+  const double bound_of_cos_a2 = k->bound_of_cos_a2, flange_down = k->flange_down ? 1.0 : 0.0,
       half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
@@ -40,7 +40,7 @@ void scara4_cczc_zccoupled_regular(const void *machine, const softkin_lanes *giv
         *(link_length_1_minus_link_length_2 + reach);
     const double cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)*quotient_in_cos_a2;
     /* a2: out of reach */
-    missed += fabs(cos_a2) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += fabs(cos_a2) <= bound_of_cos_a2 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* A4: without a commanded turn, the value nearest to this */
     const double open_a4 = single_a4 ? mid_a4 : ref_a4;
@@ -81,7 +81,7 @@ void scara4_cczc_zccoupled_regular_all(const void *machine, const softkin_lanes 
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const scara4_cczc_zccoupled_machine *k = machine;
-  const double flange_down = k->flange_down ? 1.0 : 0.0,
+  const double bound_of_cos_a2 = k->bound_of_cos_a2, flange_down = k->flange_down ? 1.0 : 0.0,
       half_by_link_length_1_by_link_length_2 = k->half_by_link_length_1_by_link_length_2,
       link_length_1 = k->link_length_1,
       link_length_1_minus_link_length_2 = k->link_length_1_minus_link_length_2,
@@ -111,7 +111,7 @@ void scara4_cczc_zccoupled_regular_all(const void *machine, const softkin_lanes 
         *(link_length_1_minus_link_length_2 + reach);
     const double cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)*quotient_in_cos_a2;
     /* a2: out of reach */
-    missed += fabs(cos_a2) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += fabs(cos_a2) <= bound_of_cos_a2 ? 0.0 : 1.0;
     missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* A4: without a commanded turn, the value nearest to this */
     const double open_a4 = single_a4 ? mid_a4 : ref_a4;

@@ -166,7 +166,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       *(k->link_length_1_minus_link_length_2 + reach);
   const double cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)*k->quotient_in_cos_a3;
   /* a3: out of reach */
-  if (!(fabs(cos_a3) <= 1.0000000000005)) {
+  if (!(fabs(cos_a3) <= k->bound_of_cos_a3)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->link_length_1_plus_link_length_2 > fabs(k->link_length_1_minus_link_length_2) - reach
         ? reach - k->link_length_1_plus_link_length_2 : fabs(k->link_length_1_minus_link_length_2) - reach),
@@ -388,7 +388,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_plus_cos_a3 = (reach - k->link_length_1_minus_link_length_2)
       *(k->link_length_1_minus_link_length_2 + reach);
   const double cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)*k->quotient_in_cos_a3;
-  if (!(fabs(cos_a3) <= 1.0000000000005)) {
+  if (!(fabs(cos_a3) <= k->bound_of_cos_a3)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 2);
   }
   const double axis_a1 = k->offset_a1 + z;
@@ -461,6 +461,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   /* characteristic length of the machine */
   const double machine_scale = p->link_length_1 + p->link_length_2 + p->link_length_3;
+  /* 1, and rounding of squared lengths */
+  const double bound_of_cos_a3 = 1.0000000000005
+      + 5e-16*machine_scale*machine_scale/(p->link_length_1*p->link_length_2);
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
@@ -487,6 +490,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a2 = p->offset_a2;
   made.offset_a3 = p->offset_a3;
   made.offset_a4 = p->offset_a4;
+  made.bound_of_cos_a3 = bound_of_cos_a3;
   made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;

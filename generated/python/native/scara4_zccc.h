@@ -84,7 +84,7 @@ typedef struct {
   softkin_ends ends[SCARA4_ZCCC_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3, lowest_a4,
       highest_a4, mid_a4, link_length_1, link_length_2, link_length_3, offset_a1, offset_a2, offset_a3,
-      offset_a4, link_length_1_minus_link_length_2, machine_scale_times_free_angle,
+      offset_a4, bound_of_cos_a3, link_length_1_minus_link_length_2, machine_scale_times_free_angle,
       link_length_1_plus_link_length_2, quotient_in_cos_a3, half_by_link_length_1_by_link_length_2;
   bool single_a2, single_a3, single_a4;
 } scara4_zccc_machine;

@@ -82,8 +82,8 @@ typedef struct {
   softkin_ends ends[SCARA4_ZCCOUPLED_TYPE1_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, lowest_a4,
       highest_a4, mid_a4, link_length_1, link_length_2, offset_a1, offset_a2, offset_a3, offset_a4,
-      machine_scale, link_length_1_minus_link_length_2, machine_scale_times_free_angle, quotient_in_z,
-      quotient_in_cos_a2, half_by_link_length_1_by_link_length_2;
+      machine_scale, bound_of_cos_a2, link_length_1_minus_link_length_2, machine_scale_times_free_angle,
+      quotient_in_z, quotient_in_cos_a2, half_by_link_length_1_by_link_length_2;
   bool single_a1, single_a2, single_a4;
 } scara4_zccoupled_type1_machine;
 

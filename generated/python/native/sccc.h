@@ -94,7 +94,7 @@ typedef struct {
   softkin_ends ends[SCCC_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_joint_2, highest_joint_2, lowest_joint_3, highest_joint_3, link_length_1, link_length_2,
-      link_length_3, coupling_12, coupling_13, coupling_23, offset_a1, offset_a2, offset_a3,
+      link_length_3, coupling_12, coupling_13, coupling_23, offset_a1, offset_a2, offset_a3, bound_of_cos_a2,
       machine_scale_times_plane, link_length_1_minus_link_length_2, machine_scale_times_free_angle,
       coupling_12_plus_coupling_13_plus_one, coupling_23_plus_one, link_length_1_plus_link_length_2,
       quotient_in_cos_a2, half_by_link_length_1_by_link_length_2, quotient_in_open_a2, shared_sum,

@@ -80,8 +80,10 @@ class Constants:
         self.lowest_a6, self.highest_a6, self.single_a6, self.mid_a6 = machine._window("a6")
         machine_scale = abs(a2) + abs(a3)  # characteristic length of the machine
         rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
+        # 1, and rounding of squared lengths
+        bound_of_cos_q3 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (a2 * a3)
         machine_scale_times_free_angle = 1e-11 * machine_scale
-        product_in_lost_digits_37 = 0.01 * machine_scale
+        product_in_lost_digits_38 = 0.01 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         a2_plus_a3 = a2 + a3
         a2_minus_a3 = a2 - a3
@@ -90,8 +92,8 @@ class Constants:
         self.d1, self.a2, self.a3, self.d4, self.d5, self.d6, self.offset_a1 = d1, a2, a3, d4, d5, d6, offset_a1
         self.offset_a2, self.offset_a3, self.offset_a4, self.offset_a5 = offset_a2, offset_a3, offset_a4, offset_a5
         self.offset_a6, self.machine_scale, self.rounding_q1 = offset_a6, machine_scale, rounding_q1
-        self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.product_in_lost_digits_37, self.one_by_machine_scale = product_in_lost_digits_37, one_by_machine_scale
+        self.bound_of_cos_q3, self.machine_scale_times_free_angle = bound_of_cos_q3, machine_scale_times_free_angle
+        self.product_in_lost_digits_38, self.one_by_machine_scale = product_in_lost_digits_38, one_by_machine_scale
         self.a2_plus_a3, self.a2_minus_a3 = a2_plus_a3, a2_minus_a3
         self.quotient_in_closed_cos_q3 = quotient_in_closed_cos_q3
         self.quotient_in_closed_sin_q3 = quotient_in_closed_sin_q3
@@ -106,7 +108,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 329eee2824b12060"
+    KEY = "ac6_threeparallel 1b2a26cd8fca72aa"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -972,11 +974,12 @@ class Ac6ThreeParallel(Mechanism):
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
-        a2, a2_minus_a3, a2_plus_a3, a3, d1, d4, d5 = k.a2, k.a2_minus_a3, k.a2_plus_a3, k.a3, k.d1, k.d4, k.d5
-        d6, machine_scale, machine_scale_times_free_angle = k.d6, k.machine_scale, k.machine_scale_times_free_angle
-        mid_a1, mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a1, k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
-        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
-        offset_a5, offset_a6, product_in_lost_digits_37 = k.offset_a5, k.offset_a6, k.product_in_lost_digits_37
+        a2, a2_minus_a3, a2_plus_a3, a3, bound_of_cos_q3 = k.a2, k.a2_minus_a3, k.a2_plus_a3, k.a3, k.bound_of_cos_q3
+        d1, d4, d5, d6, machine_scale = k.d1, k.d4, k.d5, k.d6, k.machine_scale
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        offset_a6, product_in_lost_digits_38 = k.offset_a6, k.product_in_lost_digits_38
         quotient_in_closed_cos_q3, quotient_in_closed_sin_q3 = k.quotient_in_closed_cos_q3, k.quotient_in_closed_sin_q3
         rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
         single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
@@ -1032,14 +1035,14 @@ class Ac6ThreeParallel(Mechanism):
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_closed_cos_q3
-        within_37 = -1.0 <= cos_q3 <= 1.0
-        lost_digits_37 = (not within_37) and (
+        within_38 = -1.0 <= cos_q3 <= 1.0
+        lost_digits_38 = (not within_38) and (
             (-0.01 <= q6_radius_of_q5 <= 0.01)
             or (-0.01 <= radius_q6 <= 0.01)
-            or (abs(ahead_q1) <= product_in_lost_digits_37)
+            or (abs(ahead_q1) <= product_in_lost_digits_38)
         )
         # q3: out of reach
-        if not (lost_digits_37 or (-1.0000000000005 <= cos_q3 <= 1.0000000000005)):
+        if not (lost_digits_38 or (abs(cos_q3) <= bound_of_cos_q3)):
             missing = max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
@@ -1090,7 +1093,7 @@ class Ac6ThreeParallel(Mechanism):
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_37:
+        if lost_digits_38:
             found = self._meet_pose(
                 (
                     ref_a1,
@@ -1134,7 +1137,7 @@ class Ac6ThreeParallel(Mechanism):
         else:
             met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         # q3: out of reach
-        if not (met or (-1.0000000000005 <= cos_q3 <= 1.0000000000005)):
+        if not (met or (abs(cos_q3) <= bound_of_cos_q3)):
             missing = max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         return (

@@ -76,10 +76,14 @@ class Constants:
         self.lowest_a4, self.highest_a4, self.single_a4, self.mid_a4 = machine._window("a4")
         self.lowest_elbow, self.highest_elbow, *_ = machine._window("elbow")
         machine_scale = link_length_1 + link_length_2 + shoulder_offset  # characteristic length of the machine
+        # 1, and rounding of squared lengths
+        bound_of_cos_swing_a3_from_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (
+            link_length_1 * link_length_2
+        )
         rounding_a1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
-        product_in_lost_digits_16 = 0.01 * machine_scale
+        product_in_lost_digits_17 = 0.01 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
@@ -89,10 +93,10 @@ class Constants:
         self.base_height, self.shoulder_offset, self.link_length_1 = base_height, shoulder_offset, link_length_1
         self.link_length_2, self.wrist_offset_x, self.wrist_offset_z = link_length_2, wrist_offset_x, wrist_offset_z
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.machine_scale, self.rounding_a1 = machine_scale, rounding_a1
-        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
+        self.machine_scale, self.bound_of_cos_swing_a3_from_a2 = machine_scale, bound_of_cos_swing_a3_from_a2
+        self.rounding_a1, self.link_length_1_minus_link_length_2 = rounding_a1, link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.product_in_lost_digits_16, self.one_by_machine_scale = product_in_lost_digits_16, one_by_machine_scale
+        self.product_in_lost_digits_17, self.one_by_machine_scale = product_in_lost_digits_17, one_by_machine_scale
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
         self.quotient_in_closed_cos_swing_a3_from_a2 = quotient_in_closed_cos_swing_a3_from_a2
@@ -109,7 +113,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer"
-    KEY = "palletizer d8bac71faae2a449"
+    KEY = "palletizer 990c9ed5ceed6b2a"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),
@@ -637,6 +641,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         ref_a1, ref_a2, ref_a3, ref_a4 = reference
         k = self._constants
         base_height_plus_wrist_offset_z = k.base_height_plus_wrist_offset_z
+        bound_of_cos_swing_a3_from_a2 = k.bound_of_cos_swing_a3_from_a2
         half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
@@ -672,7 +677,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
         ) * quotient_in_closed_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
-        if not (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005):
+        if not (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
         # polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the
@@ -883,12 +888,13 @@ class Palletizer(OffsetKinematics, TwistChoice):
         turn_a1, turn_a2, turn_a3, _ = turns
         ref_a1, ref_a2, ref_a3, ref_a4 = reference
         k = self._constants
-        base_height, half_by_link_length_1_by_link_length_2 = k.base_height, k.half_by_link_length_1_by_link_length_2
+        base_height, bound_of_cos_swing_a3_from_a2 = k.base_height, k.bound_of_cos_swing_a3_from_a2
+        half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        offset_a4, product_in_lost_digits_16 = k.offset_a4, k.product_in_lost_digits_16
+        offset_a4, product_in_lost_digits_17 = k.offset_a4, k.product_in_lost_digits_17
         quotient_in_closed_cos_swing_a3_from_a2, rounding_a1 = k.quotient_in_closed_cos_swing_a3_from_a2, k.rounding_a1
         shoulder_offset, single_a1, single_a2, single_a3 = k.shoulder_offset, k.single_a1, k.single_a2, k.single_a3
         wrist_offset_x, wrist_offset_z = k.wrist_offset_x, k.wrist_offset_z
@@ -927,10 +933,10 @@ class Palletizer(OffsetKinematics, TwistChoice):
         cos_swing_a3_from_a2 = (
             one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
         ) * quotient_in_closed_cos_swing_a3_from_a2
-        within_16 = -1.0 <= cos_swing_a3_from_a2 <= 1.0
-        lost_digits_16 = (not within_16) and (abs(ahead_a1) <= product_in_lost_digits_16)
+        within_17 = -1.0 <= cos_swing_a3_from_a2 <= 1.0
+        lost_digits_17 = (not within_17) and (abs(ahead_a1) <= product_in_lost_digits_17)
         # a3_from_a2: out of reach
-        if not (lost_digits_16 or (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005)):
+        if not (lost_digits_17 or (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2)):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
         # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
@@ -979,7 +985,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_16:
+        if lost_digits_17:
             found = self._meet_point(
                 (
                     point_x,
@@ -1009,7 +1015,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         else:
             met, found_a1, found_a2, found_a3, found_a4 = (False, 0.0, 0.0, 0.0, 0.0)
         # a3_from_a2: out of reach
-        if not (met or (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005)):
+        if not (met or (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2)):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
         return (

@@ -62,6 +62,10 @@ class Constants:
         self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
         self.lowest_elbow, self.highest_elbow, *_ = machine._window("elbow")
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
+        # 1, and rounding of squared lengths
+        bound_of_cos_a2_from_a1 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (
+            link_length_1 * link_length_2
+        )
         machine_scale_times_plane = 1e-6 * machine_scale
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
@@ -69,6 +73,7 @@ class Constants:
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         self.link_length_1, self.link_length_2, self.offset_a1 = link_length_1, link_length_2, offset_a1
         self.offset_a2, self.machine_scale = offset_a2, machine_scale
+        self.bound_of_cos_a2_from_a1 = bound_of_cos_a2_from_a1
         self.machine_scale_times_plane = machine_scale_times_plane
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
@@ -85,7 +90,7 @@ class PCC(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_PCC"
-    KEY = "pcc ca6609836b3eaaba"
+    KEY = "pcc 2ea0f055ad7349f8"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Inner arm about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Outer arm about Z, its absolute angle", multi_turn=True),
@@ -216,6 +221,7 @@ class PCC(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
+        bound_of_cos_a2_from_a1 = k.bound_of_cos_a2_from_a1
         half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_2, machine_scale = k.link_length_2, k.machine_scale
@@ -238,7 +244,7 @@ class PCC(OffsetKinematics):
         )
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * quotient_in_cos_a2_from_a1
         # a2_from_a1: out of reach
-        if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
+        if not (abs(cos_a2_from_a1) <= bound_of_cos_a2_from_a1):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
         # sine squared, times the squared scale
@@ -362,6 +368,7 @@ class PCC(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
+        bound_of_cos_a2_from_a1 = k.bound_of_cos_a2_from_a1
         half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_2, machine_scale = k.link_length_2, k.machine_scale
@@ -386,7 +393,7 @@ class PCC(OffsetKinematics):
         )
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * quotient_in_cos_a2_from_a1
         # a2_from_a1: out of reach
-        if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
+        if not (abs(cos_a2_from_a1) <= bound_of_cos_a2_from_a1):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
         # sine squared, times the squared scale

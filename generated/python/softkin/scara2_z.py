@@ -60,6 +60,8 @@ class Constants:
         self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
         self.lowest_z, self.highest_z, *_ = machine._window("z")
         machine_scale = arm_length_1 + arm_length_2  # characteristic length of the machine
+        # 1, and rounding of squared lengths
+        bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (arm_length_1 * arm_length_2)
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         arm_length_1_times_shortest_link = 1e-9 * arm_length_1
@@ -68,7 +70,7 @@ class Constants:
         one_by_machine_scale = 1.0 / machine_scale
         self.arm_length_1, self.arm_length_2, self.offset_a1 = arm_length_1, arm_length_2, offset_a1
         self.offset_a2, self.offset_z, self.machine_scale = offset_a2, offset_z, machine_scale
-        self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
+        self.bound_of_cos_a2, self.arm_length_1_minus_arm_length_2 = bound_of_cos_a2, arm_length_1_minus_arm_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
         self.quotient_in_cos_a2 = quotient_in_cos_a2
@@ -85,7 +87,7 @@ class Scara2Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara2_Z"
-    KEY = "scara2_z ff39094f55362158"
+    KEY = "scara2_z 2a459d896c8179f7"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -226,10 +228,11 @@ class Scara2Z(OffsetKinematics):
         ref_a1, ref_a2, _ = reference
         k = self._constants
         arm_length_1, arm_length_1_minus_arm_length_2 = k.arm_length_1, k.arm_length_1_minus_arm_length_2
-        arm_length_2, half_by_arm_length_1_by_arm_length_2 = k.arm_length_2, k.half_by_arm_length_1_by_arm_length_2
-        machine_scale, machine_scale_times_free_angle = k.machine_scale, k.machine_scale_times_free_angle
-        mid_a1, mid_a2, offset_a1, offset_a2, offset_z = k.mid_a1, k.mid_a2, k.offset_a1, k.offset_a2, k.offset_z
-        quotient_in_cos_a2, single_a1, single_a2 = k.quotient_in_cos_a2, k.single_a1, k.single_a2
+        arm_length_2, bound_of_cos_a2 = k.arm_length_2, k.bound_of_cos_a2
+        half_by_arm_length_1_by_arm_length_2, machine_scale = k.half_by_arm_length_1_by_arm_length_2, k.machine_scale
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        offset_a1, offset_a2, offset_z, quotient_in_cos_a2 = k.offset_a1, k.offset_a2, k.offset_z, k.quotient_in_cos_a2
+        single_a1, single_a2 = k.single_a1, k.single_a2
         if not reasonable(x, y, z, ref_a1, ref_a2):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
@@ -239,7 +242,7 @@ class Scara2Z(OffsetKinematics):
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
-        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+        if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(arm_length_1_minus_arm_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale

@@ -61,6 +61,8 @@ class Constants:
         self.lowest_a2, self.highest_a2, self.single_a2, self.mid_a2 = machine._window("a2")
         self.lowest_a3, self.highest_a3, *_ = machine._window("a3")
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
+        # 1, and rounding of squared lengths
+        bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (link_length_1 * link_length_2)
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
@@ -69,6 +71,7 @@ class Constants:
         one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.offset_a1 = link_length_1, link_length_2, offset_a1
         self.offset_a2, self.offset_a3, self.machine_scale = offset_a2, offset_a3, machine_scale
+        self.bound_of_cos_a2 = bound_of_cos_a2
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
@@ -86,7 +89,7 @@ class Scara3CCZ(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_CCZ"
-    KEY = "scara3_ccz a8cd7b2dce6d210f"
+    KEY = "scara3_ccz b6525042e9fa2aaf"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -226,6 +229,7 @@ class Scara3CCZ(OffsetKinematics):
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2, _ = reference
         k = self._constants
+        bound_of_cos_a2 = k.bound_of_cos_a2
         half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_2, machine_scale = k.link_length_2, k.machine_scale
@@ -241,7 +245,7 @@ class Scara3CCZ(OffsetKinematics):
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
-        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+        if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale

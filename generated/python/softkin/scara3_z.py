@@ -66,6 +66,8 @@ class Constants:
         self.lowest_a3, self.highest_a3, self.single_a3, self.mid_a3 = machine._window("a3")
         self.lowest_z, self.highest_z, *_ = machine._window("z")
         machine_scale = arm_length_1 + arm_length_2 + arm_length_3  # characteristic length of the machine
+        # 1, and rounding of squared lengths
+        bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (arm_length_1 * arm_length_2)
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
@@ -73,7 +75,7 @@ class Constants:
         half_by_arm_length_1_by_arm_length_2 = 0.5 / (arm_length_1 * arm_length_2)
         self.arm_length_1, self.arm_length_2, self.arm_length_3 = arm_length_1, arm_length_2, arm_length_3
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_z = offset_a1, offset_a2, offset_a3, offset_z
-        self.arm_length_1_minus_arm_length_2 = arm_length_1_minus_arm_length_2
+        self.bound_of_cos_a2, self.arm_length_1_minus_arm_length_2 = bound_of_cos_a2, arm_length_1_minus_arm_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.arm_length_1_plus_arm_length_2 = arm_length_1_plus_arm_length_2
         self.quotient_in_cos_a2 = quotient_in_cos_a2
@@ -89,7 +91,7 @@ class Scara3Z(TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_Z"
-    KEY = "scara3_z 81f1601a0b406156"
+    KEY = "scara3_z a3f31fd2ad5e7582"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -255,7 +257,8 @@ class Scara3Z(TwistChoice):
         k = self._constants
         arm_length_1, arm_length_1_minus_arm_length_2 = k.arm_length_1, k.arm_length_1_minus_arm_length_2
         arm_length_1_plus_arm_length_2, arm_length_2 = k.arm_length_1_plus_arm_length_2, k.arm_length_2
-        arm_length_3, half_by_arm_length_1_by_arm_length_2 = k.arm_length_3, k.half_by_arm_length_1_by_arm_length_2
+        arm_length_3, bound_of_cos_a2 = k.arm_length_3, k.bound_of_cos_a2
+        half_by_arm_length_1_by_arm_length_2 = k.half_by_arm_length_1_by_arm_length_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3, offset_z = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3, k.offset_z
         quotient_in_cos_a2, single_a1, single_a2 = k.quotient_in_cos_a2, k.single_a1, k.single_a2
@@ -281,7 +284,7 @@ class Scara3Z(TwistChoice):
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
-        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+        if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(arm_length_1_minus_arm_length_2) - reach, reach - arm_length_1_plus_arm_length_2)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale

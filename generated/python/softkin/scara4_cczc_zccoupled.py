@@ -77,6 +77,8 @@ class Constants:
             "a4", (-720.0, 720.0) if abs(gear_coupling * RADIAN - pitch_zc / 360.0 * RADIAN) > 0.0 else None
         )
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
+        # 1, and rounding of squared lengths
+        bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (link_length_1 * link_length_2)
         shared_sum = gear_coupling * RADIAN - pitch_zc / 360.0 * RADIAN
         shared_value = -1.0 if flange_down else 1.0
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
@@ -88,8 +90,8 @@ class Constants:
         one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.flange_down = link_length_1, link_length_2, flange_down
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.machine_scale, self.shared_sum, self.shared_value = machine_scale, shared_sum, shared_value
-        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
+        self.machine_scale, self.bound_of_cos_a2, self.shared_sum = machine_scale, bound_of_cos_a2, shared_sum
+        self.shared_value, self.link_length_1_minus_link_length_2 = shared_value, link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_times_shortest_link, self.quotient_in_z = link_length_1_times_shortest_link, quotient_in_z
         self.quotient_in_cos_a2 = quotient_in_cos_a2
@@ -106,7 +108,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_CCZC_ZCcoupled"
-    KEY = "scara4_cczc_zccoupled 831e4473647c671f"
+    KEY = "scara4_cczc_zccoupled a3a6f1b1a3c2f06e"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -305,7 +307,8 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         turn_a4, turn_a1, turn_a2 = turns
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self._constants
-        flange_down, half_by_link_length_1_by_link_length_2 = k.flange_down, k.half_by_link_length_1_by_link_length_2
+        bound_of_cos_a2, flange_down = k.bound_of_cos_a2, k.flange_down
+        half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_2, machine_scale = k.link_length_2, k.machine_scale
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
@@ -332,7 +335,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
-        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+        if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale

@@ -70,6 +70,8 @@ class Constants:
         self.lowest_a3, self.highest_a3, self.single_a3, self.mid_a3 = machine._window("a3")
         self.lowest_a4, self.highest_a4, self.single_a4, self.mid_a4 = machine._window("a4")
         machine_scale = link_length_1 + link_length_2 + link_length_3  # characteristic length of the machine
+        # 1, and rounding of squared lengths
+        bound_of_cos_a3 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (link_length_1 * link_length_2)
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
@@ -79,6 +81,7 @@ class Constants:
         one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
+        self.bound_of_cos_a3 = bound_of_cos_a3
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
@@ -97,7 +100,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCCC"
-    KEY = "scara4_zccc 648c762a789e963f"
+    KEY = "scara4_zccc 17a9fd83d2f60c16"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Column along Z, up", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
@@ -261,6 +264,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         turn_a2, turn_a3, turn_a4 = turns
         _, ref_a2, ref_a3, ref_a4 = reference
         k = self._constants
+        bound_of_cos_a3 = k.bound_of_cos_a3
         half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
@@ -289,7 +293,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) * quotient_in_cos_a3
         # a3: out of reach
-        if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
+        if not (abs(cos_a3) <= bound_of_cos_a3):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         axis_a1 = offset_a1 + z

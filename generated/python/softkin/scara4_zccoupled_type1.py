@@ -67,6 +67,8 @@ class Constants:
             "a4", (-720.0, 720.0) if abs(pitch_zc) > 0.0 else None
         )
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
+        # 1, and rounding of squared lengths
+        bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (link_length_1 * link_length_2)
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         quotient_in_z = pitch_zc / 360.0 * RADIAN
@@ -76,7 +78,8 @@ class Constants:
         one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.offset_a1 = link_length_1, link_length_2, offset_a1
         self.offset_a2, self.offset_a3, self.offset_a4 = offset_a2, offset_a3, offset_a4
-        self.machine_scale, self.link_length_1_minus_link_length_2 = machine_scale, link_length_1_minus_link_length_2
+        self.machine_scale, self.bound_of_cos_a2 = machine_scale, bound_of_cos_a2
+        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle, self.quotient_in_z = machine_scale_times_free_angle, quotient_in_z
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.quotient_in_cos_a2 = quotient_in_cos_a2
@@ -93,7 +96,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCcoupled_Type1"
-    KEY = "scara4_zccoupled_type1 83bdb827f90d2486"
+    KEY = "scara4_zccoupled_type1 8c478126045c5a8d"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -276,6 +279,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         turn_a4, turn_a1, turn_a2 = turns
         ref_a1, ref_a2, _, ref_a4 = reference
         k = self._constants
+        bound_of_cos_a2 = k.bound_of_cos_a2
         half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_2, machine_scale = k.link_length_2, k.machine_scale
@@ -299,7 +303,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
-        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+        if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale

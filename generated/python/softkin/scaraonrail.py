@@ -71,6 +71,8 @@ class Constants:
         self.lowest_a3, self.highest_a3, *_ = machine._window("a3")
         self.lowest_a4, self.highest_a4, self.single_a4, self.mid_a4 = machine._window("a4")
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
+        # 1, and rounding of squared lengths
+        bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (link_length_1 * link_length_2)
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
@@ -79,7 +81,8 @@ class Constants:
         one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.offset_e1 = link_length_1, link_length_2, offset_e1
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.machine_scale, self.link_length_1_minus_link_length_2 = machine_scale, link_length_1_minus_link_length_2
+        self.machine_scale, self.bound_of_cos_a2 = machine_scale, bound_of_cos_a2
+        self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
         self.quotient_in_cos_a2 = quotient_in_cos_a2
@@ -96,7 +99,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_ScaraOnRail"
-    KEY = "scaraonrail 9fbb95a97086ad6e"
+    KEY = "scaraonrail 9f1c1a7fe7007ec4"
     AXES = (
         Axis(name="E1", kind="linear", unit="u", meaning="Rail along X: carries the arm", multi_turn=False),
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
@@ -271,6 +274,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         turn_a1, turn_a2, turn_a4 = turns
         ref_e1, ref_a1, ref_a2, _, ref_a4 = reference
         k = self._constants
+        bound_of_cos_a2 = k.bound_of_cos_a2
         half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_2, machine_scale = k.link_length_2, k.machine_scale
@@ -296,7 +300,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
-        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+        if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale

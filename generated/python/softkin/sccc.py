@@ -74,6 +74,8 @@ class Constants:
         self.lowest_joint_2, self.highest_joint_2, *_ = machine._window("joint_2")
         self.lowest_joint_3, self.highest_joint_3, *_ = machine._window("joint_3")
         machine_scale = link_length_1 + link_length_2 + link_length_3  # characteristic length of the machine
+        # 1, and rounding of squared lengths
+        bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (link_length_1 * link_length_2)
         machine_scale_times_plane = 1e-6 * machine_scale
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
@@ -91,7 +93,7 @@ class Constants:
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
         self.coupling_12, self.coupling_13, self.coupling_23 = coupling_12, coupling_13, coupling_23
         self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
-        self.machine_scale_times_plane = machine_scale_times_plane
+        self.bound_of_cos_a2, self.machine_scale_times_plane = bound_of_cos_a2, machine_scale_times_plane
         self.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.coupling_12_plus_coupling_13_plus_one = coupling_12_plus_coupling_13_plus_one
@@ -113,7 +115,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_SCCC"
-    KEY = "sccc 9250e536bb53ebd3"
+    KEY = "sccc 3de105b9968c1f7b"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Link 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Link 2 about Z", multi_turn=True),
@@ -297,8 +299,8 @@ class SCCC(OffsetKinematics, TwistChoice):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        coupling_12, coupling_13, coupling_23 = k.coupling_12, k.coupling_13, k.coupling_23
-        half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
+        bound_of_cos_a2, coupling_12, coupling_13 = k.bound_of_cos_a2, k.coupling_12, k.coupling_13
+        coupling_23, half_by_link_length_1_by_link_length_2 = k.coupling_23, k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         link_length_3, machine_scale_times_free_angle = k.link_length_3, k.machine_scale_times_free_angle
@@ -331,7 +333,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
-        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+        if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale

@@ -20,10 +20,10 @@ import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
 from derive.equations.problem import Binding, Equation, Problem, StepDeterminant, sign_of
-from derive.ir.constants import BOUNDARY, FREE_ANGLE
+from derive.ir.constants import BOUNDARY, FREE_ANGLE, SQUARES
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let, Require, Statement, Status
-from derive.ir.symbols import cosine, real, sine
+from derive.ir.symbols import BOUND_OF, cosine, real, sine
 from derive.solver.subproblems.direction import free_angle
 from derive.solver.subproblems.one_equation.amplitude import Amplitude, amplitude_of
 from derive.solver.subproblems.one_equation.apart import determined_apart
@@ -111,7 +111,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
         Let(less_cos, less, f"law of cosines for {angle.name} ({equation.label}): 1 - cosine, times a scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
         *scale,
-        *_cosine(angle, amplitude, cos_name, (plus_cos - less_cos) / below, told, holds),
+        *_cosine(problem, angle, amplitude, cos_name, (plus_cos - less_cos) / below, told, holds),
         Let(square, less_cos * plus_cos, "sine squared, times the squared scale"),
         Let(sin_name, 2 * sigma * Root(square) / size(below)),
         *(_turned(problem, equation, angle, amplitude, (cos_name, sin_name)) if turned else ()),
@@ -129,6 +129,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
 
 
 def _cosine(
+    problem: Problem,
     angle: sp.Symbol,
     amplitude: Amplitude,
     name: sp.Symbol,
@@ -143,8 +144,12 @@ def _cosine(
     known = (*amplitude.naming.lets, *(s for s in amplitude.guard if isinstance(s, Let)))
     reason = out_of_reach(angle, told, known)
     if amplitude.aimable is None:
-        check = Require(sp.Le(sp.Abs(name), 1 + BOUNDARY / 2), Status.UNREACHABLE, reason=reason)
-        return Let(name, value), check
+        bound: sp.Expr = 1 + BOUNDARY / 2
+        named = real(f"{BOUND_OF}{name.name}")
+        is_met = sp.Le(sp.Abs(name), named if amplitude.is_fixed else bound)
+        most = Let(named, bound + SQUARES * problem.scale**2 / amplitude.length, "1, and rounding of squared lengths")
+        check = Require(is_met, Status.UNREACHABLE, reason=reason)
+        return *((most,) if amplitude.is_fixed else ()), Let(name, value), check
     ratio, size = real(f"ratio_of_{angle.name}"), amplitude.determinant_scale
     near = sp.Le(sp.Abs(ratio), 1 + BOUNDARY / 2 * (1 + size / amplitude.length))
     vanishes = sp.Le(sp.Abs(amplitude.left), FREE_ANGLE * size)

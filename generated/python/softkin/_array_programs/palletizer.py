@@ -37,7 +37,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 254
+    VALUES = 255
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def meet_point(self, given: Values, status: Codes) -> Values:
@@ -494,7 +494,7 @@ class ArrayPrograms(Programs):
         # the tool points exactly the opposite way
         require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
         # a3_from_a2: out of reach
-        require(status, absolute(cos_swing_a3_from_a2) <= 1.0000000000005, Status.UNREACHABLE)
+        require(status, absolute(cos_swing_a3_from_a2) <= k.bound_of_cos_swing_a3_from_a2, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
 
     def limits(self, axes: Reals) -> Codes:

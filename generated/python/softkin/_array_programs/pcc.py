@@ -32,7 +32,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 42
+    VALUES = 43
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -106,7 +106,7 @@ class ArrayPrograms(Programs):
         # a2 from the sum a2_from_a1 of angles about parallel axes; A2: whole turns added
         axis_a2 = nearest_period(k.offset_a2 + (angle_a1 + angle_a2_from_a1) / DEGREE, near_a2)
         # a2_from_a1: out of reach
-        require(status, absolute(cos_a2_from_a1) <= 1.0000000000005, Status.UNREACHABLE)
+        require(status, absolute(cos_a2_from_a1) <= k.bound_of_cos_a2_from_a1, Status.UNREACHABLE)
         return (axis_a1, axis_a2), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -32,7 +32,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 41
+    VALUES = 42
     JACOBIAN_ROWS = (0, 1, 2)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
@@ -103,7 +103,7 @@ class ArrayPrograms(Programs):
         axis_a2 = nearest_period(k.offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: whole turns added
         axis_a3 = k.offset_a3 + z
         # a2: out of reach
-        require(status, absolute(cos_a2) <= 1.0000000000005, Status.UNREACHABLE)
+        require(status, absolute(cos_a2) <= k.bound_of_cos_a2, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -32,7 +32,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 76
+    VALUES = 77
     JACOBIAN_ROWS = (0, 1, 5)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
@@ -160,7 +160,7 @@ class ArrayPrograms(Programs):
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
         # a2: out of reach
-        require(status, absolute(cos_a2) <= 1.0000000000005, Status.UNREACHABLE)
+        require(status, absolute(cos_a2) <= k.bound_of_cos_a2, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -18,14 +18,15 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    a2, a2_minus_a3, a2_plus_a3, a3, d1, d4, d5 = k.a2, k.a2_minus_a3, k.a2_plus_a3, k.a3, k.d1, k.d4, k.d5
-    d6, highest_a1, highest_a2, highest_a3 = k.d6, k.highest_a1, k.highest_a2, k.highest_a3
-    highest_a4, highest_a5, highest_a6, lowest_a1 = k.highest_a4, k.highest_a5, k.highest_a6, k.lowest_a1
-    lowest_a2, lowest_a3, lowest_a4, lowest_a5 = k.lowest_a2, k.lowest_a3, k.lowest_a4, k.lowest_a5
-    lowest_a6, machine_scale_times_free_angle, mid_a1 = k.lowest_a6, k.machine_scale_times_free_angle, k.mid_a1
-    mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
-    offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
-    offset_a5, offset_a6, product_in_lost_digits_37 = k.offset_a5, k.offset_a6, k.product_in_lost_digits_37
+    a2, a2_minus_a3, a2_plus_a3, a3, bound_of_cos_q3 = k.a2, k.a2_minus_a3, k.a2_plus_a3, k.a3, k.bound_of_cos_q3
+    d1, d4, d5, d6, highest_a1, highest_a2 = k.d1, k.d4, k.d5, k.d6, k.highest_a1, k.highest_a2
+    highest_a3, highest_a4, highest_a5, highest_a6 = k.highest_a3, k.highest_a4, k.highest_a5, k.highest_a6
+    lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
+    lowest_a5, lowest_a6 = k.lowest_a5, k.lowest_a6
+    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+    mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
+    offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+    offset_a6, product_in_lost_digits_38 = k.offset_a6, k.product_in_lost_digits_38
     quotient_in_closed_cos_q3, quotient_in_closed_sin_q3 = k.quotient_in_closed_cos_q3, k.quotient_in_closed_sin_q3
     rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
     single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
@@ -101,12 +102,12 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3_left_down = (reach_left_down - a2_minus_a3) * (a2_minus_a3 + reach_left_down)
         cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down) * quotient_in_closed_cos_q3
-        within_37 = -1.0 <= cos_q3_left_down <= 1.0
-        lost_digits_37 = (not within_37) and (
-            (-0.01 <= radius_q6_left <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_37)
+        within_38 = -1.0 <= cos_q3_left_down <= 1.0
+        lost_digits_38 = (not within_38) and (
+            (-0.01 <= radius_q6_left <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_38)
         )
         # digits may be lost
-        if not (not lost_digits_37):
+        if not (not lost_digits_38):
             return ()
         # at a singularity: the angle of the reference
         if radius_q6_left > 1e-11:
@@ -134,12 +135,12 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3_left_up = (reach_left_up - a2_minus_a3) * (a2_minus_a3 + reach_left_up)
         cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up) * quotient_in_closed_cos_q3
-        within_37 = -1.0 <= cos_q3_left_up <= 1.0
-        lost_digits_37 = (not within_37) and (
-            (-0.01 <= radius_q6_left <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_37)
+        within_38 = -1.0 <= cos_q3_left_up <= 1.0
+        lost_digits_38 = (not within_38) and (
+            (-0.01 <= radius_q6_left <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_38)
         )
         # digits may be lost
-        if not (not lost_digits_37):
+        if not (not lost_digits_38):
             return ()
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
@@ -182,12 +183,12 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3_right_down = (reach_right_down - a2_minus_a3) * (a2_minus_a3 + reach_right_down)
         cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down) * quotient_in_closed_cos_q3
-        within_37 = -1.0 <= cos_q3_right_down <= 1.0
-        lost_digits_37 = (not within_37) and (
-            (-0.01 <= radius_q6_right <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_37)
+        within_38 = -1.0 <= cos_q3_right_down <= 1.0
+        lost_digits_38 = (not within_38) and (
+            (-0.01 <= radius_q6_right <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_38)
         )
         # digits may be lost
-        if not (not lost_digits_37):
+        if not (not lost_digits_38):
             return ()
         # at a singularity: the angle of the reference
         if radius_q6_right > 1e-11:
@@ -215,14 +216,14 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3_right_up = (reach_right_up - a2_minus_a3) * (a2_minus_a3 + reach_right_up)
         cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up) * quotient_in_closed_cos_q3
-        within_37 = -1.0 <= cos_q3_right_up <= 1.0
-        lost_digits_37 = (not within_37) and (
-            (-0.01 <= radius_q6_right <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_37)
+        within_38 = -1.0 <= cos_q3_right_up <= 1.0
+        lost_digits_38 = (not within_38) and (
+            (-0.01 <= radius_q6_right <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_38)
         )
         # digits may be lost
-        if not (not lost_digits_37):
+        if not (not lost_digits_38):
             return ()
-        refusal_left_down = 0 if -1.0000000000005 <= cos_q3_left_down <= 1.0000000000005 else 3  # q3: out of reach
+        refusal_left_down = 0 if abs(cos_q3_left_down) <= bound_of_cos_q3 else 3  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left) * RADIAN
         # sine squared, times the squared scale
         sine_square_q3 = one_less_cos_q3_left_down * one_plus_cos_q3_left_down
@@ -244,7 +245,7 @@ def unrolled(k: Constants) -> Unrolled:
         quotient_in_axis_a5 = arctan2(radius_q6_left, cos_q5_left) * RADIAN
         axis_a5_left_down = offset_a5 + quotient_in_axis_a5
         axis_a6_left_down = offset_a6 + arctan2(sin_q6_left_down, cos_q6_left_down) * RADIAN
-        refusal_left_up = 0 if -1.0000000000005 <= cos_q3_left_up <= 1.0000000000005 else 3  # q3: out of reach
+        refusal_left_up = 0 if abs(cos_q3_left_up) <= bound_of_cos_q3 else 3  # q3: out of reach
         sine_square_q3 = one_less_cos_q3_left_up * one_plus_cos_q3_left_up  # sine squared, times the squared scale
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
         if reach_left_up > machine_scale_times_free_angle:
@@ -271,8 +272,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_left_down_down) * RADIAN
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_left_down_up) * RADIAN
-        # q3: out of reach
-        refusal_right_down = 0 if -1.0000000000005 <= cos_q3_right_down <= 1.0000000000005 else 3
+        refusal_right_down = 0 if abs(cos_q3_right_down) <= bound_of_cos_q3 else 3  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right) * RADIAN
         # sine squared, times the squared scale
         sine_square_q3 = one_less_cos_q3_right_down * one_plus_cos_q3_right_down
@@ -294,7 +294,7 @@ def unrolled(k: Constants) -> Unrolled:
         quotient_in_axis_a5 = arctan2(radius_q6_right, cos_q5_right) * RADIAN
         axis_a5_right_down = offset_a5 + quotient_in_axis_a5
         axis_a6_right_down = offset_a6 + arctan2(sin_q6_right_down, cos_q6_right_down) * RADIAN
-        refusal_right_up = 0 if -1.0000000000005 <= cos_q3_right_up <= 1.0000000000005 else 3  # q3: out of reach
+        refusal_right_up = 0 if abs(cos_q3_right_up) <= bound_of_cos_q3 else 3  # q3: out of reach
         # sine squared, times the squared scale
         sine_square_q3 = one_less_cos_q3_right_up * one_plus_cos_q3_right_up
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
@@ -459,17 +459,17 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_closed_cos_q3
-        within_37 = -1.0 <= cos_q3 <= 1.0
-        lost_digits_37 = (not within_37) and (
+        within_38 = -1.0 <= cos_q3 <= 1.0
+        lost_digits_38 = (not within_38) and (
             (-0.01 <= q6_radius_of_q5 <= 0.01)
             or (-0.01 <= radius_q6 <= 0.01)
-            or (abs(ahead_q1) <= product_in_lost_digits_37)
+            or (abs(ahead_q1) <= product_in_lost_digits_38)
         )
         # digits may be lost
-        if not (not lost_digits_37):
+        if not (not lost_digits_38):
             return ()
         # q3: out of reach
-        if not (-1.0000000000005 <= cos_q3 <= 1.0000000000005):
+        if not (abs(cos_q3) <= bound_of_cos_q3):
             return None
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_closed_sin_q3

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
     base_height_plus_wrist_offset_z = k.base_height_plus_wrist_offset_z
+    bound_of_cos_swing_a3_from_a2 = k.bound_of_cos_swing_a3_from_a2
     half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
     link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
     link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
@@ -58,7 +59,7 @@ def unrolled(k: Constants) -> Unrolled:
             one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
         ) * quotient_in_closed_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
-        refusal_front = 0 if -1.0000000000005 <= cos_swing_a3_from_a2_front <= 1.0000000000005 else 3
+        refusal_front = 0 if abs(cos_swing_a3_from_a2_front) <= bound_of_cos_swing_a3_from_a2 else 3
         # sine squared, times the squared scale
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -83,7 +84,7 @@ def unrolled(k: Constants) -> Unrolled:
             one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
         ) * quotient_in_closed_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
-        refusal_back = 0 if -1.0000000000005 <= cos_swing_a3_from_a2_back <= 1.0000000000005 else 3
+        refusal_back = 0 if abs(cos_swing_a3_from_a2_back) <= bound_of_cos_swing_a3_from_a2 else 3
         # a3 from the sum a3_from_a2 of angles about parallel axes
         # cosine and sine of a4 from the cos heading and sin heading equations
         if radius_a1 > machine_scale_times_free_angle:
@@ -208,7 +209,7 @@ def unrolled(k: Constants) -> Unrolled:
             one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
         ) * quotient_in_closed_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
-        if not (-1.0000000000005 <= cos_swing_a3_from_a2 <= 1.0000000000005):
+        if not (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2):
             return None
         # polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the
         # reference

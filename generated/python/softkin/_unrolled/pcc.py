@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
+    bound_of_cos_a2_from_a1 = k.bound_of_cos_a2_from_a1
     half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
     link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
     link_length_2, machine_scale = k.link_length_2, k.machine_scale
@@ -43,7 +44,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * quotient_in_cos_a2_from_a1
         # a2_from_a1: out of reach
-        if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
+        if not (abs(cos_a2_from_a1) <= bound_of_cos_a2_from_a1):
             return 2 * (refused[Status.UNREACHABLE],)
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
@@ -87,7 +88,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * quotient_in_cos_a2_from_a1
         # a2_from_a1: out of reach
-        if not (-1.0000000000005 <= cos_a2_from_a1 <= 1.0000000000005):
+        if not (abs(cos_a2_from_a1) <= bound_of_cos_a2_from_a1):
             return None
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1

@@ -20,9 +20,10 @@ def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
     arm_length_1, arm_length_1_minus_arm_length_2 = k.arm_length_1, k.arm_length_1_minus_arm_length_2
     arm_length_1_plus_arm_length_2, arm_length_2 = k.arm_length_1_plus_arm_length_2, k.arm_length_2
-    arm_length_3, half_by_arm_length_1_by_arm_length_2 = k.arm_length_3, k.half_by_arm_length_1_by_arm_length_2
-    highest_a1, highest_a2, highest_a3, highest_z = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_z
-    lowest_a1, lowest_a2, lowest_a3, lowest_z = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_z
+    arm_length_3, bound_of_cos_a2 = k.arm_length_3, k.bound_of_cos_a2
+    half_by_arm_length_1_by_arm_length_2, highest_a1 = k.half_by_arm_length_1_by_arm_length_2, k.highest_a1
+    highest_a2, highest_a3, highest_z, lowest_a1 = k.highest_a2, k.highest_a3, k.highest_z, k.lowest_a1
+    lowest_a2, lowest_a3, lowest_z = k.lowest_a2, k.lowest_a3, k.lowest_z
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, offset_a1, offset_a2, offset_a3, offset_z = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3, k.offset_z
     quotient_in_cos_a2, single_a1, single_a2 = k.quotient_in_cos_a2, k.single_a1, k.single_a2
@@ -55,7 +56,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
-        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+        if not (abs(cos_a2) <= bound_of_cos_a2):
             return 2 * (refused[Status.UNREACHABLE],)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * half_by_arm_length_1_by_arm_length_2
@@ -105,7 +106,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (reach - arm_length_1_minus_arm_length_2) * (arm_length_1_minus_arm_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
-        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+        if not (abs(cos_a2) <= bound_of_cos_a2):
             return None
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (

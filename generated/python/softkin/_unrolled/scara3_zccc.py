@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
+    bound_of_cos_a3 = k.bound_of_cos_a3
     half_by_link_length_1_by_link_length_2, highest_a1 = k.half_by_link_length_1_by_link_length_2, k.highest_a1
     highest_a2, highest_a3, highest_a4, link_length_1 = k.highest_a2, k.highest_a3, k.highest_a4, k.link_length_1
     link_length_1_minus_link_length_2 = k.link_length_1_minus_link_length_2
@@ -55,7 +56,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) * quotient_in_cos_a3
         # a3: out of reach
-        if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
+        if not (abs(cos_a3) <= bound_of_cos_a3):
             return 2 * (refused[Status.UNREACHABLE],)
         axis_a1 = offset_a1 + z
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
@@ -105,7 +106,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) * quotient_in_cos_a3
         # a3: out of reach
-        if not (-1.0000000000005 <= cos_a3 <= 1.0000000000005):
+        if not (abs(cos_a3) <= bound_of_cos_a3):
             return None
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = (

@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    flange_down, half_by_link_length_1_by_link_length_2 = k.flange_down, k.half_by_link_length_1_by_link_length_2
-    highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
-    link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
-    link_length_2, lowest_a1, lowest_a2, lowest_a3 = k.link_length_2, k.lowest_a1, k.lowest_a2, k.lowest_a3
-    lowest_a4, machine_scale = k.lowest_a4, k.machine_scale
-    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
-    mid_a4, offset_a1, offset_a2, offset_a3 = k.mid_a4, k.offset_a1, k.offset_a2, k.offset_a3
-    offset_a4, quotient_in_cos_a2, quotient_in_z = k.offset_a4, k.quotient_in_cos_a2, k.quotient_in_z
-    single_a1, single_a2, single_a4 = k.single_a1, k.single_a2, k.single_a4
+    bound_of_cos_a2, flange_down = k.bound_of_cos_a2, k.flange_down
+    half_by_link_length_1_by_link_length_2, highest_a1 = k.half_by_link_length_1_by_link_length_2, k.highest_a1
+    highest_a2, highest_a3, highest_a4, link_length_1 = k.highest_a2, k.highest_a3, k.highest_a4, k.link_length_1
+    link_length_1_minus_link_length_2, link_length_2 = k.link_length_1_minus_link_length_2, k.link_length_2
+    lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
+    machine_scale, machine_scale_times_free_angle = k.machine_scale, k.machine_scale_times_free_angle
+    mid_a1, mid_a2, mid_a4, offset_a1, offset_a2 = k.mid_a1, k.mid_a2, k.mid_a4, k.offset_a1, k.offset_a2
+    offset_a3, offset_a4, quotient_in_cos_a2 = k.offset_a3, k.offset_a4, k.quotient_in_cos_a2
+    quotient_in_z, single_a1, single_a2, single_a4 = k.quotient_in_z, k.single_a1, k.single_a2, k.single_a4
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4))
 
     def branches(
@@ -53,7 +53,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
-        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+        if not (abs(cos_a2) <= bound_of_cos_a2):
             return 2 * (refused[Status.UNREACHABLE],)
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * half_by_link_length_1_by_link_length_2
@@ -109,7 +109,7 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2) * (link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * quotient_in_cos_a2
         # a2: out of reach
-        if not (-1.0000000000005 <= cos_a2 <= 1.0000000000005):
+        if not (abs(cos_a2) <= bound_of_cos_a2):
             return None
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
