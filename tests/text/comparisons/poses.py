@@ -16,6 +16,8 @@ from tests.text.serial_pairs import SerialPair
 ROUNDING = 1e-11
 ANSWERED = 3
 """The commands of a sample that have an answer, and are diagnosed."""
+NEARLY_FREE = 1e-5
+"""Where a margin is smaller, steps on the closure may end anywhere along what hardly moves the pose."""
 
 
 def forward(pair: SerialPair, sample: Sample) -> None:
@@ -27,7 +29,7 @@ def forward(pair: SerialPair, sample: Sample) -> None:
 
 def inverse(pair: SerialPair, sample: Sample) -> None:
     """CartesianToAxes gives the axis values of Python; where branches coincide, axis values of the same pose."""
-    coincide = _is_spatial(pair) and 3 in own_bytes(pair, sample)
+    coincide = _is_spatial(pair) and _loses_digits(pair, sample)
     for command, (status, answer) in solved(pair.machine, sample):
         frame = command.position, command.rotation
         expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
@@ -36,6 +38,15 @@ def inverse(pair: SerialPair, sample: Sample) -> None:
             assert_same_pose(pair, found, (status, expected), command)
         else:
             assert_same(found, (status, expected), pair, command)
+
+
+def _loses_digits(pair: SerialPair, sample: Sample) -> bool:
+    """Whether branches coincide, or so nearly that the last digit of a pose is one of the first of an angle."""
+    bytes_of_branches = own_bytes(pair, sample)
+    if not bytes_of_branches:
+        return False
+    margins = pair.robot.singularity(sample.axes).margins.values()
+    return 3 in bytes_of_branches or any(abs(margin) < NEARLY_FREE for margin in margins)
 
 
 def _is_spatial(pair: SerialPair) -> bool:
