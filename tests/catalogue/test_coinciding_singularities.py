@@ -29,7 +29,7 @@ REGULAR, NEAR = 1e-12, 1e-10
 WELL_REGULAR = 0.2
 CORNER = 2e-3
 """Margins that are near zero, per their largest."""
-ENOUGH = 10
+ENOUGH = 30
 CLOSEST = 1e-11
 """Where a margin is smaller, a byte is 3."""
 SPATIAL = tuple(m for m in MECHANISMS if is_spatial(m) and m.branches)
