@@ -19,7 +19,8 @@ _RIGHT = sp.pi / 2
 _ANY_DECIMALS = 1e-6
 """An angle as near to a multiple of 90° as this (radians) is that multiple, however many decimals it has."""
 _LONG_DECIMALS = 1e-9
-"""A decimal as near to a whole degree as this (radians) is that degree."""
+"""A decimal as near to a whole number of thousandths of a degree as this (radians) is that angle."""
+_THOUSANDTHS = 1000
 _DECIMALS = 4
 """A decimal with at least this many digits that equals a rounded multiple of 90° is that multiple."""
 _NEARLY = 0.01
@@ -93,7 +94,7 @@ def _wrong_turn(mechanism: Mechanism, factor: Factor) -> Iterator[str]:
 
 def with_exact_angles(mechanism: Mechanism) -> Mechanism:
     """The mechanism with the exact multiples of 90° in its chain, however they are written: `90*DEGREE`, `1.5708`; and
-    with exact whole degrees for long decimals, 45° for `0.7853981634`.
+    with the exact thousandths of a degree for long decimals, 22.5° for `0.3926990817`.
     """
     if mechanism.chain is None:
         return mechanism
@@ -104,8 +105,7 @@ def _with_exact_angle(factor: Factor) -> Factor:
     number = number_in(factor.amount) if factor.motion is Motion.TURN else sp.Integer(0)
     exact = as_right_angles(number)
     if exact is None and number.has(sp.Float):
-        degrees = round(in_radians(number) * 180 / float(sp.pi))
-        exact = degrees * sp.pi / 180
+        exact = round(in_radians(number) * 180 / float(sp.pi) * _THOUSANDTHS) * sp.pi / (180 * _THOUSANDTHS)
         exact = exact if abs(in_radians(number) - float(exact)) <= _LONG_DECIMALS else None
     if exact is None or exact == number:
         return factor

@@ -66,7 +66,7 @@ lengths of the machine, is left."""
 DOUBTFUL = sp.Float("1e-2")
 """A step whose margin is at most this may have lost digits that a later step needs; there its angle is set free."""
 SCANNED = 61
-"""The values of free angles that are tried, all around the circle, to find the start that is nearest to a pose."""
+"""The values of free angles that are tried, all around the circle, to find the start of which one step leaves least."""
 REFINED = 26
 """So many more beside the nearest, ever closer."""
 LATTICE = 17

@@ -148,6 +148,7 @@ PLACE = (TRIED, SIDE, FREED, FREED_ANGLE)
 
 BOUND_OF = "bound_of_"
 """How the names of bounds begin that allow for the rounding of a machine whose lengths differ much: 1, but for that."""
+
 REFUSAL = "refusal"
 """An output of a branch: 0 where it has a solution, else the number of its status, which is its place in `Status`."""
 

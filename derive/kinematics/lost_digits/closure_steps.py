@@ -5,7 +5,7 @@ the damping d is a share of its size. A fold or a free angle is no special case:
 move. A solution counts if its error is rounding, and no branch has the wrong sign.
 
 Where the steps meet nothing, the closed form gives another start: with nearly free angles at the reference, then with
-them turned to where the closed form comes nearest to the pose, of many values around the circle. Where the steps meet
+them turned to where one step leaves the least error, of many values around the circle. Where the steps meet
 the pose on another branch, nearly free angles are known from there, and the closed form is taken again; if that
 leads to the same branch, the joint of its two roots is mirrored about the start.
 """
@@ -280,7 +280,7 @@ def _step(machine: Machine) -> list[Statement]:
         Let(
             LEFT_OVER,
             damping * Root(sp.Add(*[m**2 for m in multipliers])) + length**2,
-            "of the error, behind a step: what it does not reach, and its curvature",
+            "error that a step leaves: what it does not reach, and its curvature",
         ),
         Let(
             real("shrinking"),

@@ -24,9 +24,9 @@ TURN, BESIDE = real("turn_of_attempt"), real("turn_beside")
 AGAIN = flag("from_the_met_pose")
 ENDS = flag("no_start_is_left")
 FREE, FREE_TURN = real("free_angle"), real("free_turn")
-LEFT_OVER = real("error_left_over")
-NEAREST, NEAREST_TURN = real("nearest_error"), real("nearest_turn")
-NEAREST_NOW, NEAREST_TURN_NOW = real("nearest_error_now"), real("nearest_turn_now")
+LEFT_OVER = real("error_left")
+NEAREST, NEAREST_TURN = real("least_error_left"), real("nearest_turn")
+NEAREST_NOW, NEAREST_TURN_NOW = real("least_error_left_now"), real("nearest_turn_now")
 STEP = sp.Rational(360, SCANNED)
 """How far (degrees) free angles are turned from one attempt of the scan to the next."""
 SCAN_ENDS = SCANNED + REFINED + 2

@@ -191,7 +191,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int passes_left = 64;
   int attempt = 0;
   double error_before = 9.0;
-  double nearest_error = 9.0;
+  double least_error_left = 9.0;
   double nearest_turn = 0.0;
   double turn_of_attempt = 0.0;
   double turn_beside = 5.901639344262295;
@@ -211,7 +211,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       product_2_6, product_3_3, rate_3_2_plus_rate_3_3_plus_rate_3_4, product_3_4, product_3_5, product_3_6,
       product_4_4, product_4_5, product_4_6, product_5_5, product_5_6, product_6_6, multiplier_1,
       multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6, step_a1, sum_in_step_a2, step_a2,
-      step_a3, step_a4, step_a5, step_a6, step_length, error_left_over, nearest_turn_now, free_turn,
+      step_a3, step_a4, step_a5, step_a6, step_length, error_left, nearest_turn_now, free_turn,
       closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1, closed_cos_q1, closed_sin_q1,
       closed_r21_from_q1, closed_r22_from_q1, closed_radius_q6, closed_q6_radius_of_q5, closed_cos_q5,
       closed_reference_a6, closed_along_q6, closed_length_q6, closed_cos_q6, closed_across_q6, closed_sin_q6,
@@ -220,7 +220,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       closed_reference_a2, closed_one_less_cos_q3, closed_one_plus_cos_q3, closed_cos_q3,
       closed_arm_along_q2, closed_sine_square_q3, closed_sin_q3, closed_arm_across_q2, closed_direction_x_q2,
       closed_direction_y_q2, closed_angle_q2, closed_axis_a2, closed_angle_q3, closed_axis_a3,
-      closed_angle_with_q4, closed_axis_a4, closed_axis_a5, closed_axis_a6, nearest_error_now,
+      closed_angle_with_q4, closed_axis_a4, closed_axis_a5, closed_axis_a6, least_error_left_now,
       shared_quotient;
   int next_attempt, passes_left_now;
   bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, mirrors,
@@ -395,11 +395,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         - multiplier_5*r22_at_q5 - multiplier_6*r32_at_q5;
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3 + step_a4*step_a4
         + step_a5*step_a5 + step_a6*step_a6);
-    /* of the error, behind a step: what it does not reach, and its curvature */
-    error_left_over = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3
+    /* error that a step leaves: what it does not reach, and its curvature */
+    error_left = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3
         + multiplier_4*multiplier_4 + multiplier_5*multiplier_5 + multiplier_6*multiplier_6)*damping
         + step_length*step_length;
-    is_nearer = (attempt > 1) && (attempt < 89) && (error_left_over < nearest_error);
+    is_nearer = (attempt > 1) && (attempt < 89) && (error_left < least_error_left);
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
     free_turn = next_attempt > 62 ? nearest_turn_now
@@ -482,7 +482,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     closed_axis_a6 = softkin_on_turn(k->offset_a6
         + softkin_angle_of(closed_sin_q6, closed_cos_q6)*SOFTKIN_RADIAN, closed_near_a6);
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
-    nearest_error_now = is_nearer ? error_left_over : nearest_error;
+    least_error_left_now = is_nearer ? error_left : least_error_left;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
     if (no_start_is_left || pose_is_met || (another && (next_attempt > 89))) {
       break;
@@ -505,7 +505,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     passes_left = (another ? ((next_attempt > 1) && (next_attempt < 89) ? 0 : 64) : passes_left_now);
     attempt = (no_start_is_left ? 90 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
-    nearest_error = nearest_error_now;
+    least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
     turn_beside = ((next_attempt > 62) && (next_attempt < 89) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
@@ -1543,7 +1543,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale = fabs(p->a2) + fabs(p->a3); /* characteristic length of the machine */
   /* rounding error of a squared length */
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
-  /* 1, and rounding of squared lengths */
+  /* largest cosine within reach: 1, and the rounding of squared lengths */
   const double bound_of_cos_q3 = 1.0000000000005 + 5e-16*machine_scale*machine_scale/(p->a2*p->a3);
   const double machine_scale_times_free_angle = 1e-11*machine_scale;
   const double product_in_lost_digits_38 = 0.01*machine_scale;

@@ -231,7 +231,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int passes_left = 64;
   int attempt = 0;
   double error_before = 9.0;
-  double nearest_error = 9.0;
+  double least_error_left = 9.0;
   double nearest_turn = 0.0;
   double turn_of_attempt = 0.0;
   double turn_beside = 5.901639344262295;
@@ -251,7 +251,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       rate_2_2_plus_rate_2_3, product_2_4, product_2_5, product_2_6, product_3_3, rate_3_2_plus_rate_3_3,
       product_3_4, product_3_5, product_3_6, product_4_4, product_4_5, product_4_6, product_5_5, product_5_6,
       product_6_6, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6,
-      step_a1, sum_in_step_a2, step_a2, step_a3, step_a4, step_a5, step_a6, step_length, error_left_over,
+      step_a1, sum_in_step_a2, step_a2, step_a3, step_a4, step_a5, step_a6, step_length, error_left,
       nearest_turn_now, free_turn, closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1,
       closed_cos_q1, closed_sin_q1, closed_r13_from_q1, closed_reference_a2, closed_length_q2, closed_cos_q2,
       closed_sin_q2, closed_sin_q23, closed_cos_q23, closed_r33_from_q123, closed_r23_from_q1,
@@ -259,7 +259,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       closed_direction_x_q4, closed_direction_y_q4, closed_axis_a4, closed_r13_from_q123,
       closed_q4_radius_of_q5, closed_axis_a5, closed_r22_from_q1, closed_r12_from_q1, closed_r32_from_q123,
       closed_direction_x_q6, closed_r21_from_q1, closed_r11_from_q1, closed_r31_from_q123,
-      closed_direction_y_q6, closed_axis_a6, nearest_error_now, shared_quotient;
+      closed_direction_y_q6, closed_axis_a6, least_error_left_now, shared_quotient;
   int next_attempt, passes_left_now;
   bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, mirrors,
       from_the_met_pose, is_nearer, no_start_is_left;
@@ -447,11 +447,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         + multiplier_5*r21_at_q5 + multiplier_6*r31_at_q5;
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3 + step_a4*step_a4
         + step_a5*step_a5 + step_a6*step_a6);
-    /* of the error, behind a step: what it does not reach, and its curvature */
-    error_left_over = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3
+    /* error that a step leaves: what it does not reach, and its curvature */
+    error_left = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3
         + multiplier_4*multiplier_4 + multiplier_5*multiplier_5 + multiplier_6*multiplier_6)*damping
         + step_length*step_length;
-    is_nearer = (attempt > 1) && (attempt < 89) && (error_left_over < nearest_error);
+    is_nearer = (attempt > 1) && (attempt < 89) && (error_left < least_error_left);
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
     free_turn = next_attempt > 62 ? nearest_turn_now
@@ -520,7 +520,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     closed_axis_a6 = softkin_on_turn(k->offset_a6
         + softkin_angle_of(closed_direction_y_q6, closed_direction_x_q6)*SOFTKIN_RADIAN, closed_near_a6);
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
-    nearest_error_now = is_nearer ? error_left_over : nearest_error;
+    least_error_left_now = is_nearer ? error_left : least_error_left;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
     if (no_start_is_left || pose_is_met || (another && (next_attempt > 89))) {
       break;
@@ -543,7 +543,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     passes_left = (another ? ((next_attempt > 1) && (next_attempt < 89) ? 0 : 64) : passes_left_now);
     attempt = (no_start_is_left ? 90 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
-    nearest_error = nearest_error_now;
+    least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
     turn_beside = ((next_attempt > 62) && (next_attempt < 89) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)

@@ -158,7 +158,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int passes_left = 64;
   int attempt = 0;
   double error_before = 9.0;
-  double nearest_error = 9.0;
+  double least_error_left = 9.0;
   double nearest_turn = 0.0;
   double turn_of_attempt = 0.0;
   double turn_beside = 5.901639344262295;
@@ -169,9 +169,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       rate_1_2, z_minus_z_at_q3, rate_1_3, product_in_damping, damping, product_1_1,
       sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, product_1_2, rate_3_2, rate_3_3, product_1_3,
       product_2_2, product_2_3, product_3_3, multiplier_1, multiplier_2, multiplier_3, step_a1, step_a2,
-      step_a3, step_length, shrinking, error_left_over, nearest_turn_now, free_turn, closed_reference_a1,
+      step_a3, step_length, shrinking, error_left, nearest_turn_now, free_turn, closed_reference_a1,
       closed_divisor_q1, closed_cos_q1, closed_sin_q1, closed_axis_a1, closed_reference_a2,
-      closed_direction_x_q2, closed_direction_y_q2, closed_axis_a2, nearest_error_now, shared_quotient;
+      closed_direction_x_q2, closed_direction_y_q2, closed_axis_a2, least_error_left_now, shared_quotient;
   int next_attempt, passes_left_now;
   bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, mirrors, from_the_met_pose,
       no_start_is_left, is_nearer;
@@ -253,10 +253,10 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     step_a3 = multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3);
     shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
-    /* of the error, behind a step: what it does not reach, and its curvature */
-    error_left_over = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3)
+    /* error that a step leaves: what it does not reach, and its curvature */
+    error_left = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3)
         *damping + step_length*step_length;
-    is_nearer = (attempt > 1) && (attempt < 89) && (error_left_over < nearest_error);
+    is_nearer = (attempt > 1) && (attempt < 89) && (error_left < least_error_left);
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
     free_turn = next_attempt > 62 ? nearest_turn_now
@@ -284,7 +284,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     closed_axis_a2 = softkin_on_turn(k->offset_a2
         + softkin_angle_of(closed_direction_y_q2, closed_direction_x_q2)*SOFTKIN_RADIAN, closed_near_a2);
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
-    nearest_error_now = is_nearer ? error_left_over : nearest_error;
+    least_error_left_now = is_nearer ? error_left : least_error_left;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
     if (no_start_is_left || pose_is_met || (another && (next_attempt > 89))) {
       break;
@@ -300,7 +300,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     passes_left = (another ? ((next_attempt > 1) && (next_attempt < 89) ? 0 : 64) : passes_left_now);
     attempt = (no_start_is_left ? 90 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
-    nearest_error = nearest_error_now;
+    least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
     turn_beside = ((next_attempt > 62) && (next_attempt < 89) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)

@@ -474,7 +474,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   /* characteristic length of the machine */
   const double machine_scale = p->link_length_1 + p->link_length_2;
-  /* 1, and rounding of squared lengths */
+  /* largest cosine within reach: 1, and the rounding of squared lengths */
   const double bound_of_cos_a2 = 1.0000000000005
       + 5e-16*machine_scale*machine_scale/(p->link_length_1*p->link_length_2);
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;

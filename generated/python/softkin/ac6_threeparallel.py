@@ -80,7 +80,7 @@ class Constants:
         self.lowest_a6, self.highest_a6, self.single_a6, self.mid_a6 = machine._window("a6")
         machine_scale = abs(a2) + abs(a3)  # characteristic length of the machine
         rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
-        # 1, and rounding of squared lengths
+        # largest cosine within reach: 1, and the rounding of squared lengths
         bound_of_cos_q3 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (a2 * a3)
         machine_scale_times_free_angle = 1e-11 * machine_scale
         product_in_lost_digits_38 = 0.01 * machine_scale
@@ -108,7 +108,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 1b2a26cd8fca72aa"
+    KEY = "ac6_threeparallel f21f0c1ab2156116"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -374,7 +374,7 @@ class Ac6ThreeParallel(Mechanism):
             passes_left,
             attempt,
             error_before,
-            nearest_error,
+            least_error_left,
             nearest_turn,
             turn_of_attempt,
             turn_beside,
@@ -637,8 +637,8 @@ class Ac6ThreeParallel(Mechanism):
                 + step_a5 * step_a5
                 + step_a6 * step_a6
             )
-            # of the error, behind a step: what it does not reach, and its curvature
-            error_left_over = (
+            # error that a step leaves: what it does not reach, and its curvature
+            error_left = (
                 sqrt(
                     multiplier_1 * multiplier_1
                     + multiplier_2 * multiplier_2
@@ -650,7 +650,7 @@ class Ac6ThreeParallel(Mechanism):
                 * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) and (attempt < 89) and (error_left_over < nearest_error)
+            is_nearer = (attempt > 1) and (attempt < 89) and (error_left < least_error_left)
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
@@ -763,7 +763,7 @@ class Ac6ThreeParallel(Mechanism):
                 offset_a6 + arctan2(closed_sin_q6 + 0.0, closed_cos_q6 + 0.0) * RADIAN, closed_near_a6
             )
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            nearest_error_now = error_left_over if is_nearer else nearest_error
+            least_error_left_now = error_left if is_nearer else least_error_left
             shared_quotient = shrinking * RADIAN
             if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
                 break
@@ -812,7 +812,7 @@ class Ac6ThreeParallel(Mechanism):
             passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
             attempt = 90 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
-            nearest_error = nearest_error_now
+            least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (

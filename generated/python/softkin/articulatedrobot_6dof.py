@@ -109,7 +109,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof 9ccf3e0e16ef9815"
+    KEY = "articulatedrobot_6dof 1b26dfbfc4e932d1"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -413,7 +413,7 @@ class ArticulatedRobot6DOF(Mechanism):
             passes_left,
             attempt,
             error_before,
-            nearest_error,
+            least_error_left,
             nearest_turn,
             turn_of_attempt,
             turn_beside,
@@ -714,8 +714,8 @@ class ArticulatedRobot6DOF(Mechanism):
                 + step_a5 * step_a5
                 + step_a6 * step_a6
             )
-            # of the error, behind a step: what it does not reach, and its curvature
-            error_left_over = (
+            # error that a step leaves: what it does not reach, and its curvature
+            error_left = (
                 sqrt(
                     multiplier_1 * multiplier_1
                     + multiplier_2 * multiplier_2
@@ -727,7 +727,7 @@ class ArticulatedRobot6DOF(Mechanism):
                 * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) and (attempt < 89) and (error_left_over < nearest_error)
+            is_nearer = (attempt > 1) and (attempt < 89) and (error_left < least_error_left)
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
@@ -828,7 +828,7 @@ class ArticulatedRobot6DOF(Mechanism):
                 offset_a6 + arctan2(closed_direction_y_q6 + 0.0, closed_direction_x_q6 + 0.0) * RADIAN, closed_near_a6
             )
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            nearest_error_now = error_left_over if is_nearer else nearest_error
+            least_error_left_now = error_left if is_nearer else least_error_left
             shared_quotient = shrinking * RADIAN
             if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
                 break
@@ -877,7 +877,7 @@ class ArticulatedRobot6DOF(Mechanism):
             passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
             attempt = 90 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
-            nearest_error = nearest_error_now
+            least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (

@@ -76,7 +76,7 @@ class Constants:
         self.lowest_a4, self.highest_a4, self.single_a4, self.mid_a4 = machine._window("a4")
         self.lowest_elbow, self.highest_elbow, *_ = machine._window("elbow")
         machine_scale = link_length_1 + link_length_2 + shoulder_offset  # characteristic length of the machine
-        # 1, and rounding of squared lengths
+        # largest cosine within reach: 1, and the rounding of squared lengths
         bound_of_cos_swing_a3_from_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (
             link_length_1 * link_length_2
         )
@@ -113,7 +113,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer"
-    KEY = "palletizer 990c9ed5ceed6b2a"
+    KEY = "palletizer 655772c04fc04da7"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),
@@ -322,7 +322,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             passes_left,
             attempt,
             error_before,
-            nearest_error,
+            least_error_left,
             nearest_turn,
             turn_of_attempt,
             turn_beside,
@@ -414,12 +414,12 @@ class Palletizer(OffsetKinematics, TwistChoice):
             step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
-            # of the error, behind a step: what it does not reach, and its curvature
-            error_left_over = (
+            # error that a step leaves: what it does not reach, and its curvature
+            error_left = (
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) and (attempt < 89) and (error_left_over < nearest_error)
+            is_nearer = (attempt > 1) and (attempt < 89) and (error_left < least_error_left)
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
@@ -517,7 +517,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) * RADIAN, closed_near_a3
             )
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            nearest_error_now = error_left_over if is_nearer else nearest_error
+            least_error_left_now = error_left if is_nearer else least_error_left
             shared_quotient = shrinking * RADIAN
             if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
                 break
@@ -544,7 +544,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
             attempt = 90 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
-            nearest_error = nearest_error_now
+            least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (

@@ -98,7 +98,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr ae67f8d8c54473be"
+    KEY = "pos_rrr 18fb3a003eaa5efc"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -302,7 +302,7 @@ class PosRRR(OffsetKinematics):
             passes_left,
             attempt,
             error_before,
-            nearest_error,
+            least_error_left,
             nearest_turn,
             turn_of_attempt,
             turn_beside,
@@ -390,12 +390,12 @@ class PosRRR(OffsetKinematics):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
-            # of the error, behind a step: what it does not reach, and its curvature
-            error_left_over = (
+            # error that a step leaves: what it does not reach, and its curvature
+            error_left = (
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) and (attempt < 89) and (error_left_over < nearest_error)
+            is_nearer = (attempt > 1) and (attempt < 89) and (error_left < least_error_left)
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
@@ -440,7 +440,7 @@ class PosRRR(OffsetKinematics):
                 offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
             )
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            nearest_error_now = error_left_over if is_nearer else nearest_error
+            least_error_left_now = error_left if is_nearer else least_error_left
             shared_quotient = shrinking * RADIAN
             if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
                 break
@@ -470,7 +470,7 @@ class PosRRR(OffsetKinematics):
             passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
             attempt = 90 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
-            nearest_error = nearest_error_now
+            least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
@@ -590,7 +590,7 @@ class PosRRR(OffsetKinematics):
             passes_left,
             attempt,
             error_before,
-            nearest_error,
+            least_error_left,
             nearest_turn,
             turn_of_attempt,
             turn_beside,
@@ -681,12 +681,12 @@ class PosRRR(OffsetKinematics):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
-            # of the error, behind a step: what it does not reach, and its curvature
-            error_left_over = (
+            # error that a step leaves: what it does not reach, and its curvature
+            error_left = (
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) and (attempt < 89) and (error_left_over < nearest_error)
+            is_nearer = (attempt > 1) and (attempt < 89) and (error_left < least_error_left)
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
@@ -731,7 +731,7 @@ class PosRRR(OffsetKinematics):
                 offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
             )
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            nearest_error_now = error_left_over if is_nearer else nearest_error
+            least_error_left_now = error_left if is_nearer else least_error_left
             shared_quotient = shrinking * RADIAN
             if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
                 break
@@ -761,7 +761,7 @@ class PosRRR(OffsetKinematics):
             passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
             attempt = 90 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
-            nearest_error = nearest_error_now
+            least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (

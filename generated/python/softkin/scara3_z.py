@@ -66,7 +66,7 @@ class Constants:
         self.lowest_a3, self.highest_a3, self.single_a3, self.mid_a3 = machine._window("a3")
         self.lowest_z, self.highest_z, *_ = machine._window("z")
         machine_scale = arm_length_1 + arm_length_2 + arm_length_3  # characteristic length of the machine
-        # 1, and rounding of squared lengths
+        # largest cosine within reach: 1, and the rounding of squared lengths
         bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (arm_length_1 * arm_length_2)
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
@@ -91,7 +91,7 @@ class Scara3Z(TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_Z"
-    KEY = "scara3_z a3f31fd2ad5e7582"
+    KEY = "scara3_z ab6a3225eac95e97"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

@@ -77,7 +77,7 @@ class Constants:
             "a4", (-720.0, 720.0) if abs(gear_coupling * RADIAN - pitch_zc / 360.0 * RADIAN) > 0.0 else None
         )
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
-        # 1, and rounding of squared lengths
+        # largest cosine within reach: 1, and the rounding of squared lengths
         bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (link_length_1 * link_length_2)
         shared_sum = gear_coupling * RADIAN - pitch_zc / 360.0 * RADIAN
         shared_value = -1.0 if flange_down else 1.0
@@ -108,7 +108,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_CCZC_ZCcoupled"
-    KEY = "scara4_cczc_zccoupled a3a6f1b1a3c2f06e"
+    KEY = "scara4_cczc_zccoupled d2c53187490f4258"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

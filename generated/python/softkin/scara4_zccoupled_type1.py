@@ -67,7 +67,7 @@ class Constants:
             "a4", (-720.0, 720.0) if abs(pitch_zc) > 0.0 else None
         )
         machine_scale = link_length_1 + link_length_2  # characteristic length of the machine
-        # 1, and rounding of squared lengths
+        # largest cosine within reach: 1, and the rounding of squared lengths
         bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (link_length_1 * link_length_2)
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 1e-11 * machine_scale
@@ -96,7 +96,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCcoupled_Type1"
-    KEY = "scara4_zccoupled_type1 8c478126045c5a8d"
+    KEY = "scara4_zccoupled_type1 1ebf86bb9f4c3209"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

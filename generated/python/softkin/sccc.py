@@ -74,7 +74,7 @@ class Constants:
         self.lowest_joint_2, self.highest_joint_2, *_ = machine._window("joint_2")
         self.lowest_joint_3, self.highest_joint_3, *_ = machine._window("joint_3")
         machine_scale = link_length_1 + link_length_2 + link_length_3  # characteristic length of the machine
-        # 1, and rounding of squared lengths
+        # largest cosine within reach: 1, and the rounding of squared lengths
         bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (link_length_1 * link_length_2)
         machine_scale_times_plane = 1e-6 * machine_scale
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
@@ -115,7 +115,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_SCCC"
-    KEY = "sccc 3de105b9968c1f7b"
+    KEY = "sccc 45d9ed73760073a5"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Link 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Link 2 about Z", multi_turn=True),

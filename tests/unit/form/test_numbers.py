@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy import Rational, pi, sin
 
-from derive.description.amounts import almost_right, as_right_angles, in_radians
+from derive.description.amounts import almost_right, as_right_angles, in_radians, with_exact_angles
 from derive.description.mechanism import DescriptionError, Joint, Mechanism, Task, Turning, branch
 from derive.description.validate import validate
 from derive.form.machine import in_form
@@ -48,6 +48,15 @@ def test_no_other_angle_is_changed(text: str) -> None:
 def test_every_rounding_of_a_right_angle_is_one(quarters: int, decimals: int) -> None:
     written = sp.Float(round(quarters * math.pi / 2, decimals))
     assert sp.simplify(as_right_angles(written) - quarters * pi / 2) == 0
+
+
+@given(st.integers(-360_000, 360_000), st.integers(10, 15))
+def test_every_long_decimal_of_thousandths_of_a_degree_is_exact(thousandths: int, decimals: int) -> None:
+    """The form names such an angle by its degrees, and what was written must not differ from that."""
+    written = sp.Float(round(math.radians(thousandths / 1000), decimals))
+    chain = with_exact_angles(described(Tx(300) * Rz(A1 + written), (A1,), Task("xy"))).chain
+    assert chain is not None
+    assert chain.factors[1].amount - A1.symbol == Rational(thousandths, 180_000) * pi
 
 
 SENTENCES = {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
 import pytest
@@ -87,6 +86,6 @@ def test_an_orientation_that_is_refused() -> None:
 def test_a_frame_that_is_elsewhere() -> None:
     kinematics = kinematics_of(named("Kin_Tool"))
     (first, *rest) = kinematics.forward.outputs
-    moved = replace(kinematics.forward, outputs=(Output(first.name, first.value + sp.Float(0.5)), *rest))
+    moved = replace(kinematics.forward, outputs=(Output(first.name, sp.Float(1.5) * first.value), *rest))
     said = said_of(replace(kinematics, forward=moved))
-    assert re.search(r"the frame of a mechanism without joints: error [1-9]\.\de-0[12]", said), said
+    assert "the frame of a mechanism without joints: error 5.0e-01" in said

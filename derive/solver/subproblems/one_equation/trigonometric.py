@@ -144,12 +144,12 @@ def _cosine(
     known = (*amplitude.naming.lets, *(s for s in amplitude.guard if isinstance(s, Let)))
     reason = out_of_reach(angle, told, known)
     if amplitude.aimable is None:
+        most: tuple[Let, ...] = ()
         bound: sp.Expr = 1 + BOUNDARY / 2
-        named = real(f"{BOUND_OF}{name.name}")
-        is_met = sp.Le(sp.Abs(name), named if amplitude.is_fixed else bound)
-        most = Let(named, bound + SQUARES * problem.scale**2 / amplitude.length, "1, and rounding of squared lengths")
-        check = Require(is_met, Status.UNREACHABLE, reason=reason)
-        return *((most,) if amplitude.is_fixed else ()), Let(name, value), check
+        if amplitude.is_fixed:  # a constant of the machine then: a short link on a long one rounds more than this
+            squares, bound = bound + SQUARES * problem.scale**2 / amplitude.length, real(f"{BOUND_OF}{name.name}")
+            most = (Let(bound, squares, "largest cosine within reach: 1, and the rounding of squared lengths"),)
+        return *most, Let(name, value), Require(sp.Le(sp.Abs(name), bound), Status.UNREACHABLE, reason=reason)
     ratio, size = real(f"ratio_of_{angle.name}"), amplitude.determinant_scale
     near = sp.Le(sp.Abs(ratio), 1 + BOUNDARY / 2 * (1 + size / amplitude.length))
     vanishes = sp.Le(sp.Abs(amplitude.left), FREE_ANGLE * size)

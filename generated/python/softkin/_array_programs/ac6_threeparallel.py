@@ -129,7 +129,7 @@ class ArrayPrograms(Programs):
             passes_left,
             attempt,
             error_before,
-            nearest_error,
+            least_error_left,
             nearest_turn,
             turn_of_attempt,
             turn_beside,
@@ -396,8 +396,8 @@ class ArrayPrograms(Programs):
                 + step_a5 * step_a5
                 + step_a6 * step_a6
             )
-            # of the error, behind a step: what it does not reach, and its curvature
-            error_left_over = (
+            # error that a step leaves: what it does not reach, and its curvature
+            error_left = (
                 sqrt(
                     multiplier_1 * multiplier_1
                     + multiplier_2 * multiplier_2
@@ -409,7 +409,7 @@ class ArrayPrograms(Programs):
                 * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) & (attempt < 89) & (error_left_over < nearest_error)
+            is_nearer = (attempt > 1) & (attempt < 89) & (error_left < least_error_left)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
@@ -514,7 +514,7 @@ class ArrayPrograms(Programs):
             )
             closed_axis_a6 = nearest_period(k.offset_a6 + atan2(closed_sin_q6, closed_cos_q6) / DEGREE, closed_near_a6)
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            nearest_error_now = select(is_nearer, error_left_over, nearest_error)
+            least_error_left_now = select(is_nearer, error_left, least_error_left)
             shared_quotient = shrinking / DEGREE
             done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
             if settled(done, status):
@@ -529,7 +529,7 @@ class ArrayPrograms(Programs):
                 passes_left,
                 attempt,
                 error_before,
-                nearest_error,
+                least_error_left,
                 nearest_turn,
                 turn_of_attempt,
                 turn_beside,
@@ -545,7 +545,7 @@ class ArrayPrograms(Programs):
                     passes_left,
                     attempt,
                     error_before,
-                    nearest_error,
+                    least_error_left,
                     nearest_turn,
                     turn_of_attempt,
                     turn_beside,
@@ -596,7 +596,7 @@ class ArrayPrograms(Programs):
                     select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
                     select(no_start_is_left, 90, next_attempt),
                     select(another | mirrors, 9.0, error),
-                    nearest_error_now,
+                    least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(

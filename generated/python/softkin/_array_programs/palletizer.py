@@ -92,7 +92,7 @@ class ArrayPrograms(Programs):
             passes_left,
             attempt,
             error_before,
-            nearest_error,
+            least_error_left,
             nearest_turn,
             turn_of_attempt,
             turn_beside,
@@ -184,12 +184,12 @@ class ArrayPrograms(Programs):
             step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
-            # of the error, behind a step: what it does not reach, and its curvature
-            error_left_over = (
+            # error that a step leaves: what it does not reach, and its curvature
+            error_left = (
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) & (attempt < 89) & (error_left_over < nearest_error)
+            is_nearer = (attempt > 1) & (attempt < 89) & (error_left < least_error_left)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
@@ -281,7 +281,7 @@ class ArrayPrograms(Programs):
                 k.offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) / DEGREE, closed_near_a3
             )
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            nearest_error_now = select(is_nearer, error_left_over, nearest_error)
+            least_error_left_now = select(is_nearer, error_left, least_error_left)
             shared_quotient = shrinking / DEGREE
             done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
             if settled(done, status):
@@ -294,7 +294,7 @@ class ArrayPrograms(Programs):
                 passes_left,
                 attempt,
                 error_before,
-                nearest_error,
+                least_error_left,
                 nearest_turn,
                 turn_of_attempt,
                 turn_beside,
@@ -308,7 +308,7 @@ class ArrayPrograms(Programs):
                     passes_left,
                     attempt,
                     error_before,
-                    nearest_error,
+                    least_error_left,
                     nearest_turn,
                     turn_of_attempt,
                     turn_beside,
@@ -337,7 +337,7 @@ class ArrayPrograms(Programs):
                     select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
                     select(no_start_is_left, 90, next_attempt),
                     select(another | mirrors, 9.0, error),
-                    nearest_error_now,
+                    least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(

@@ -113,7 +113,7 @@ class ArrayPrograms(Programs):
             passes_left,
             attempt,
             error_before,
-            nearest_error,
+            least_error_left,
             nearest_turn,
             turn_of_attempt,
             turn_beside,
@@ -201,12 +201,12 @@ class ArrayPrograms(Programs):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            # of the error, behind a step: what it does not reach, and its curvature
-            error_left_over = (
+            # error that a step leaves: what it does not reach, and its curvature
+            error_left = (
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) & (attempt < 89) & (error_left_over < nearest_error)
+            is_nearer = (attempt > 1) & (attempt < 89) & (error_left < least_error_left)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
@@ -249,7 +249,7 @@ class ArrayPrograms(Programs):
                 k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
             )
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            nearest_error_now = select(is_nearer, error_left_over, nearest_error)
+            least_error_left_now = select(is_nearer, error_left, least_error_left)
             shared_quotient = shrinking / DEGREE
             done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
             if settled(done, status):
@@ -261,7 +261,7 @@ class ArrayPrograms(Programs):
                 passes_left,
                 attempt,
                 error_before,
-                nearest_error,
+                least_error_left,
                 nearest_turn,
                 turn_of_attempt,
                 turn_beside,
@@ -274,7 +274,7 @@ class ArrayPrograms(Programs):
                     passes_left,
                     attempt,
                     error_before,
-                    nearest_error,
+                    least_error_left,
                     nearest_turn,
                     turn_of_attempt,
                     turn_beside,
@@ -306,7 +306,7 @@ class ArrayPrograms(Programs):
                     select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
                     select(no_start_is_left, 90, next_attempt),
                     select(another | mirrors, 9.0, error),
-                    nearest_error_now,
+                    least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
@@ -406,7 +406,7 @@ class ArrayPrograms(Programs):
             passes_left,
             attempt,
             error_before,
-            nearest_error,
+            least_error_left,
             nearest_turn,
             turn_of_attempt,
             turn_beside,
@@ -497,12 +497,12 @@ class ArrayPrograms(Programs):
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
             shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            # of the error, behind a step: what it does not reach, and its curvature
-            error_left_over = (
+            # error that a step leaves: what it does not reach, and its curvature
+            error_left = (
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) & (attempt < 89) & (error_left_over < nearest_error)
+            is_nearer = (attempt > 1) & (attempt < 89) & (error_left < least_error_left)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
@@ -545,7 +545,7 @@ class ArrayPrograms(Programs):
                 k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
             )
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            nearest_error_now = select(is_nearer, error_left_over, nearest_error)
+            least_error_left_now = select(is_nearer, error_left, least_error_left)
             shared_quotient = shrinking / DEGREE
             done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
             if settled(done, status):
@@ -557,7 +557,7 @@ class ArrayPrograms(Programs):
                 passes_left,
                 attempt,
                 error_before,
-                nearest_error,
+                least_error_left,
                 nearest_turn,
                 turn_of_attempt,
                 turn_beside,
@@ -570,7 +570,7 @@ class ArrayPrograms(Programs):
                     passes_left,
                     attempt,
                     error_before,
-                    nearest_error,
+                    least_error_left,
                     nearest_turn,
                     turn_of_attempt,
                     turn_beside,
@@ -602,7 +602,7 @@ class ArrayPrograms(Programs):
                     select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
                     select(no_start_is_left, 90, next_attempt),
                     select(another | mirrors, 9.0, error),
-                    nearest_error_now,
+                    least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
