@@ -28,7 +28,7 @@ def with_normal_chain(mechanism: Mechanism) -> Mechanism:
     """The mechanism with its chain in the one form; the chain as it is described is the one to draw."""
     if mechanism.chain is None:
         return mechanism
-    factors = [_as_turn(f) for f in mechanism.chain.factors]
+    factors = [as_turn(f) for f in mechanism.chain.factors]
     end = next((k for k, f in enumerate(factors) if f.motion is Motion.FLIP), len(factors))
     if any(f.motion is not Motion.FLIP for f in factors[end:]):
         return mechanism  # a flip before another factor is refused where flips are read
@@ -36,7 +36,7 @@ def with_normal_chain(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, chain=Chain((*form, *factors[end:])), drawn=mechanism.chain)
 
 
-def _as_turn(factor: Factor) -> Factor:
+def as_turn(factor: Factor) -> Factor:
     """A flip that no parameter decides as half a turn, or none."""
     if factor.motion is not Motion.FLIP or factor.amount.free_symbols:
         return factor

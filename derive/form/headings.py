@@ -79,27 +79,28 @@ def _in_plane(direction: Array, flat: int) -> tuple[Turns, int, int]:
     return ((flat, angle),), -letter, -sign
 
 
-def orientation(rotation: Array, *, looks_down: bool) -> Turns:
+def orientation(rotation: Array, *, looks_down: bool, same: float = SAME) -> Turns:
     """The fewest turns about x, y and z that make a rotation.
 
-    looks_down: whether z reversed is written as a turn about z, if any, then half a turn about x or y.
+    looks_down: whether z reversed is written as a turn about z, if any, then half a turn about x or y. same: a third
+    turn is not told from the first one if the second differs by less from a right angle (radians).
     """
-    if looks_down and np.linalg.norm(rotation[:2, 2]) <= SAME and rotation[2, 2] < 0.0:
-        downs = [(*_turns(rotation @ about(k, np.pi), (2, 1, 0)), (k, float(np.pi))) for k in range(2)]
+    if looks_down and np.linalg.norm(rotation[:2, 2]) <= same and rotation[2, 2] < 0.0:
+        downs = [(*_turns(rotation @ about(k, np.pi), (2, 1, 0), same), (k, float(np.pi))) for k in range(2)]
         return min(downs, key=len)
     choices: list[tuple[int, int, int, Turns]] = []
     for order in ((2, 1, 0), *permutations(range(3))):
-        turns = _turns(rotation, order)
+        turns = _turns(rotation, order, same)
         odd = sum(abs(_wrapped(angle, np.pi / 2)) > SAME for _, angle in turns)
         choices.append((odd, len(turns), len(choices), turns))
     return min(choices)[3]
 
 
-def _turns(rotation: Array, order: Sequence[int]) -> Turns:
+def _turns(rotation: Array, order: Sequence[int], same: float) -> Turns:
     """The turns about three letters, one after the other; each is taken out before the next one is read."""
     a, b, c = order
     parity = 1.0 if (b - a) % 3 == 1 else -1.0
-    if float(np.hypot(rotation[b, c], rotation[c, c])) <= SAME:
+    if float(np.hypot(rotation[b, c], rotation[c, c])) <= same:
         second = float(np.copysign(np.pi / 2, parity * rotation[a, c]))
         angles = (_about(a, rotation @ about(b, second).T), second, 0.0)
     else:

@@ -97,7 +97,7 @@ def arm_of(factors: Sequence[Factor]) -> Arm:
             position[:, lengths.index(length)] += direction * share
         if factor.motion is Motion.TURN:
             number = number_in(factor.amount)
-            _add(lines, Line(sp.expand(factor.amount) - number, direction, position.copy()), lengths)
+            add_line(lines, Line(sp.expand(factor.amount) - number, direction, position.copy()), lengths)
             rotation = rotation @ about(factor.axis, in_radians(number))
     return Arm(lengths, tuple(lines), rotation, position)
 
@@ -115,7 +115,7 @@ def _parts(amount: sp.Expr) -> dict[sp.Expr, float]:
     return {length: share for length, share in found.items() if length != 0}
 
 
-def _add(lines: list[Line], line: Line, lengths: Sequence[sp.Expr]) -> None:
+def add_line(lines: list[Line], line: Line, lengths: Sequence[sp.Expr]) -> None:
     """Add a turn, or its angle to the last turn if both are about one line; no turn stands for a sum of zero.
 
     A turn by -a is one by a about the opposite direction.

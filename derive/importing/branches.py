@@ -49,8 +49,9 @@ class Skeleton:
         return all(p.motion is Motion.SHIFT for p in between)
 
     def meet(self, start: int, end: int) -> bool:
-        """Whether nothing stands between two turns: their axes meet in one point."""
-        return self.turns[end] == self.turns[start] + 1
+        """Whether the axes of two turns meet in one point: nothing stands between them but shifts along the first."""
+        between = self.pieces[self.turns[start] + 1 : self.turns[end]]
+        return all(p.motion is Motion.SHIFT and p.letter == self.letter(start) for p in between)
 
     def along(self, start: int, end: int) -> sp.Matrix:
         """The vector from a turn to a later place of the chain, in the frame behind that turn."""
@@ -87,7 +88,7 @@ def branches(pieces: Sequence[Piece], amounts: Sequence[sp.Expr], task: Followed
     ]
     arm = Skeleton(tuple(pieces), tuple(amounts), tuple(turns))
     if task.turning == "FULL" and task.position == "xyz" and len(turns) == 6:
-        if arm.meet(3, 4) and arm.meet(4, 5):
+        if arm.meet(3, 4) and arm.turns[5] == arm.turns[4] + 1:
             return _with_wrist(arm)
         if all(arm.letter(k) == arm.letter(1) and arm.is_shifted(k - 1, k) for k in (2, 3)) and arm.meet(4, 5):
             return _three_parallel(arm)
@@ -107,7 +108,7 @@ def _is_arm(arm: Skeleton) -> bool:
 
 def _with_wrist(arm: Skeleton) -> tuple[Named, ...]:
     """An arm whose last three axes meet."""
-    centre = arm.turns[3]
+    centre = arm.turns[4]
     wrist = _wrist(arm, 3)
     if _is_arm(arm) and wrist is not None:
         return _shoulder(arm, centre), _elbow(arm, 1, 2, centre, ("up", "down")), wrist
@@ -121,7 +122,7 @@ def _three_parallel(arm: Skeleton) -> tuple[Named, ...]:
     wrist = _wrist(arm, 3)
     if wrist is None or arm.letter(0) == arm.letter(1) or not arm.is_shifted(0, 1):
         return ()
-    return _shoulder(arm, arm.turns[4]), _elbow(arm, 1, 2, arm.turns[3], ("up", "down")), wrist
+    return _shoulder(arm, arm.turns[5]), _elbow(arm, 1, 2, arm.turns[3], ("up", "down")), wrist
 
 
 def _wrist(arm: Skeleton, first: int) -> Named | None:

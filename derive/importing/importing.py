@@ -11,7 +11,7 @@ import numpy as np
 
 from derive.description.joints import Kind
 from derive.importing.arms.aligned import aligned
-from derive.importing.arms.lines import Arm, arm_of
+from derive.importing.arms.lines import Arm, arm_of, place_names
 from derive.importing.arms.pieces import simple
 from derive.importing.arms.rounded import nearly, snapped_robot
 from derive.importing.arms.snapping import SNAP, Snapped
@@ -21,7 +21,7 @@ from derive.importing.formats.documents import parsed
 from derive.importing.formats.mjcf import read_mjcf
 from derive.importing.formats.tables import read_table
 from derive.importing.formats.urdf import read_urdf
-from derive.importing.naming import axis_names, place_names
+from derive.importing.naming import axis_names
 from derive.importing.report import Bounds, bounds, closed_form, neighbours, redundant, snaps, weak_axes
 from derive.importing.robot import Robot, UnreadableRobot, about
 from derive.importing.writing import FAR, Description, description_of, written
@@ -95,13 +95,13 @@ def _imported(robot: Robot, options: Options) -> Imported:
     raw = arm_of(robot)
     put_back, rounded = snapped_robot(robot, options.snap)
     axes = axis_names(robot)
-    places = place_names(raw, axes)
+    places = place_names([line.drives for line in raw.lines], axes)
     arm, turned = aligned(arm_of(put_back), places, options.snap)
     task = followed(arm, len(axes), _held(robot, axes, options.hold))
     weak = list(weak_axes(arm, task, axes))
     arm, faced = _faced(on_axis(arm, task), task)
     faced = (*_moved_tip(task, axes, options.unit), *faced)
-    chain = simple(arm, places, options.snap)
+    chain = simple(arm, axes, options.snap, about_z=task.turning == "ABOUT_Z")
     moved = (*rounded, *turned, *chain.moved)
     description = description_of(robot, arm, chain, task)
     notes = (*weak, *faced, *robot.notes)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Sequence
 
-from derive.importing.arms.lines import Arm
 from derive.importing.arms.pieces import Piece
 from derive.importing.robot import Robot
 
@@ -14,7 +12,6 @@ _SHORT = re.compile(r"[A-Z][0-9]\Z")
 _TAKEN = {"X", "Y", "Z", "Rx", "Ry", "Rz", "Tx", "Ty", "Tz", "TURN", "ROTATION", "MECHANISM"}
 """The names that a mechanism file imports or defines."""
 LETTERS = "xyz"
-_FOLLOWING = "abcdefghijklmnopqrstuvwxyz"
 
 
 def words(name: str) -> list[str]:
@@ -29,18 +26,6 @@ def axis_names(robot: Robot) -> tuple[str, ...]:
     if len(names) == len(found) == len(set(names)):
         return tuple(names)
     return tuple(f"{'ABCDEFGH'[k // 9]}{k % 9 + 1}" for k in range(len(found)))  # A12 is the sum of A1 and A2
-
-
-def place_names(arm: Arm, axes: Sequence[str]) -> list[str]:
-    """A name for every line: its axis; where an axis moves several, A2, A2b, A2c."""
-    names: list[str] = []
-    counted: Counter[str] = Counter()
-    for line in arm.lines:
-        axis = axes[line.drives[0][0]]
-        others = counted[axis]
-        counted[axis] += 1
-        names.append(f"{axis}{_FOLLOWING[others % 26] * (others // 26 + 1)}" if others else axis)
-    return names
 
 
 def _short(name: str) -> str | None:

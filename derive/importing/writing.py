@@ -14,11 +14,11 @@ from derive.description.errors import printable
 from derive.description.joints import Kind
 from derive.geometry.frames import Motion
 from derive.importing.arms.lines import Arm
-from derive.importing.arms.pieces import Simple
+from derive.importing.arms.pieces import Simple, turns
 from derive.importing.arms.tasks import Followed
 from derive.importing.branches import Named, branches
 from derive.importing.expressions import Dimension, amount_text, dimension_of, factor_text, is_half_turn
-from derive.importing.naming import axis_names, block_name, place_names
+from derive.importing.naming import axis_names, block_name
 from derive.importing.robot import Axis, Robot, UnreadableRobot
 
 _WIDTH = 118
@@ -41,11 +41,11 @@ class Description:
 def description_of(robot: Robot, arm: Arm, chain: Simple, task: Followed) -> Description:
     """The names and texts of a chain."""
     axes = axis_names(robot)
-    places = place_names(arm, axes)
+    places = turns(chain.pieces, axes)
     dimensions = _distinct([dimension_of(piece, places, arm.size) for piece in chain.pieces])
     flips = task.turning == "ABOUT_Z"
     if flips:
-        _refuse_leaning(chain, len(arm.lines))
+        _refuse_leaning(chain, len(places))
     factors = tuple(factor_text(p, axes, d, flips) for p, d in zip(chain.pieces, dimensions, strict=True))
     symbols: dict[str, object] = {name: sp.Symbol(name, real=True) for name in axes}
     symbols |= {d.variable: sp.Symbol(d.variable, positive=True) for d in dimensions if d is not None}

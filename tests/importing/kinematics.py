@@ -20,6 +20,8 @@ from derive.ir.constants import DEGREE
 Array = NDArray[np.float64]
 Pose = Callable[[Mapping[str, float]], Array]
 """Values of the file's joints (radians, metres) -> the pose of the tip in the base (4 x 4, metres)."""
+UNSNAPPED = 1e-8
+"""Radians by which a tip turns because a description takes directions as equal that differ by less than 1e-9."""
 
 
 def described(imported: Imported, folder: Path) -> Mechanism:

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from math import cos, sin
 from pathlib import Path
-from random import Random
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
+from derive.description.joints import Kind
+from derive.importing.arms.lines import Arm, arm_of
+from derive.importing.formats.urdf import read_urdf
 from tests.importing.kinematics import imported
-from tests.importing.robots import joint, urdf
+from tests.importing.robots import COLLECTION, WRITTEN, File, joint, urdf, written
 
-Rows = tuple[tuple[str, str], ...]
-ARMS: dict[str, Rows] = {
+Array = NDArray[np.float64]
+SEEDS = 8
+ROWS: Mapping[str, tuple[tuple[str, str], ...]] = {
     "three parallel axes, beside each other": (
         ("0 0 0.15", "0 0 1"),
         ("0 0.11 0", "0 1 0"),
@@ -29,33 +35,68 @@ ARMS: dict[str, Rows] = {
         ("0 0 0", "0 1 0"),
         ("0 0 0.1", "0 0 1"),
     ),
+    "an inclined wrist": (
+        ("0 0 0.3", "0 0 1"),
+        ("0.1 0 0", "0 1 0"),
+        ("0 0 0.4", "0 1 0"),
+        ("0.35 0 0.05", "1 0 0"),
+        ("0 0 0", f"{cos(1.0)!r} 0 {sin(1.0)!r}"),
+        ("0 0 0", "1 0 0"),
+    ),
 }
-"""The way to each axis, and its direction; frames of the links are not turned."""
+"""The way to each axis, and its direction, at zero."""
+FILES = tuple(name for name in (*COLLECTION, *WRITTEN) if name != "Fanuc")
+"""In the file of the Fanuc a joint follows another, which is no matter of frames."""
 
 
-def _reworded(rows: Rows, seed: int) -> Iterator[tuple[str, ...]]:
-    """The joints, each at another place on its axis (seed 0: where it is); between them frames that are turned, and
-    turned back.
-    """
-    rng = Random(seed)
-    for k, (xyz, axis) in enumerate(rows, 1):
-        slide, turn = seed * rng.uniform(-0.1, 0.1), rng.uniform(-3.0, 3.0)
-        along, back = (" ".join(f"{side * slide * int(a):.9f}" for a in axis.split()) for side in (1, -1))
-        yield joint(f"turned_{k}", "fixed", xyz, f"{turn!r} 0 0")
-        yield joint(f"turned_back_{k}", "fixed", rpy=f"{-turn!r} 0 0")
-        yield joint(f"a{k}", "revolute", along, axis=axis)
-        yield joint(f"back_{k}", "fixed", back)
-    yield joint("flange", "fixed", "0 0.05 0")
+def _file(name: str, folder: Path) -> File:
+    if name in COLLECTION:
+        return COLLECTION[name]
+    if name in WRITTEN:
+        return written(name, 17, folder)
+    path = folder / "rows.urdf"
+    joints = (joint(f"a{k}", "revolute", xyz, axis=axis) for k, (xyz, axis) in enumerate(ROWS[name], 1))
+    path.write_text(urdf("rows", *joints, joint("flange", "fixed", "0 0.05 0")), encoding="utf-8")
+    return File(path, "link0", f"link{len(ROWS[name]) + 1}")
 
 
-def _described(rows: Rows, seed: int, folder: Path) -> str:
-    """The description of a machine, without the text that names the file's links."""
-    path = folder / "arm.urdf"
-    path.write_text(urdf("arm", *_reworded(rows, seed)))
-    return imported(path).text.split('"""', 2)[2]
+def _turned(rng: np.random.Generator) -> Array:
+    """Any rotation."""
+    rotation, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    return np.asarray(rotation * np.sign(np.linalg.det(rotation)))
 
 
-@pytest.mark.parametrize("name", ARMS)
+def _joints(arm: Arm, seed: int) -> Iterator[tuple[str, ...]]:
+    """The joints of an arm, each at any place on its axis, in a frame that is turned anyhow."""
+    rng = np.random.default_rng(seed)
+    before = np.eye(4)
+    for k, line in enumerate(arm.lines, 1):
+        here = np.eye(4)
+        here[:3, :3], here[:3, 3] = _turned(rng), line.point + rng.uniform(-0.1, 0.1) * line.direction
+        axis = here[:3, :3].T @ line.direction
+        kind = "prismatic" if line.kind is Kind.LINEAR else "revolute"
+        yield joint(f"a{k}", kind, *_origin(before, here), axis=" ".join(map(repr, axis.tolist())))
+        before = here
+    yield joint("flange", "fixed", *_origin(before, arm.tip))
+
+
+def _origin(before: Array, here: Array) -> tuple[str, str]:
+    """The place of a frame in the one before: xyz, and turns about fixed x, y, z."""
+    way = np.linalg.inv(before) @ here
+    r = way[:3, :3]
+    across = np.hypot(r[0, 0], r[1, 0])
+    turns = np.arctan2(r[2, 1], r[2, 2]), np.arctan2(-r[2, 0], across), np.arctan2(r[1, 0], r[0, 0])
+    return " ".join(map(repr, way[:3, 3].tolist())), " ".join(repr(float(t)) for t in turns)
+
+
+@pytest.mark.parametrize("name", [*ROWS, *FILES])
 def test_a_description_does_not_depend_on_the_frames_of_the_file(name: str, tmp_path: Path) -> None:
-    texts = {_described(ARMS[name], seed, tmp_path) for seed in range(8)}
+    file = _file(name, tmp_path)
+    arm = arm_of(read_urdf(file.path, file.base, file.tip, 1.0))
+    assert all(len(line.drives) == 1 and line.drives[0][1] == 1.0 for line in arm.lines)
+    texts = set()
+    for seed in range(SEEDS):
+        path = tmp_path / "arm.urdf"
+        path.write_text(urdf("arm", *_joints(arm, seed)), encoding="utf-8")
+        texts.add(imported(path).text.split('"""', 2)[2])
     assert len(texts) == 1

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from derive.importing.arms.lines import ROUNDING, Arm
+from derive.importing.arms.lines import ROUNDING, Arm, way_places
 from derive.importing.arms.snapping import Snapped, nearest_angle
 from derive.importing.robot import Array, about
 
@@ -25,7 +25,7 @@ def aligned(arm: Arm, names: Sequence[str], limit: float) -> tuple[Arm, tuple[Sn
         after = arm.tip[:3, _column(arm, before)] if is_tip else arm.lines[place].direction
         turn, amount, angle = _to_simple(before, after)
         if ROUNDING < amount <= limit:
-            there = arm.tip[:3, 3] if is_tip else arm.lines[place].point
+            there = arm.tip[:3, 3] if is_tip else way_places(arm.lines, arm.tip[:3, 3])[place]
             arm = _turned(arm, place, turn, there)
             pair = f"{names[place - 1]}-{'tip' if is_tip else names[place]}"
             moved.append(Snapped(f"{pair}: their angle read as {np.degrees(angle):g}°, off", amount, True))

@@ -5,8 +5,11 @@ Forward kinematics is the product of the motions about these lines, times the po
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from string import ascii_lowercase
 
 import numpy as np
 
@@ -67,13 +70,22 @@ def arm_of(robot: Robot) -> Arm:
 
 
 def _way(lines: Sequence[Line], tip: Array) -> float:
-    """The length of the way along all axes that turn to the tip. A slide stands nowhere, and is passed over."""
-    turning = [line for line in lines if line.kind is Kind.ROTARY]
-    way, here = 0.0, projected(turning[0], np.zeros(3)) if turning else tip
-    for line in turning[1:]:
-        before, here = here, projected(line, here)
-        way += float(np.linalg.norm(here - before))
-    return way + float(np.linalg.norm(tip - here))
+    """The length of the way along all axes that turn to the tip."""
+    places = [place for line, place in zip(lines, way_places(lines, tip), strict=True) if line.kind is Kind.ROTARY]
+    return float(sum(np.linalg.norm(b - a) for a, b in pairwise([*places, tip])))
+
+
+def way_places(lines: Sequence[Line], tip: Array) -> list[Array]:
+    """A place for every line, whatever point the file gives: from the base to the nearest point of the first line that
+    turns, and on to that of the next. A slide stands nowhere, and has the place before it.
+    """
+    turning = any(line.kind is Kind.ROTARY for line in lines)
+    here = np.zeros(3) if turning else tip
+    found = []
+    for line in lines:
+        here = projected(line, here) if line.kind is Kind.ROTARY else here
+        found.append(here)
+    return found
 
 
 def projected(line: Line, point: Array) -> Array:
@@ -109,6 +121,18 @@ def moved(line: Line, value: float) -> Array:
         rotation = about(line.direction, value)
         matrix[:3, :3], matrix[:3, 3] = rotation, line.point - rotation @ line.point
     return matrix
+
+
+def place_names(drives: Iterable[Sequence[tuple[int, float]]], axes: Sequence[str]) -> list[str]:
+    """A name for every movement, by the axes that drive it: the first one; if that moves several, A2, A2b, A2c."""
+    names: list[str] = []
+    counted: Counter[str] = Counter()
+    for one in drives:
+        axis = axes[one[0][0]]
+        others = counted[axis]
+        counted[axis] += 1
+        names.append(f"{axis}{ascii_lowercase[others % 26] * (others // 26 + 1)}" if others else axis)
+    return names
 
 
 @dataclass(frozen=True)

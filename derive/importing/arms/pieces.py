@@ -1,19 +1,29 @@
-"""The chain of an arm in its simple form: turns and shifts along x, y and z, one after the other."""
+"""The chain of an arm in the one form of a machine (`form.chain`): turns and shifts along x, y and z, one after the
+other; what is nearly zero there, or nearly a simple angle, is that.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import sympy as sp
 
+from derive.description.amounts import in_radians, number_in
 from derive.description.joints import Kind
-from derive.geometry.frames import Motion
-from derive.importing.arms.headings import Heading, headings, orientation, product
-from derive.importing.arms.lines import ROUNDING, Arm
-from derive.importing.arms.points import points
-from derive.importing.arms.snapping import SNAP, Snapped
+from derive.form import lines as form
+from derive.form.chain import as_turn, normal_factors
+from derive.geometry.frames import Factor, Motion
+from derive.importing.arms.lines import ROUNDING, Arm, Line, forward, place_names
+from derive.importing.arms.snapping import SNAP, Snapped, nearest_angle
 from derive.importing.robot import Array, about
+
+_ROUNDS = 3
+"""What is put to zero makes lines meet, and these give a chain with fewer numbers: as often at most."""
+_BELOW = "differences below 1e-9, which no description has"
+_ANGLE = 1e-12
+"""An angle (radians) that is nearer to a multiple of 15 degrees is that: the form writes 13 decimals."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +35,7 @@ class Piece:
     drives: tuple[tuple[int, float], ...]
     constant: float
     place: int
-    """The number of the line of the arm before which it stands; the number of lines where it stands before the tip."""
+    """The number of turns of axes in front of it."""
 
     def matrix(self, values: Sequence[float]) -> Array:
         """The homogeneous 4 x 4 matrix at axis values."""
@@ -40,7 +50,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class Simple:
-    """An arm in its simple form, and the changes that this took."""
+    """An arm in its one form, and the changes that this took."""
 
     pieces: tuple[Piece, ...]
     moved: tuple[Snapped, ...]
@@ -53,91 +63,105 @@ class Simple:
         return frame
 
 
-def simple(arm: Arm, names: Sequence[str], limit: float) -> Simple:
-    """The chain with the fewest shifts. limit: a share of the size (lengths), and of one radian (angles)."""
-    narrow = min(limit, SNAP)  # what is left are offsets of joints, and turns of the base and the tip
-    ways, turned = headings(arm, names, narrow)
-    straight = replace(
-        arm,
-        lines=tuple(
-            replace(line, direction=w.sign * w.frame[:, w.letter]) for line, w in zip(arm.lines, ways, strict=True)
-        ),
-    )
-    last = ways[-1].frame if ways else np.eye(3)
-    turns, amount = orientation(last.T @ arm.tip[:3, :3], narrow)
-    moved = [*turned, *([Snapped("tip: its orientation", amount, True)] if amount > 10 * ROUNDING else [])]
-    smallest = max(limit * arm.size, arm.rounding)
-    targets = [*points(straight, ways, last @ product(turns), smallest), arm.tip[:3, 3]]
-    pieces: list[Piece] = []
-    frame, here = np.eye(3), np.zeros(3)
-    for place, target in enumerate(targets):
-        is_tip = place == len(ways)
-        way = Heading(turns, frame @ product(turns), 0, 1) if is_tip else ways[place]
-        before = ways[place - 1].letter if place else None
-        shifted, there = _way(frame, way, target - here, smallest, place, before)
-        pieces += shifted
-        here = here + there
-        off = _off(straight, place, here, target)
-        if off > 10 * arm.rounding:
-            moved.append(Snapped(f"{'tip' if is_tip else names[place]}: its position", off, False))
-        if not is_tip:
-            pieces.append(_motion(arm, way, place))
-        frame = way.frame
-    return Simple(_merged(pieces), tuple(moved))
+def simple(arm: Arm, axes: Sequence[str], limit: float, *, about_z: bool) -> Simple:
+    """The chain in its one form. limit: a share of the size (lengths), and of one radian (angles).
 
-
-def _way(
-    frame: Array, way: Heading, between: Array, smallest: float, place: int, letter: int | None
-) -> tuple[list[Piece], Array]:
-    """The shifts and turns to the next line, the shifts where they are fewest; and how far they lead.
-
-    letter: that of the joint before, which absorbs a first turn about the same letter.
+    axes: the names of the axes. about_z: whether the task commands a turn about z.
     """
-    turned = [Piece(Motion.TURN, axis, (), angle, place) for axis, angle in way.turns]
-    choices = []
-    for own in (frame, way.frame):
-        amounts = own.T @ between
-        amounts = np.where(np.abs(amounts) > smallest, amounts, 0.0)
-        pieces = [Piece(Motion.SHIFT, k, (), float(a), place) for k, a in enumerate(amounts) if a != 0.0]
-        choices.append((pieces, own @ amounts))
-    first, second = choices
-    is_taken_up = bool(turned) and turned[0].letter == letter
-    if len(second[0]) < len(first[0]) + is_taken_up:
-        return [*turned, *second[0]], second[1]
-    return [*first[0], *turned], first[1]
+    symbols = [sp.Symbol(name, real=True) for name in axes]
+    own = _in_form(arm, symbols)
+    pieces: tuple[Piece, ...] = ()
+    moved: list[Snapped] = []
+    for _ in range(_ROUNDS):
+        read = tuple(_pieces(normal_factors(own, about_z=about_z), symbols))
+        if not pieces:
+            moved += _rounded(arm, read, len(axes))
+        pieces, found = _snapped(read, axes, max(limit * arm.size, arm.rounding), min(limit, SNAP))
+        moved += _listed(found, arm)
+        if len(pieces) == len(read):
+            break
+        own = form.arm_of([_factor(piece, symbols) for piece in pieces])
+    return Simple(pieces, tuple(moved))
 
 
-def _off(arm: Arm, place: int, here: Array, target: Array) -> float:
-    """The distance by which a line or the tip has been moved."""
-    if place == len(arm.lines):
-        return float(np.linalg.norm(here - target))
-    line = arm.lines[place]
-    if line.kind is Kind.LINEAR:
-        return 0.0
-    return float(np.linalg.norm(np.cross(here - line.point, line.direction)))
+def _rounded(arm: Arm, pieces: tuple[Piece, ...], count: int) -> list[Snapped]:
+    """What the form has taken as equal (`form.lines.SAME`), by the poses of the tip."""
+    rng = np.random.default_rng(3)
+    rows = [np.zeros(count), *rng.uniform(-2.0, 2.0, (5, count))]
+    differences = [Simple(pieces, ()).forward(row) - forward(arm, row) for row in rows]
+    angle = max(float(np.linalg.norm(d[:3, :3])) for d in differences)
+    length = max(float(np.linalg.norm(d[:3, 3])) for d in differences)
+    found = (Snapped(f"{_BELOW}: the tip moves", length, False), Snapped(f"{_BELOW}: the tip turns", angle, True))
+    return _listed(found, arm)
 
 
-def _motion(arm: Arm, way: Heading, place: int) -> Piece:
-    line = arm.lines[place]
-    drives = tuple((axis, way.sign * multiplier) for axis, multiplier in line.drives)
-    return Piece(Motion.TURN if line.kind is Kind.ROTARY else Motion.SHIFT, way.letter, drives, 0.0, place)
+def _listed(moved: Sequence[Snapped], arm: Arm) -> list[Snapped]:
+    """The changes that are more than the rounding of our own calculation."""
+    return [one for one in moved if one.amount > 10 * (ROUNDING if one.is_angle else arm.rounding)]
 
 
-def _merged(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
-    """The pieces with neighbouring turns about one letter merged: bars that keep a link parallel, joint offsets."""
-    found: list[Piece] = []
+def _snapped(
+    pieces: Sequence[Piece], axes: Sequence[str], smallest: float, narrow: float
+) -> tuple[tuple[Piece, ...], list[Snapped]]:
+    """The pieces with simple angles, and without what is nearly zero; and the changes."""
+    places = turns(pieces, axes)
+    kept: list[Piece] = []
+    moved: list[Snapped] = []
     for piece in pieces:
-        last = found[-1] if found else None
-        is_same = last is not None and last.motion is piece.motion is Motion.TURN and last.letter == piece.letter
-        if last is not None and is_same:
-            found[-1] = replace(last, drives=_sum(last, piece), constant=last.constant + piece.constant)
+        is_turn = piece.motion is Motion.TURN
+        near = nearest_angle(piece.constant) if is_turn else 0.0
+        amount = abs(piece.constant - near)
+        if amount <= (max(narrow, _ANGLE) if is_turn else smallest):
+            is_tip = piece.place == len(places)
+            what = ("orientation" if is_tip else "direction") if is_turn else "position"
+            moved.append(Snapped(f"{'tip' if is_tip else places[piece.place]}: its {what}", amount, is_turn))
+            piece = replace(piece, constant=near)
+        if piece.drives or piece.constant != 0.0:
+            kept.append(piece)
+    return tuple(kept), moved
+
+
+def turns(pieces: Sequence[Piece], axes: Sequence[str]) -> list[str]:
+    """The names of the turns that axes drive, which number the places of pieces."""
+    return place_names([p.drives for p in pieces if p.motion is Motion.TURN and p.drives], axes)
+
+
+def _in_form(arm: Arm, symbols: Sequence[sp.Symbol]) -> form.Arm:
+    """The lines that turn, and what shifts them: slides along their directions."""
+    lengths = (sp.Integer(1), *symbols)
+    shifted = np.zeros((3, len(lengths)))
+    lines: list[form.Line] = []
+    for line in arm.lines:
+        if line.kind is Kind.LINEAR:
+            for axis, multiplier in line.drives:
+                shifted[:, 1 + axis] += line.direction * multiplier
         else:
-            found.append(piece)
-    return tuple(p for p in found if p.drives or p.constant != 0.0)
+            form.add_line(lines, form.Line(_turn(line, symbols), line.direction, _at(line.point, shifted)), lengths)
+    return form.Arm(lengths, tuple(lines), arm.tip[:3, :3], _at(arm.tip[:3, 3], shifted))
 
 
-def _sum(first: Piece, second: Piece) -> tuple[tuple[int, float], ...]:
-    total: dict[int, float] = {}
-    for axis, multiplier in (*first.drives, *second.drives):
-        total[axis] = total.get(axis, 0.0) + multiplier
-    return tuple((axis, multiplier) for axis, multiplier in total.items() if multiplier != 0.0)
+def _at(point: Array, shifted: Array) -> Array:
+    return np.column_stack([point, shifted[:, 1:]])
+
+
+def _turn(line: Line, symbols: Sequence[sp.Symbol]) -> sp.Expr:
+    return sp.Add(*[exact(multiplier) * symbols[axis] for axis, multiplier in line.drives])
+
+
+def exact(multiplier: float) -> sp.Rational:
+    """The fraction that a multiplier stands for, or its decimals."""
+    share = sp.Rational(multiplier).limit_denominator(1000)
+    return share if abs(float(share) - multiplier) <= 1e-15 * abs(multiplier) else sp.Rational(repr(multiplier))
+
+
+def _pieces(factors: Sequence[Factor], symbols: Sequence[sp.Symbol]) -> Iterator[Piece]:
+    place = 0
+    for factor in map(as_turn, factors):
+        drives = tuple((k, float(m)) for k, s in enumerate(symbols) if (m := factor.amount.coeff(s)) != 0)
+        yield Piece(factor.motion, factor.axis, drives, in_radians(number_in(factor.amount)), place)
+        place += factor.motion is Motion.TURN and bool(drives)
+
+
+def _factor(piece: Piece, symbols: Sequence[sp.Symbol]) -> Factor:
+    amount = sp.Add(*[exact(multiplier) * symbols[axis] for axis, multiplier in piece.drives])
+    return Factor(piece.motion, piece.letter, amount + (sp.Rational(repr(piece.constant))))

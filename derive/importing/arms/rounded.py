@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from derive.importing.arms.headings import orientation, product
+from derive.form.headings import orientation, product
 from derive.importing.arms.lines import ROUNDING
 from derive.importing.arms.snapping import SNAP, Snapped, angle_between, nearest_angle, right_angled
 from derive.importing.formats.documents import COARSE
@@ -95,7 +95,7 @@ def _simple(stated: Array, rounding: float, limit: float) -> tuple[Array, str]:
     if right is not None and angle_between(right, stated) <= max(min(limit, SNAP), ROUNDING):
         return right, "read as one of right angles"
     if limit > 0.0 and rounding > 0.0:
-        turns, _ = orientation(stated, rounding)
+        turns = orientation(stated, looks_down=False, same=rounding)
         simple = product(tuple((axis, nearest_angle(angle)) for axis, angle in turns))
         if _is_within(angle_between(simple, stated), rounding):
             return simple, "is rounded, off"
