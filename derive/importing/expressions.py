@@ -9,12 +9,14 @@ from fractions import Fraction
 import numpy as np
 
 from derive.geometry.frames import Motion
-from derive.importing.arms.pieces import Piece
+from derive.importing.arms.pieces import LARGEST_DENOMINATOR, Piece, exact
 from derive.importing.arms.snapping import STEP, nearest_angle
 from derive.importing.naming import parameter_meaning, parameter_name
 
 _DIGITS = 14
 """The decimal digits, relative to the machine's size, with which a length is written: further ones are rounding."""
+_DEGREES = 11
+"""The decimals of an angle in degrees: the form writes 13 of radians."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,8 @@ def dimension_of(piece: Piece, places: Sequence[str], size: float) -> Dimension 
     if piece.motion is Motion.SHIFT:
         meaning = parameter_meaning(piece, places, piece.constant < 0.0)
         return Dimension(name, meaning, abs(clean(piece.constant, size)), False)
-    return Dimension(name, parameter_meaning(piece, places, False), float(np.degrees(piece.constant)), True)
+    degrees = round(float(np.degrees(piece.constant)), _DEGREES)
+    return Dimension(name, parameter_meaning(piece, places, False), degrees, True)
 
 
 def is_half_turn(piece: Piece) -> bool:
@@ -90,12 +93,12 @@ def pi_text(angle: float) -> str:
 
 
 def _multiple(name: str, multiplier: float) -> str:
-    """An axis times a number that is written exactly."""
-    share = Fraction(multiplier).limit_denominator(1000)
-    if abs(float(share) - multiplier) > 1e-15 * multiplier:
-        share = Fraction(repr(multiplier))
+    """An axis times a number: a fraction, or the decimals of a slide in an oblique frame."""
+    share = exact(multiplier)
     if share == 1:
         return name
-    if share.numerator == 1:
-        return f"{name}/{share.denominator}"
-    return f"{share.numerator}*{name}" if share.denominator == 1 else f"{share.numerator}*{name}/{share.denominator}"
+    if share.q > LARGEST_DENOMINATOR:
+        return f"{multiplier!r}*{name}"
+    if share.p == 1:
+        return f"{name}/{share.q}"
+    return f"{share.p}*{name}" if share.q == 1 else f"{share.p}*{name}/{share.q}"

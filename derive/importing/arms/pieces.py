@@ -19,6 +19,8 @@ from derive.importing.arms.lines import ROUNDING, Arm, Line, forward, place_name
 from derive.importing.arms.snapping import SNAP, Snapped, nearest_angle
 from derive.importing.robot import Array, about
 
+LARGEST_DENOMINATOR = 1000
+"""A multiplier with a larger one is written in decimals."""
 _ROUNDS = 3
 """What is put to zero makes lines meet, and these give a chain with fewer numbers: as often at most."""
 _BELOW = "differences below 1e-9, which no description has"
@@ -150,7 +152,7 @@ def _turn(line: Line, symbols: Sequence[sp.Symbol]) -> sp.Expr:
 
 def exact(multiplier: float) -> sp.Rational:
     """The fraction that a multiplier stands for, or its decimals."""
-    share = sp.Rational(multiplier).limit_denominator(1000)
+    share = sp.Rational(multiplier).limit_denominator(LARGEST_DENOMINATOR)
     return share if abs(float(share) - multiplier) <= 1e-15 * abs(multiplier) else sp.Rational(repr(multiplier))
 
 
