@@ -5,7 +5,7 @@ to name them.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
 import sympy as sp
@@ -15,37 +15,13 @@ from derive.command.report import opened, written
 from derive.command.stages import Stages
 from derive.description.catalogue import load
 from derive.description.mechanism import Mechanism
-from derive.equations.problem import Equation
 from derive.faults import error
-from derive.kinematics.branches.assembly import assembled, with_derived_assembly
-from derive.kinematics.branches.assignment import Assignment, assign
-from derive.kinematics.branches.derived import in_words, with_derived_branches
-from derive.kinematics.build import prepared
-from derive.kinematics.forward import pose_at_axes, solve_for_position
-from derive.kinematics.inverse import Inverse, solve_at, solve_pose
-from derive.kinematics.scan.choice import with_search
-from derive.kinematics.scan.derivations import without_search
-from derive.plate.passive import solve_passive
-from derive.report.used import equations_of
-from derive.solver.solve import Step
+from derive.kinematics.branches.derived import in_words
+from derive.kinematics.shared_names import with_free_names
+from derive.kinematics.solution import prepared, solve_machine
+from derive.report.derived import FORMS, Derived, ExplainedStep, Route, derived_of, unfinished
 from derive.solver.unsolved import Unsolved
 
-_FORMS = {
-    "affine": "linear in it",
-    "affine pair": "two equations, linear in both",
-    "affine along": "two or three equations of a length along a known direction",
-    "affine along or free": "linear in it in several of them, along the direction of its slide, where it has one",
-    "affine across": "linear in it, where its slide does not point across",
-    "affine triple": "three equations, linear in all",
-    "pair": "its cosine and its sine are linear in two equations: a rotation that takes one vector to another",
-    "polar": "two equations that are its cosine and its sine, times one unknown radius",
-    "trigonometric": "a cos u + b sin u = c: law of cosines, two solutions",
-    "lateral": "a cos u + b sin u = c for a point beside the axis, two solutions",
-    "quadratic": "a square, two solutions",
-    "spheres": "circles or spheres about known points, two solutions",
-    "sum": "the sum of parallel angles, less those that are known",
-}
-"""The forms of equations that rules solve."""
 _LONGEST = 160
 
 
@@ -68,78 +44,54 @@ def explain(options: argparse.Namespace) -> int:
 
 def explanation(mechanism: Mechanism) -> Iterator[str]:
     """The lines of one machine. Raises `Unsolved` or `DescriptionError` where it cannot be derived."""
-    mechanism = with_derived_assembly(with_search(prepared(mechanism)))
-    if mechanism.search is not None:
-        joint, parameter = mechanism.search.joint, mechanism.search.where
-        if parameter is None:
-            yield f"{joint.name} is scanned for roots. The steps below are those of a trial, where it is known."
-            yield from _trial(mechanism, solve_at(mechanism, joint))
-            return
-        name = parameter.given_name
-        yield f"Where {name} is not 0, {joint.name} is scanned for roots. Below are the steps where it is 0."
-        mechanism = without_search(mechanism)
     try:
-        inverse = solve_pose(mechanism)
+        solution = with_free_names(mechanism, lambda further: solve_machine(prepared(mechanism, further)))
     except Unsolved as stuck:
         yield "Inverse kinematics, as far as it goes"
-        for number, step in enumerate(stuck.steps, 1):
-            yield from _step(mechanism, number, step, ())
+        for step in unfinished(stuck.steps):
+            yield from _step(mechanism, step)
         raise
-    forward = assembled(mechanism, pose_at_axes(mechanism)).forward
-    whole = with_derived_branches(mechanism, inverse, forward)
-    assignments = assign(whole, inverse, forward)
-    yield "Inverse kinematics"
-    yield from _equations(inverse.closure.equations)
-    yield from _held(inverse)
-    passive = solve_passive(mechanism).steps if mechanism.passive else ()
-    if passive:
-        yield f"  not commanded: {', '.join(mechanism.passive)}; from the guides, on the side of the home pose"
-    for number, step in enumerate((*passive, *inverse.derivation.steps), 1):
-        yield from _step(mechanism, number, step, assignments)
-    yield from _branches(whole)
-    yield from _forward(mechanism)
+    derived = derived_of(solution)
+    if derived.searched is not None:
+        where = f"Where {derived.where.given_name} is not 0, " if derived.where is not None else ""
+        yield f"{where}{derived.searched.name} is scanned for roots: a trial takes it as known."
+    for route in derived.inverse:
+        yield from _route(derived.mechanism, route)
+    yield from _branches(derived.mechanism)
+    yield from _forward(derived)
 
 
-def _trial(mechanism: Mechanism, inverse: Inverse) -> Iterator[str]:
-    yield from _equations(inverse.closure.equations)
-    for number, step in enumerate(inverse.derivation.steps, 1):
-        yield from _step(mechanism, number, step, ())
-    for left in inverse.derivation.residuals:
-        yield f"  residual, which vanishes at a root: {_written(left)}"
-    yield from _branches(mechanism)
-    yield from _forward(mechanism)
-
-
-def _equations(equations: Sequence[Equation]) -> Iterator[str]:
-    for equation in equations:
+def _route(mechanism: Mechanism, route: Route) -> Iterator[str]:
+    """The lines of one solved problem."""
+    yield route.title
+    for equation in route.equations:
         yield f"  equation {equation.label}: {_written(equation.expression)}"
-
-
-def _held(inverse: Inverse) -> Iterator[str]:
-    for joint in inverse.frozen:
+    for joint in route.frozen:
         yield f"  {joint.name} is held: it stays where the reference has it"
+    for step in route.steps:
+        yield from _step(mechanism, step)
+    for left in route.residuals:
+        yield f"  residual, which vanishes at a root: {_written(left)}"
 
 
-def _step(mechanism: Mechanism, number: int, step: Step, assignments: Sequence[Assignment]) -> Iterator[str]:
+def _step(mechanism: Mechanism, step: ExplainedStep) -> Iterator[str]:
     """One step: unknown <- rule <- equations, and what it means."""
-    binding = step.recorded
-    unknowns = ", ".join(_name(mechanism, u) for u in binding.unknowns) or "no unknown"
-    others = "the sum and its other angles" if binding.rule == "sum" else "the equations above"
-    used = " and ".join(e.label for e in equations_of(step)) or others
-    yield f"  {number}. {unknowns} <- {binding.rule} <- {used}"
-    yield f"       form: {_FORMS.get(binding.rule, binding.rule)}"
-    if binding.determinant is not None:
-        value, scale = binding.determinant.value, binding.determinant.scale
+    unknowns = ", ".join(_name(mechanism, u) for u in step.unknowns) or "no unknown"
+    others = "the sum and its other angles" if step.rule == "sum" else "the equations above"
+    used = " and ".join(e.label for e in step.equations) or others
+    yield f"  {step.number}. {unknowns} <- {step.rule} <- {used}"
+    yield f"       form: {FORMS.get(step.rule, step.rule)}"
+    if step.determinant is not None:
+        value, scale = step.determinant.value, step.determinant.scale
         yield f"       determinant: {_plain(value)}, over {_plain(scale)}; where it is 0 both solutions meet"
-        for found in (a for a in assignments if a.determinant.step == binding.determinant.step):
-            named = found.branch
-            same = "the sign" if found.orientation > 0 else "the opposite sign"
-            yield f"       branch {named.name}: 1 {named.names[0]}, 2 {named.names[1]}; {same} of the determinant is 1"
-    if binding.conditioning is not None:
-        angle = _name(mechanism, binding.conditioning.angle)
-        value = _plain(binding.conditioning.value)
-        yield f"       {angle} is free where {value} = 0: there it is that of the reference"
-    for condition in binding.conditions:
+    for found in step.assignments:
+        first, second = found.branch.names
+        same = "the sign" if found.orientation > 0 else "the opposite sign"
+        yield f"       branch {found.branch.name}: 1 {first}, 2 {second}; {same} of the determinant is 1"
+    if step.conditioning is not None:
+        angle = _name(mechanism, step.conditioning.angle)
+        yield f"       {angle} is free where {_plain(step.conditioning.value)} = 0: there it is that of the reference"
+    for condition in step.conditions:
         yield f"       Initialize refuses a machine where {_plain(condition)} = 0"
 
 
@@ -164,26 +116,24 @@ def _branches(mechanism: Mechanism) -> Iterator[str]:
             yield f"       derived, to be named: 1 {branch.names[0]} where {first}, 2 {branch.names[1]} where {second}"
 
 
-def _forward(mechanism: Mechanism) -> Iterator[str]:
+def _forward(derived: Derived) -> Iterator[str]:
     """The steps of the forward kinematics of a closed loop; a chain has none."""
+    mechanism = derived.mechanism
     yield "Forward kinematics"
-    if mechanism.chain is not None:
-        yield "  the product of the chain"
-    elif mechanism.is_platform:
-        yield "  Newton's method from the home pose; the assembly mode is that of the home pose"
-    else:
-        derivation = solve_for_position(mechanism)
-        for number, step in enumerate(derivation.steps, 1):
-            yield from _step(mechanism, number, step, ())
-        if mechanism.assembly is not None:
-            way = mechanism.assembly
-            yield f"  assembly {way.name}: {way.parameter} chooses the second mode"
-            if way.meanings[0]:
-                signs = ", ".join(f"{n}={s:+d}" for n, s in zip(way.names, way.signs, strict=True))
-                indicator = in_words(mechanism, way.indicator)
-                yield f'  assembly("{way.name}", {indicator}, margin="{way.margin}", {signs})'
-                first, second = way.meanings
-                yield f"       derived, to be named: {way.names[0]} where {first}; {way.names[1]} where {second}"
+    if derived.forward is None:
+        by_newton = "Newton's method from the home pose; the assembly mode is that of the home pose"
+        yield f"  {by_newton if mechanism.is_platform else 'the product of the chain'}"
+        return
+    for step in derived.forward.steps:
+        yield from _step(mechanism, step)
+    if (way := mechanism.assembly) is not None:
+        yield f"  assembly {way.name}: {way.parameter} chooses the second mode"
+        if way.meanings[0]:
+            signs = ", ".join(f"{n}={s:+d}" for n, s in zip(way.names, way.signs, strict=True))
+            indicator = in_words(mechanism, way.indicator)
+            yield f'  assembly("{way.name}", {indicator}, margin="{way.margin}", {signs})'
+            first, second = way.meanings
+            yield f"       derived, to be named: {way.names[0]} where {first}; {way.names[1]} where {second}"
 
 
 def _name(mechanism: Mechanism, unknown: sp.Symbol) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,58 +12,45 @@ from numpy.typing import NDArray
 from derive.description.amounts import almost_right_angles
 from derive.description.mechanism import DescriptionError, Mechanism, Turning
 from derive.equations.axes import finite
-from derive.equations.conditions import with_conditions
 from derive.equations.limits import limits_program
 from derive.equations.pose_at_axes import Forward
-from derive.equations.problem import Conditioning
-from derive.form.machine import in_form
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.program import Let, Output, Program, Statement
 from derive.ir.symbols import OFFSET, real
 from derive.kinematics.branches.assembly import (
     Assembled,
-    assembled,
     assembly_checks,
     bound_checks,
     mirror_checks,
-    with_derived_assembly,
 )
 from derive.kinematics.branches.assignment import Assignment, assign, margin_lets, with_branch_signs
-from derive.kinematics.branches.derived import with_derived_branches
 from derive.kinematics.bundle import bundle_of
 from derive.kinematics.coupling import coupling_programs
 from derive.kinematics.differential import jacobian_program, twist_program
 from derive.kinematics.flange_rotation import image_program, needs_twist, projection_program
-from derive.kinematics.forward import at_point, derivation_at_axes, forward_program, orientation_program, pose_at_axes
+from derive.kinematics.forward import at_point, derivation_at_axes, forward_program, orientation_program
 from derive.kinematics.home_share import with_share
-from derive.kinematics.inverse import Inverse, inverse_program, solve_offset, solve_pose
+from derive.kinematics.inverse import Inverse, inverse_program, solve_offset
 from derive.kinematics.kinematics import Kinematics, Margin
 from derive.kinematics.lost_digits.closure_steps import Machine
 from derive.kinematics.lost_digits.doubts import meeting, with_doubts
-from derive.kinematics.margins.candidates import Factor, factor_of
 from derive.kinematics.margins.determinant import samples_anywhere, singularity_program
 from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.refusals.no_pose import near_home
-from derive.kinematics.refusals.number_of_joints import check_joints
 from derive.kinematics.sampling import sample_machine
-from derive.kinematics.scan.choice import with_search
-from derive.kinematics.scan.derivations import from_joints, solve_both, trial_on_branch
+from derive.kinematics.scan.derivations import Scanned, from_joints, trial_on_branch
 from derive.kinematics.scan.inverse import branch_statements, search_given
 from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements
 from derive.kinematics.scan.programs import names_of_search
 from derive.kinematics.shared_names import (
     SharedName,
     refuse_names,
-    refuse_names_of_joints,
     refuse_shared_names,
     with_free_names,
 )
-from derive.plate.fixed_point import with_fixed_point
+from derive.kinematics.solution import Solved, prepared, solve_machine
 from derive.plate.newton import found_again
-from derive.plate.passive import GUIDES, guides_determinant
-from derive.plate.plate import check_home
-from derive.plate.stated_rods import with_positive_lengths, with_stated_rods
 from derive.plate.turning import joints_at_home
 from derive.solver.unsolved import Unsolved
 
@@ -81,37 +68,23 @@ def build(mechanism: Mechanism) -> Kinematics:
         raise
 
 
-def prepared(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> Mechanism:
-    """The mechanism as it is derived: in its one form, with its rods recognised, whose lengths are positive."""
-    mechanism = in_form(mechanism, further)
-    check_joints(mechanism)
-    return with_positive_lengths(with_stated_rods(with_fixed_point(mechanism)))
-
-
 def _built(mechanism: Mechanism) -> Kinematics:
-    if mechanism.is_platform:
-        check_home(mechanism)
-    refuse_names_of_joints(mechanism)
-    mechanism = with_search(mechanism)
-    if mechanism.search is not None:
-        return _scanned(mechanism)
-    mechanism = with_derived_assembly(mechanism)
-    closed = assembled(mechanism, pose_at_axes(mechanism))
+    solution = solve_machine(mechanism)
+    return _scanned(solution) if isinstance(solution, Scanned) else _closed_form(solution)
+
+
+def _closed_form(solved: Solved) -> Kinematics:
+    """The programs of a machine with a closed form."""
+    mechanism, closed, inverse, assignments = solved.mechanism, solved.closed, solved.inverse, solved.assignments
     forward = closed.forward
-    inverse = solve_pose(mechanism)
-    mechanism = with_conditions(mechanism, inverse.derivation.conditions)
-    refuse_shared_names(mechanism, (*forward.statements, *inverse.naming, *inverse.derivation.statements))
-    mechanism = with_derived_branches(mechanism, inverse, forward)
-    assignments = assign(mechanism, inverse, forward)
     at_axes = derivation_at_axes(mechanism, inverse, forward)
     margins = margin_lets(mechanism, assignments)
     jacobian = jacobian_program(mechanism, forward)
-    factors = _factors(mechanism, closed, inverse, assignments)
     machine = Machine(mechanism, inverse, assignments, at_axes)
     statements = with_doubts(machine, with_branch_signs(inverse.derivation.statements, assignments))
     at_home = joints_at_home(mechanism, statements) if mechanism.is_platform else ()
     at_poses = _samples(mechanism, inverse, at_home, jacobian)
-    singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian, at_poses)
+    singularity, kept = singularity_program(mechanism, at_axes, solved.factors, jacobian, at_poses)
     forward_only = replace(forward, statements=at_axes)
     last = _last(mechanism, closed, statements, offset=False)
     again = found_again(mechanism) if mechanism.is_platform else ()
@@ -125,18 +98,7 @@ def _built(mechanism: Mechanism) -> Kinematics:
         image_program(mechanism),
     ]
     programs += _further_programs(mechanism, closed, inverse)
-    return bundle_of(mechanism, programs, kept, at_home)
-
-
-def _factors(
-    mechanism: Mechanism, closed: Assembled, inverse: Inverse, assignments: Sequence[Assignment]
-) -> list[Factor]:
-    """The factors of the determinants of the two Jacobians, one for each kind of singularity."""
-    told: list[Assignment | Conditioning] = [*assignments, *inverse.derivation.conditionings]
-    factors = [factor_of(mechanism, found) for found in told]
-    if mechanism.passive:
-        factors.append(Factor(GUIDES, guides_determinant(mechanism)))
-    return [*factors, Factor(closed.name, closed.margin)] if closed.margin is not None else factors
+    return bundle_of(solved, programs, kept, at_home)
 
 
 def _further_programs(mechanism: Mechanism, closed: Assembled, inverse: Inverse) -> list[Program]:
@@ -164,11 +126,11 @@ def _samples(
     return samples | constants
 
 
-def _scanned(mechanism: Mechanism) -> Kinematics:
+def _scanned(both: Scanned) -> Kinematics:
     """The programs of a chain that has no closed form, or has one only where a parameter is zero: one joint is scanned,
     and the determinant of the Jacobian is the margin.
     """
-    both = solve_both(mechanism)
+    mechanism = both.mechanism
     refuse_names(mechanism, names_of_search(mechanism, trial_on_branch(both)))
     statements, margins = margin_statements(both)
     determinant, scaled = determinant_margin(both)
@@ -188,7 +150,7 @@ def _scanned(mechanism: Mechanism) -> Kinematics:
         projection_program(mechanism),
         *([twist_program(mechanism, both.forward)] if needs_twist(mechanism) else []),
     ]
-    finished = bundle_of(mechanism, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
+    finished = bundle_of(both, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
     return replace(finished, tried_branches=len(both.trial_branches))
 
 

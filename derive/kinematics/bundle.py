@@ -26,6 +26,7 @@ from derive.kinematics.flange_rotation import freedom_of
 from derive.kinematics.kinematics import Kinematics, Margin
 from derive.kinematics.parameters import constants_of, machine_parameters, setup_program
 from derive.kinematics.shared_names import refuse_names
+from derive.kinematics.solution import Solution
 from derive.lowering.lower import lowered
 
 
@@ -72,15 +73,17 @@ def _given(setup: Program, settled: Sequence[str]) -> Iterator[Let]:
 
 
 def bundle_of(
-    mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...], at_home: Sequence[Statement] = ()
+    solution: Solution, programs: Sequence[Program], margins: tuple[Margin, ...], at_home: Sequence[Statement] = ()
 ) -> Kinematics:
     """The bundle of all programs."""
+    mechanism = solution.mechanism
     refuse_names(mechanism, (name for program in (*shared(programs), *programs) for name in program.bound()))
     parameters = machine_parameters(mechanism)
     moved = _hoisted(mechanism, parameters, programs, at_home)
     finished = {program.name: program for program in moved.programs}
     return Kinematics(
         mechanism=mechanism,
+        solution=solution,
         parameters=parameters,
         setup=moved.setup,
         forward=finished["forward"],

@@ -20,6 +20,7 @@ from enum import Enum
 from derive.description.mechanism import Branch, Joint, Limited, Mechanism, Parameter
 from derive.ir.program import Program, shared
 from derive.kinematics.reference_cases import SelfTest
+from derive.kinematics.solution import Solution
 
 
 class Freedom(Enum):
@@ -134,6 +135,8 @@ class Kinematics:
     """
 
     mechanism: Mechanism
+    solution: Solution = field(repr=False, compare=False)
+    """What was solved, for those who explain it."""
     parameters: tuple[Parameter, ...]
     setup: Program
     forward: Program

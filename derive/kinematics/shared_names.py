@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from math import inf
+from typing import TypeVar
 
 import sympy as sp
 
@@ -17,10 +18,10 @@ from derive.form.inner_names import in_given_names, inputs_named, joined, suspec
 from derive.ir.program import Call, Program, Statement, shared
 from derive.ir.symbols import cosine, sine
 from derive.ir.verify import BrokenProgram, RepeatedName
-from derive.kinematics.kinematics import Kinematics
 from derive.solver.solve import MOST_TERMS
 from derive.solver.unsolved import Unsolved
 
+Found = TypeVar("Found")
 _ATTEMPTS = 4
 """The largest number of times that an input gets another name."""
 
@@ -55,7 +56,7 @@ def refuse_names(mechanism: Mechanism, names: Iterable[sp.Symbol]) -> None:
             raise SharedName(f"parameter {own!r} has a name that the derivation itself uses: choose another", own)
 
 
-def with_free_names(mechanism: Mechanism, derived: Callable[[Mapping[str, int]], Kinematics]) -> Kinematics:
+def with_free_names(mechanism: Mechanism, derived: Callable[[Mapping[str, int]], Found]) -> Found:
     """The result of `derived`, given the symbols of inputs that need another name inside, and the number of attempts.
 
     Raises the errors of `derived`, in the names of the description.

@@ -1,12 +1,12 @@
 """The derivation of a mechanism for a reader: its closure, its steps with the equations that they use, the branches
 that they decide, and the margins.
 
-It is repeated from the description, by the functions that the build calls, in the same order; they cache their results.
+It is read from what was solved for the build.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -18,16 +18,13 @@ from derive.equations.problem import Binding, Conditioning, Equation, Problem, S
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Statement, rewritten
 from derive.ir.symbols import ASSEMBLY_SIGN, cosine, sine
-from derive.kinematics.branches.assembly import Assembled, assembled, with_derived_assembly
-from derive.kinematics.branches.assignment import Assignment, assign, with_branch_signs
-from derive.kinematics.branches.derived import with_derived_branches
-from derive.kinematics.build import prepared
-from derive.kinematics.forward import pose_at_axes, solve_for_position
-from derive.kinematics.inverse import Inverse, solve_pose
-from derive.kinematics.margins.candidates import Factor, factor_of
-from derive.kinematics.scan.choice import with_search
-from derive.kinematics.scan.derivations import solve_both
-from derive.plate.passive import GUIDES, guides_determinant, solve_passive
+from derive.kinematics.branches.assignment import Assignment, with_branch_signs
+from derive.kinematics.forward import solve_for_position
+from derive.kinematics.inverse import Inverse
+from derive.kinematics.margins.candidates import Factor
+from derive.kinematics.scan.derivations import Scanned
+from derive.kinematics.solution import Solution
+from derive.plate.passive import solve_passive
 from derive.report.used import equations_of
 from derive.solver.parallel_axes import Sum
 from derive.solver.positive_steps import known_signs
@@ -38,9 +35,26 @@ _WORTH_A_NAME = 3
 MANY = 40
 """An equation with more operations is written in the names that its step binds."""
 
+FORMS = {
+    "affine": "linear in the unknown",
+    "affine pair": "two equations, linear in both unknowns",
+    "affine along": "two or three equations of a length along a known direction",
+    "affine along or free": "linear in it in several of them, along the direction of its slide, where it has one",
+    "affine across": "linear in it, where its slide does not point across",
+    "affine triple": "three equations, linear in all three unknowns",
+    "pair": "cosine and sine are linear in two equations: the rotation that takes one vector to another",
+    "polar": "two equations that are its cosine and its sine, times one unknown radius: two solutions",
+    "trigonometric": "a cos u + b sin u = c, the law of cosines: two solutions",
+    "lateral": "a cos u + b sin u = c for a point beside the axis: two solutions",
+    "quadratic": "a square: two solutions",
+    "spheres": "circles or spheres about known points: two solutions",
+    "sum": "the sum of parallel angles, less those that are known",
+}
+"""The equation that each rule solves."""
+
 
 @dataclass(frozen=True)
-class ToldStep:
+class ExplainedStep:
     """One step: unknowns ← rule ← equations, and the names that it binds."""
 
     number: int
@@ -70,7 +84,7 @@ class Route:
     """The closure, in the names of the derivation."""
     known: tuple[Statement, ...]
     """The statements before the first step."""
-    steps: tuple[ToldStep, ...]
+    steps: tuple[ExplainedStep, ...]
     frozen: tuple[Joint, ...] = ()
     residuals: tuple[sp.Expr, ...] = ()
     """The residuals of a trial, which are zero at a root."""
@@ -93,45 +107,38 @@ class Derived:
     """The parameter at whose zero no root scan is needed."""
 
 
-def derived_of(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> Derived:
-    """The derivation of a mechanism that the build derives. Raises what the build raises.
-
-    further: the inputs that the build gives another name inside, `Kinematics.further`.
-    """
-    mechanism = with_derived_assembly(with_search(prepared(mechanism, further)))
-    if mechanism.search is not None:
-        return _searched(mechanism)
-    inverse, closed = solve_pose(mechanism), assembled(mechanism, pose_at_axes(mechanism))
-    whole = with_derived_branches(mechanism, inverse, closed.forward)
-    assignments = assign(whole, inverse, closed.forward)
-    routes = [_route("Inverse kinematics", mechanism, inverse, assignments)]
+def derived_of(solution: Solution) -> Derived:
+    """The derivation of a machine, from its solution."""
+    if isinstance(solution, Scanned):
+        return _searched(solution)
+    mechanism = solution.mechanism
+    routes = [_route("Inverse kinematics", solution.inverse, solution.assignments)]
     if mechanism.passive:
-        derivation = solve_passive(mechanism)
-        steps = _Told(derivation, {}).steps()
-        title = f"What the task does not command: {', '.join(mechanism.passive)}"
-        routes.insert(0, Route(title, (), (), steps))
-    return Derived(whole, tuple(routes), _forward(mechanism), tuple(_factors(whole, inverse, assignments, closed)))
+        steps = _Explained(solve_passive(mechanism), {}).steps()
+        routes.insert(0, Route(f"What the task does not command: {', '.join(mechanism.passive)}", (), (), steps))
+    return Derived(mechanism, tuple(routes), _forward(mechanism), solution.factors)
 
 
-def _searched(mechanism: Mechanism) -> Derived:
-    both = solve_both(mechanism)
-    search = mechanism.search
+def _searched(both: Scanned) -> Derived:
+    mechanism, search = both.mechanism, both.mechanism.search
     assert search is not None
-    routes = [_route(f"A trial: {search.joint.name} is known", mechanism, both.trial, both.trial_branches)]
+    routes = [_route(f"A trial: {search.joint.name} is known", both.trial, both.trial_branches)]
     if both.closed is not None and search.where is not None:
         title = f"Where {search.where.name} is 0: in closed form"
-        routes.insert(0, _route(title, mechanism, both.closed, both.closed_branches))
+        routes.insert(0, _route(title, both.closed, both.closed_branches))
     return Derived(mechanism, tuple(routes), None, (), search.joint, search.where)
 
 
-def _route(title: str, mechanism: Mechanism, inverse: Inverse, assignments: Sequence[Assignment]) -> Route:
+def _route(title: str, inverse: Inverse, assignments: Sequence[Assignment]) -> Route:
     derivation = inverse.derivation
     signs = with_branch_signs((), assignments)
-    told = _Told(derivation, {a.determinant.sigma: a.orientation * a.factor for a in assignments}, assignments)
-    left = tuple(told.signed(r) for r in derivation.residuals)
+    explained = _Explained(
+        derivation, {a.determinant.sigma: a.orientation * a.factor for a in assignments}, assignments
+    )
+    left = tuple(explained.signed(r) for r in derivation.residuals)
     known = (*inverse.naming, *signs)
     equations = tuple(_recorded(e, derivation) for e in inverse.closure.equations)
-    return Route(title, equations, known, told.steps(), inverse.frozen, left, tuple(assignments))
+    return Route(title, equations, known, explained.steps(), inverse.frozen, left, tuple(assignments))
 
 
 def _recorded(equation: Equation, derivation: Derivation) -> Equation:
@@ -148,10 +155,10 @@ def _forward(mechanism: Mechanism) -> Route | None:
         return None
     derivation = solve_for_position(mechanism)
     sides = {s.sigma: ASSEMBLY_SIGN for s in derivation.determinants}
-    return Route("Forward kinematics", (), fixed_lets(mechanism), _Told(derivation, sides).steps())
+    return Route("Forward kinematics", (), fixed_lets(mechanism), _Explained(derivation, sides).steps())
 
 
-class _Told:
+class _Explained:
     """The steps of a derivation, in the signs of branches."""
 
     def __init__(
@@ -167,29 +174,46 @@ class _Told:
         """An expression in the signs of branches."""
         return value.xreplace(self._signs)
 
-    def steps(self) -> tuple[ToldStep, ...]:
+    def steps(self) -> tuple[ExplainedStep, ...]:
         """All steps, in their order."""
         return tuple(self._step(number, step) for number, step in enumerate(self._derivation.steps, 1))
 
-    def _step(self, number: int, step: Step) -> ToldStep:
-        binding, names = step.recorded, dict(step.names)
+    def _step(self, number: int, step: Step) -> ExplainedStep:
+        plain, binding, names = _plain(number, step), step.recorded, dict(step.names)
         own = tuple(rewritten(s, lambda e: e.xreplace(self._signs)) for s in self._derivation.plain[slice(*step.span)])
-        equations = [Equation(e.label, self.signed(e.expression.xreplace(names))) for e in equations_of(step)]
-        made, partial = binding.determinant, binding.conditioning
+        equations = [Equation(e.label, self.signed(e.expression.xreplace(names))) for e in plain.equations]
+        made, partial = plain.determinant, plain.conditioning
         is_sum = binding.rule == "sum"
-        return ToldStep(
-            number=number,
-            unknowns=binding.unknowns,
-            rule=binding.rule,
+        return replace(
+            plain,
             equations=tuple(Equation(e.label, _in_names(e.expression, own, step.problem, binding)) for e in equations),
             statements=own,
             determinant=None if made is None else replace(made, value=self.signed(made.value)),
             assignments=tuple(a for a in self._assignments if made is not None and a.determinant.step == made.step),
             conditioning=None if partial is None else replace(partial, value=self.signed(partial.value)),
-            conditions=binding.conditions,
             total=next((t for t in self._derivation.sums if is_sum and t.replaced in binding.unknowns), None),
             only=0 if made is None else self._known.get(made.step, 0),
         )
+
+
+def unfinished(steps: Sequence[Step]) -> tuple[ExplainedStep, ...]:
+    """The steps of a derivation that did not reach its end."""
+    return tuple(_plain(number, step) for number, step in enumerate(steps, 1))
+
+
+def _plain(number: int, step: Step) -> ExplainedStep:
+    binding = step.recorded
+    return ExplainedStep(
+        number=number,
+        unknowns=binding.unknowns,
+        rule=binding.rule,
+        equations=equations_of(step),
+        statements=(),
+        determinant=binding.determinant,
+        assignments=(),
+        conditioning=binding.conditioning,
+        conditions=binding.conditions,
+    )
 
 
 def _in_names(value: sp.Expr, statements: Sequence[Statement], problem: Problem, binding: Binding) -> sp.Expr:
@@ -218,14 +242,3 @@ def _named(value: sp.Expr, lets: Sequence[Let], problem: Problem) -> sp.Expr:
             if sp.count_ops(ratio) < sp.count_ops(best) / 3 and not ratio.is_Add:
                 best = ratio * let.name
     return best
-
-
-def _factors(
-    mechanism: Mechanism, inverse: Inverse, assignments: Sequence[Assignment], closed: Assembled
-) -> Iterator[Factor]:
-    told: list[Assignment | Conditioning] = [*assignments, *inverse.derivation.conditionings]
-    yield from (factor_of(mechanism, found) for found in told)
-    if mechanism.passive:
-        yield Factor(GUIDES, guides_determinant(mechanism))
-    if closed.margin is not None:
-        yield Factor(closed.name, closed.margin)

@@ -144,7 +144,7 @@ def test_the_report(kind: str) -> None:
     drawn = drawn_pose(shown)
     assert is_inside(shown, drawn) and _are_inside(machine, list(drawn.axes))
     (margin,) = kinematics.margins  # stretched or folded: both are beyond the limits of the elbow
-    assert singular_pose(shown, derived_of(machine.mechanism), margin.name, drawn.axes) is None
+    assert singular_pose(shown, derived_of(kinematics.solution), margin.name, drawn.axes) is None
     assert machine.robot.parameters.items() >= {(n, v) for n, v in shown.given.items() if n.startswith("lower_")}
 
 

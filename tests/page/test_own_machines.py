@@ -41,7 +41,7 @@ def _words(elements: list[ET.Element]) -> str:
 def test_the_page_is_whole(name: str) -> None:
     """Every step, every margin, every axis by its name."""
     page, kinematics = parsed(_text(name)), _kinematics(name)
-    derived = derived_of(OWN[name])
+    derived = derived_of(_kinematics(name).solution)
     shown = [s.get("id") for s in every(section(page, "derivation"), "section", "step")]
     steps = [route.steps for route in (*derived.inverse, *([derived.forward] if derived.forward else []))]
     assert len(shown) == sum(map(len, steps)) > 1
@@ -73,6 +73,8 @@ def test_a_singular_pose_of_ones_own() -> None:
     name = "SCARA that bends to the left alone"
     machine = nominal_machine(_kinematics(name))
     (margin,) = machine.kinematics.margins
-    found = singular_pose(machine, derived_of(OWN[name]), margin.name, tuple(j.nominal for j in OWN[name].joints))
+    found = singular_pose(
+        machine, derived_of(_kinematics(name).solution), margin.name, tuple(j.nominal for j in OWN[name].joints)
+    )
     assert found is not None and found.value <= SINGULAR
     assert min(abs(found.axes[1] % 360.0 - straight) for straight in (0.0, 180.0, 360.0)) < 1e-3

@@ -12,12 +12,12 @@ from derive.ir.interpret import run as interpreted
 from derive.ir.program import Call, FindRoot, Iterate, Program, Require, Solve, Status
 from derive.ir.symbols import Flag
 from derive.kinematics.branches.assembly import with_derived_assembly
-from derive.kinematics.build import prepared
 from derive.kinematics.inverse import solve_pose
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.lost_digits.doubts import without_meeting
 from derive.kinematics.scan.choice import with_search
 from derive.kinematics.scan.derivations import solve_both
+from derive.kinematics.solution import prepared
 from derive.report.used import equations_of
 from derive.solver.solve import Step
 from tests.mechanisms import kinematics_of, named

@@ -32,7 +32,7 @@ _STEP = 1e-5
 
 @cache
 def _derived(name: str) -> Derived:
-    return derived_of(named(name))
+    return derived_of(kinematics_of(named(name)).solution)
 
 
 @cache

@@ -61,7 +61,7 @@ def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = T
     has_pictures: with the drawing, the machine in its singular poses, and maps; without, the formulas alone.
     viewer: the file that shows the machine in the browser, from where this page stands; empty where there is none.
     """
-    derived, spelling = derived_of(mechanism, kinematics.further), spelling_of(kinematics)
+    derived, spelling = derived_of(kinematics.solution), spelling_of(kinematics)
     lines, plain = Lines(spelling, _numbered(derived)), Lines(spelling)
     names = {p.name: f"{p.nominal:g}" for p in kinematics.mechanism.parameters} | dict(inputs_of(kinematics))
     found = pictured(kinematics, names) if has_pictures else None

@@ -15,24 +15,7 @@ from derive.geometry.frames import LETTERS, Factor, Motion
 from derive.ir.program import Let, Statement, reads
 from derive.ir.symbols import names_in
 from derive.kinematics.branches.assignment import Assignment
-from derive.report.derived import Derived, Route, ToldStep
-
-FORMS = {
-    "affine": "linear in the unknown",
-    "affine pair": "two equations, linear in both unknowns",
-    "affine along": "two or three equations of a length along a known direction",
-    "affine along or free": "linear in it in several of them, along the direction of its slide, where it has one",
-    "affine across": "linear in it, where its slide does not point across",
-    "affine triple": "three equations, linear in all three unknowns",
-    "pair": "cosine and sine are linear in two equations: the rotation that takes one vector to another",
-    "polar": "two equations that are its cosine and its sine, times one unknown radius: two solutions",
-    "trigonometric": "a cos u + b sin u = c, the law of cosines: two solutions",
-    "lateral": "a cos u + b sin u = c for a point beside the axis: two solutions",
-    "quadratic": "a square: two solutions",
-    "spheres": "circles or spheres about known points: two solutions",
-    "sum": "the sum of parallel angles, less those that are known",
-}
-"""The equation that each rule solves."""
+from derive.report.derived import FORMS, Derived, ExplainedStep, Route
 
 
 @dataclass(frozen=True)
@@ -121,7 +104,7 @@ def _stated(equation: Equation, lines: Lines) -> Stated:
     return Stated(equation.label, lines.math.equation(equation.expression, sp.Integer(0)))
 
 
-def _step(step: ToldStep, mechanism: Mechanism, lines: Lines) -> ShownStep:
+def _step(step: ExplainedStep, mechanism: Mechanism, lines: Lines) -> ShownStep:
     used = tuple(_stated(e, lines) for e in step.equations)
     if step.total is not None:
         terms = sp.Add(*(sign * angle for angle, sign in step.total.terms))

@@ -22,7 +22,7 @@ from derive.ir.program import Output
 from derive.ir.symbols import real
 from derive.ir.verify import BrokenProgram
 from derive.kinematics import build as building
-from derive.kinematics import bundle
+from derive.kinematics import bundle, solution
 from derive.kinematics.differential import jacobian_entries
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.scan import derivations, margins
@@ -50,9 +50,9 @@ def refused(call: Callable[[], object], kind: type[Exception] = DescriptionError
 
 def test_margins_that_do_not_multiply(monkeypatch: pytest.MonkeyPatch) -> None:
     """A margin with half a unit added: no power of it is the determinant."""
-    factor = building.factor_of
+    factor = solution.factor_of
     monkeypatch.setattr(
-        building,
+        solution,
         "factor_of",
         lambda m, a: replace(f := factor(m, a), **{"value": f.value + sp.Rational(1, 2)}),
     )
@@ -101,7 +101,7 @@ def test_a_loop_with_an_equation_too_few() -> None:
 
 @pytest.fixture(scope="module")
 def searched() -> Mechanism:
-    return building.prepared(load(SEARCHED))
+    return solution.prepared(load(SEARCHED))
 
 
 def test_a_search_that_leaves_two_conditions(searched: Mechanism, monkeypatch: pytest.MonkeyPatch) -> None:
