@@ -24,6 +24,17 @@ _Result = TypeVar("_Result")
 class TooMuchWork(Exception):
     """The work that is allowed is done, and the derivation is not finished."""
 
+    stage = "the derivation"
+    """What it was needed for."""
+
+    def __init__(self, most: float, terms: int) -> None:
+        """most: the terms that were allowed; terms: those of what would be written next."""
+        super().__init__(most, terms)
+        self.most, self.terms = most, terms
+
+    def __str__(self) -> str:
+        return f"{self.stage} was given up after {self.most:,.0f} terms, before an expression of {self.terms:,} terms"
+
 
 @dataclass
 class Work:
@@ -56,8 +67,25 @@ def spend(terms: int) -> None:
     """Count terms before they are written. Raises `TooMuchWork` where they exceed the bound."""
     work = _WORK.get()
     if work.done + terms > work.most:
-        raise TooMuchWork
+        raise TooMuchWork(work.most, terms)
     work.done += terms
+
+
+def stage(name: str) -> Callable[[Callable[_Given, _Result]], Callable[_Given, _Result]]:
+    """Name a stage of a derivation, for the message where there is too much work for it."""
+
+    def named(function: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
+        @wraps(function)
+        def of(*arguments: _Given.args, **named_arguments: _Given.kwargs) -> _Result:
+            try:
+                return function(*arguments, **named_arguments)
+            except TooMuchWork as problem:
+                problem.stage = name
+                raise
+
+        return of
+
+    return named
 
 
 def counted(function: Callable[_Given, _Result]) -> Callable[_Given, _Result]:

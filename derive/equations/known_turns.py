@@ -50,9 +50,14 @@ class Side:
         if self.joints:
             joints = name_of(tuple((real(name), 1) for name in self.joints))
             if len(joints) > _LONG:
-                joints = f"base_to_{self.joints[-1]}" if self.word == "from" else f"{self.joints[0]}_to_flange"
+                joints = f"base_to_{self._again(-1)}" if self.word == "from" else f"{self._again(0)}_to_flange"
             return f"_{self.word}_{joints}{turned[self.fixed]}"
         return f"_{self.word}_{self.end}{turned[self.fixed - 1]}" if self.fixed else ""
+
+    def _again(self, place: int) -> str:
+        """The name at one end; of an angle that stands at several links, with a number."""
+        name, count = self.joints[place], self.joints.count(self.joints[place])
+        return name if count == 1 else f"{name}_{count}"
 
 
 def is_unknown(problem: Problem, factor: Factor) -> bool:

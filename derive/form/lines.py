@@ -50,12 +50,12 @@ class Arm:
     """3 x lengths."""
 
     def amount(self, shares: Array) -> sp.Expr:
-        """The sum of shares of the lengths: exact, if each is taken whole."""
+        """The sum of shares of the lengths: exact, if each is taken whole and stated, not computed."""
         total = sp.Integer(0)
         for kind in _kinds(self.lengths):
             own = [(s, a / kind) for s, a in zip(shares, self.lengths, strict=True) if _kind(a) == kind]
             value = sp.Add(*[round(s) * a for s, a in own])
-            if any(abs(s - round(s)) > _NEARLY for s, _ in own):
+            if any(abs(s - round(s)) > _NEARLY for s, _ in own) or (len(own) > 1 and _is_computed(value)):
                 terms = [s * float(a) for s, a in own]
                 value = _without_rounding(float(np.sum(terms)), float(np.abs(terms).sum()))
             total += value * kind
@@ -76,6 +76,11 @@ def by_kind(shares: Array, lengths: Sequence[sp.Expr]) -> tuple[Array, list[sp.E
     kinds = _kinds(lengths)
     sizes = [[float(a / kind) if _kind(a) == kind else 0.0 for kind in kinds] for a in lengths]
     return shares @ np.array(sizes).reshape(len(lengths), len(kinds)), kinds
+
+
+def _is_computed(number: sp.Expr) -> bool:
+    """Whether a sum has more decimals than anybody states: what its terms have left of each other is rounding."""
+    return bool(number.is_Rational and number.q > 10**_DIGITS)
 
 
 def _without_rounding(value: float, size: float) -> sp.Expr:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from derive.algebra.work import stage
 from derive.description.mechanism import Mechanism, Parameter, Turning
 from derive.equations.choices import with_choices
 from derive.equations.windows import windows
@@ -72,6 +73,7 @@ def _given(setup: Program, settled: Sequence[str]) -> Iterator[Let]:
             yield let
 
 
+@stage("the rewriting of the programs")
 def bundle_of(
     solution: Solution, programs: Sequence[Program], margins: tuple[Margin, ...], at_home: Sequence[Statement] = ()
 ) -> Kinematics:

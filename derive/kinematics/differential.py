@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
+from derive.algebra.work import stage
 from derive.description.mechanism import DescriptionError, Mechanism, Turning
 from derive.equations.chain_splits import is_spatial
 from derive.equations.closures.fixed_names import with_fixed_names
@@ -45,6 +46,7 @@ def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
     return (*mechanism.task.position, *_TURNS[mechanism.task.turning])
 
 
+@stage("the Jacobian")
 def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
     """The Jacobian: a row per quantity of the task, a column per axis; rotary axes per radian."""
     if mechanism.is_platform:

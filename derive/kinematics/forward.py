@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import sympy as sp
 
+from derive.algebra.work import counted
 from derive.description.mechanism import Mechanism, Turning
 from derive.equations.axes import finite, frozen_lets, joint_lets
 from derive.equations.chain_splits import is_spatial
@@ -74,7 +74,7 @@ def _frame_by_frame(mechanism: Mechanism, checks: tuple[Statement, ...]) -> Forw
     return Forward((*checks, *composed.statements, *pose), names[:3], names[3:])
 
 
-@cache
+@counted
 def solve_for_position(mechanism: Mechanism) -> Derivation:
     """The stated closure solved for x, y and z by the same solver, with the joints known."""
     closure = position_closure(mechanism)

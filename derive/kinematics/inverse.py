@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache
 
 import sympy as sp
 
 from derive.algebra.normal_form import polynomial
+from derive.algebra.work import counted
 from derive.description.mechanism import COORDINATE_NAMES_OF_A_PLANE, DescriptionError, Joint, Mechanism, Turning
 from derive.equations.axes import axis_lets, finite, frozen_lets, plain_angle, reference_lets, reference_value
 from derive.equations.closures.closure import FLANGE, Closure
@@ -63,7 +63,7 @@ class Inverse:
         return tuple(step.sigma for step in self.derivation.determinants)
 
 
-@cache
+@counted
 def solve_pose(mechanism: Mechanism) -> Inverse:
     """Solve the closure of a commanded pose for the joints."""
     closure, held = pose_closure(mechanism), mechanism.held_joints

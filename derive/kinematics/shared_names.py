@@ -7,23 +7,28 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
-from math import inf
 from typing import TypeVar
 
 import sympy as sp
 
-from derive.algebra.work import Work, at_most
+from derive.algebra.work import TooMuchWork, Work, at_most
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.form.inner_names import in_given_names, inputs_named, joined, suspects, with_inner_names
 from derive.ir.program import Call, Program, Statement, shared
 from derive.ir.symbols import cosine, sine
 from derive.ir.verify import BrokenProgram, RepeatedName
 from derive.solver.solve import MOST_TERMS
-from derive.solver.unsolved import Unsolved
+from derive.solver.unsolved import Exhausted, Unsolved
 
 Found = TypeVar("Found")
 _ATTEMPTS = 4
 """The largest number of times that an input gets another name."""
+_MOST_TERMS = 6 * MOST_TERMS
+"""The work of a whole derivation, of all its stages and attempts."""
+_SMALLER = (
+    "state the dimensions that never change as numbers, leave out those that are zero, or make neighbouring axes "
+    "parallel or perpendicular"
+)
 
 
 class SharedName(DescriptionError):
@@ -59,18 +64,22 @@ def refuse_names(mechanism: Mechanism, names: Iterable[sp.Symbol]) -> None:
 def with_free_names(mechanism: Mechanism, derived: Callable[[Mapping[str, int]], Found]) -> Found:
     """The result of `derived`, given the symbols of inputs that need another name inside, and the number of attempts.
 
-    Raises the errors of `derived`, in the names of the description.
+    Raises the errors of `derived`, in the names of the description, and `Exhausted` where it is too much work.
     """
     further: Counter[str] = Counter()
+    done = 0
     while True:
         work = Work()
         try:
-            with at_most(inf, work):
+            with at_most(_MOST_TERMS - done, work):
                 return derived(further)
+        except TooMuchWork as problem:
+            raise Exhausted(f"{problem}: {_SMALLER}") from None
         except (Unsolved, DescriptionError, BrokenProgram) as problem:
             inner = with_inner_names(mechanism, further)
             met = {name for name in _met(mechanism, inner, problem) if further[name] < _ATTEMPTS}
-            if not met or work.done > MOST_TERMS:  # where much was tried, a name was not the reason
+            done += work.done
+            if not met or done > MOST_TERMS:  # where much was tried, a name was not the reason
                 said = in_given_names(str(problem), inner)
                 if said == str(problem):
                     raise

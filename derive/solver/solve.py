@@ -136,8 +136,8 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     try:
         with at_most(MOST_TERMS):
             return _solved(problem, arguments, resolve_angle)
-    except TooMuchWork:
-        raise Exhausted(f"{unsolved(problem)}\n    (given up after {MOST_TERMS} terms)") from None
+    except TooMuchWork as much:
+        raise Exhausted(f"{unsolved(problem)}\n    (given up after {much.most:.0f} terms)") from None
 
 
 def _solved(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve) -> Derivation:

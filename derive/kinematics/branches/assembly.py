@@ -15,6 +15,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from derive.algebra.normal_form import polynomial
+from derive.algebra.work import stage
 from derive.description.branches import assembly
 from derive.description.mechanism import Assembly, Bound, DescriptionError, Mechanism, Rod
 from derive.equations.closures.fixed_names import all_angles, signs_of, with_fixed_names
@@ -62,6 +63,7 @@ class Assembled:
     """The name of the margin."""
 
 
+@stage("the choice of the assembly mode")
 def with_derived_assembly(mechanism: Mechanism) -> Mechanism:
     """The mechanism with named assembly modes, where it has two positions at the same axes and names none. Raises
     `DescriptionError` where one name does not tell them apart, or where there is only one position.
@@ -154,6 +156,7 @@ def _meanings(mechanism: Mechanism, rods: int) -> tuple[str, str]:
     return f"{what} is positive", f"{what} is negative"
 
 
+@stage("the assembly mode")
 def assembled(mechanism: Mechanism, forward: Forward) -> Assembled:
     """Bind the assembly sign to the parameter of the machine, by the indicator of the description."""
     if mechanism.is_platform:

@@ -9,6 +9,7 @@ import numpy as np
 import sympy as sp
 
 from derive.algebra.normal_form import cancelled, reduce_units
+from derive.algebra.work import stage
 from derive.description.mechanism import Branch, DescriptionError, Mechanism
 from derive.equations.closures.fixed_names import all_angles, with_fixed_names
 from derive.equations.pose_at_axes import Forward
@@ -56,6 +57,7 @@ class Assignment:
         return reduce_units(value, all_angles(mechanism)) if value.is_polynomial() else value
 
 
+@stage("the signs of the branches")
 def assign(
     mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool = False
 ) -> tuple[Assignment, ...]:

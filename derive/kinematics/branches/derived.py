@@ -14,6 +14,7 @@ import numpy as np
 import sympy as sp
 
 from derive.algebra.normal_form import factored, polynomial
+from derive.algebra.work import stage
 from derive.description.mechanism import ROTATION, Branch, Mechanism, Role, Turning, branch
 from derive.equations.closures.fixed_names import all_angles, fixed_lets, signs_of
 from derive.equations.pose_at_axes import Forward
@@ -30,6 +31,7 @@ from derive.plate.turning import given_pose
 _PARALLEL = 0.999999
 
 
+@stage("the choice of branches")
 def with_derived_branches(mechanism: Mechanism, inverse: Inverse, forward: Forward) -> Mechanism:
     """The mechanism with a further branch for every two-root step that none of its own branches names."""
     unnamed = steps_without_branch(mechanism, inverse, forward)

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import sympy as sp
 
+from derive.algebra.work import stage
 from derive.ir.constants import BOUNDARY, DOUBTFUL
 from derive.ir.passes import depending_on, normalise
 from derive.ir.primitives import Select
@@ -31,6 +32,7 @@ _EXACTLY = {1 + BOUNDARY / 2: sp.Integer(1), BOUNDARY / 2: sp.Integer(0)}
 """A bound without what it allows for rounding."""
 
 
+@stage("the search for lost digits")
 def with_doubts(machine: Machine, statements: Sequence[Statement]) -> tuple[Statement, ...]:
     """The derivation with every refusal put off that lost digits of earlier steps may explain."""
     found: list[Statement] = []

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from derive.algebra.work import stage
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
@@ -25,6 +26,7 @@ _DIGITS = 1e-6
 """The determinant of a Jacobian has digits where its least singular value is at least this share of its largest."""
 
 
+@stage("the distance from singular poses")
 def singularity_program(
     mechanism: Mechanism,
     statements: Sequence[Statement],

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from derive.algebra.work import stage
 from derive.description.mechanism import Branch, DescriptionError, Mechanism
 from derive.equations.axes import axis_lets, frozen_lets, held_lets, reference_lets, reference_value
 from derive.equations.closures.fixed_names import fixed_lets
@@ -47,6 +48,7 @@ class Scanned:
     """The branches that no step of a trial decides."""
 
 
+@stage("the root scan")
 def solve_both(mechanism: Mechanism) -> Scanned:
     """Solve the closure without the parameter that needs a scan, and with the scanned joint known."""
     assert mechanism.search is not None

@@ -13,6 +13,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from derive.algebra.work import stage
 from derive.description.mechanism import Branch, Mechanism, Role
 from derive.equations.axes import reference_value
 from derive.equations.closures.fixed_names import with_fixed_names
@@ -35,6 +36,7 @@ DETERMINANT = real("determinant")
 _SAMPLES = 64
 
 
+@stage("the distance from singular poses")
 def margin_statements(both: Scanned) -> tuple[tuple[Statement, ...], tuple[Let, ...]]:
     """The statements at given axis values, and `branch_<name>` of every branch."""
     mechanism = both.mechanism
@@ -90,6 +92,7 @@ def _crossing_margin(both: Scanned, determinant: sp.Expr, margins: dict[str, dic
     return Let(real(f"branch_{crossing.name}"), _on_either(both, slope, sp.Integer(1)))
 
 
+@stage("the distance from singular poses")
 def determinant_margin(both: Scanned) -> tuple[tuple[Statement, ...], sp.Expr]:
     """The determinant of the Jacobian at a pose that forward kinematics has found, over the scales
     of the closed steps.

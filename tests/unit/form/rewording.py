@@ -7,6 +7,7 @@ from random import Random
 
 import sympy as sp
 
+from derive.description.mechanism import Mechanism
 from derive.form.headings import product
 from derive.geometry.frames import Chain, Factor, Motion
 
@@ -15,9 +16,10 @@ _SHIFTS = (sp.Integer(7), sp.Rational(5, 2), sp.Integer(125))
 Factors = list[Factor]
 
 
-def reworded(chain: Chain, seed: int, steps: int = 10) -> Chain:
+def reworded(mechanism: Mechanism, seed: int, steps: int = 10) -> Chain:
     """The same machine in other words. Flips, which stand at the end, stay."""
-    rng = Random(seed)
+    rng, chain = Random(seed), mechanism.chain
+    assert chain is not None
     end = sum(f.motion is not Motion.FLIP for f in chain.factors)
     factors = list(chain.factors[:end])
     for _ in range(steps if factors else 0):

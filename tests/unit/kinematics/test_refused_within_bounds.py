@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import re
 import time
+from math import inf
 
 import pytest
 import sympy as sp
@@ -13,6 +14,7 @@ from derive.algebra.work import at_most
 from derive.description.mechanism import Mechanism, Parameter, Task, Turning, length, rotary
 from derive.description.validate import validate
 from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
+from derive.kinematics import shared_names
 from derive.kinematics.build import build, prepared
 from derive.kinematics.scan import choice
 from derive.kinematics.scan.choice import with_search
@@ -82,6 +84,19 @@ def test_a_derivation_that_grows_too_large_is_refused_with_the_reason(monkeypatc
         monkeypatch.setattr(place, "MOST_TERMS", 60, raising=False)
     with pytest.raises(Exhausted, match=r"given up after 60 terms"):
         with_search(prepared(machine))
+
+
+def test_the_stages_behind_the_solver_share_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With one term less than it needs the whole arm is refused by the stage that needs the last one."""
+    wrist = Rx(J[3]) * Ry(J[4]) * Rx(J[5]) * Tx(80)
+    arm = Rz(J[0]) * Tz(400) * Ry(J[1]) * Tz(455) * Ry(J[2]) * Tx(420) * wrist
+    machine = validate(Mechanism(name="Arm", joints=J[:6], chain=arm, task=Task("xyz", Turning.FULL)))
+    with at_most(inf) as work:
+        build(machine)
+    monkeypatch.setattr(shared_names, "_MOST_TERMS", work.done - 1)
+    said = r"^the .* was given up after [\d,]+ terms, before an expression of [\d,]+ terms: state the dimensions"
+    with pytest.raises(Exhausted, match=said):
+        build(machine)
 
 
 def five(chain: Chain) -> str:

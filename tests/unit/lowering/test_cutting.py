@@ -64,5 +64,8 @@ def test_the_name_of_a_frame_does_not_grow_with_the_chain() -> None:
     assert Side("from", "base", joints[:1]).suffix == "_from_a1_base_turn_z"
     assert Side("from", "base", joints).suffix == "_from_base_to_a5_base_turn_z"
     assert Side("before", "flange", joints, 1).suffix == "_before_a1_base_turn_z_to_flange_turned"
+    again = (*joints, joints[0])  # an angle of two links
+    assert Side("from", "base", again).suffix == "_from_base_to_a1_base_turn_z_2"
+    assert Side("before", "flange", again).suffix == "_before_a1_base_turn_z_2_to_flange"
     short = tuple(f"a{k}" for k in range(1, 7))
     assert Side("before", "flange", short).suffix == f"_before_{name_of(tuple((real(n), 1) for n in short))}"

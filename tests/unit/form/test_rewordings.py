@@ -1,0 +1,111 @@
+"""Every chain in twenty other wordings: in frames that are moved and turned, in link frames at any place, by tables.
+
+Their form is the same, so what is derived of them is the same: solutions, operations, time, and why it is refused.
+What is derived of some is measured against the first wording all the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from derive.description.amounts import with_exact_angles
+from derive.description.mechanism import DescriptionError, Mechanism
+from derive.description.validate import validate
+from derive.form.machine import in_form
+from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz
+from derive.geometry.frames import Chain
+from derive.ir.program import Let
+from derive.kinematics.build import build
+from derive.kinematics.kinematics import Kinematics
+from derive.solver.unsolved import Unsolved
+from derive.witness import witness
+from tests.machines.collection import MACHINES as COLLECTION
+from tests.mechanisms import catalogue
+from tests.unit.form.chains import A1, A2, A3, A4, A5, AIMED, CHAINS, FULL, SIX
+from tests.unit.form.link_frames import by_table, in_link_frames
+from tests.unit.form.rewording import reworded
+from tests.unit.form.test_chain import frame, in_words
+
+MACHINES = {**CHAINS, **{m.name: m for _, m in catalogue() if m.chain is not None}}
+WORDINGS, SHARE = 20, 4
+"""The wordings of a machine, and how many of them the quick tests ask."""
+WAYS: tuple[Callable[[Mechanism, int], Chain], ...] = (reworded, in_link_frames, by_table)
+DERIVED = ("six axes by a table with angles as numbers", "SCARA that is turned where it stands")
+
+
+def other(mechanism: Mechanism, number: int) -> Mechanism:
+    """A machine in another of its wordings."""
+    return replace(mechanism, chain=WAYS[number % len(WAYS)](mechanism, number))
+
+
+def check(name: str, numbers: range) -> None:
+    """Other wordings describe the same machine, and have the same form."""
+    mechanism, form = MACHINES[name], in_form(MACHINES[name])
+    rng = np.random.default_rng(3)
+    values = {q.symbol: float(rng.uniform(0.5, 1.5)) for q in (*mechanism.parameters, *mechanism.joints)}
+    stated = frame(with_exact_angles(mechanism).chain, values)
+    for number in numbers:
+        again = other(mechanism, number)
+        assert frame(again.chain, values) == pytest.approx(stated, rel=1e-10, abs=1e-9), f"wording {number}"
+        found = in_form(again)
+        assert in_words(found.chain) == in_words(form.chain), f"wording {number}: {in_words(again.chain)}"
+        assert replace(found, drawn=None) == replace(form, drawn=None), f"wording {number}"
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", MACHINES)
+def test_other_words_have_the_same_form(name: str) -> None:
+    check(name, range(SHARE))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MACHINES)
+def test_all_other_words_have_the_same_form(name: str) -> None:
+    check(name, range(SHARE, WORDINGS))
+
+
+def operations(kin: Kinematics) -> int:
+    """The operations of the inverse for one branch."""
+    return sum(int(sp.count_ops(s.value)) for s in kin.branch.body if isinstance(s, Let))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", DERIVED)
+def test_what_is_derived_of_another_wording_solves_the_machine(name: str) -> None:
+    """No solution is wrong, and none is missing: the witness measures it against the first description."""
+    mechanism = validate(COLLECTION[name])
+    own, again = build(mechanism), build(validate(replace(mechanism, chain=by_table(mechanism, 1))))
+    seen, of_own = witness(again, mechanism).inverted, witness(own, mechanism).inverted
+    assert seen is not None and of_own is not None and seen.solutions == of_own.solutions
+    assert operations(again) == operations(own)
+
+
+_BENT = Rz(A1) * Tz(310) * Ry(A2) * Tz(260) * Ry(A3) * Tx(230)
+REFUSED = {
+    "a flange that leans": replace(CHAINS["SCARA"], chain=CHAINS["SCARA"].chain * Rx(sp.pi / 2)),
+    "a tool beside the last of five axes": replace(
+        CHAINS["five turns"], task=AIMED, chain=_BENT * Rx(A4) * Ty(35) * Ry(A5) * Tx(45)
+    ),
+    "six axes that pass each other": replace(
+        CHAINS["ball wrist"],
+        task=FULL,
+        chain=_BENT * Ty(90) * Rx(A4) * Tz(60) * Ty(20) * Ry(A5) * Tx(70) * Tz(15) * Rz(SIX[5]) * Tx(45),
+    ),
+    "a joint too many": replace(CHAINS["arm on a rail"], held=()),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", REFUSED)
+def test_a_refusal_is_the_same_refusal(kind: str) -> None:
+    sentences = set()
+    for machine in (REFUSED[kind], *(other(REFUSED[kind], number) for number in range(len(WAYS)))):
+        with pytest.raises((DescriptionError, Unsolved)) as problem:
+            build(validate(machine))
+        sentences.add(str(problem.value))
+    assert len(sentences) == 1, sentences
