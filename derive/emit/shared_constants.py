@@ -1,4 +1,4 @@
-"""The constants of the compiler that the runtimes of Python, C and JavaScript print: no template states one itself."""
+"""The constants of the compiler that the runtimes of Python, C and JavaScript read: they state none themselves."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ NUMBERS = {
     "exact": float(constants.EXACT_ROTATION),
     "largest_error": float(constants.ROTATION),
 }  # fmt: skip
-"""The bounds and tolerances, by their names in the templates."""
+"""The bounds and tolerances, by their names in the runtimes, in small letters."""
 COUNTS = {"trials": constants.TRIALS, "finished": constants.FINISHED}
 """The bounds of iterations, which are written as they are."""
 OF_THE_SEARCH: dict[str, float | tuple[float, ...]] = {
