@@ -35,7 +35,7 @@ class Language(Protocol):
 
     @property
     def name(self) -> str:
-        """The folder below `generated/` and below `templates/`."""
+        """The folder below `generated/`, `templates/` and `runtime/`."""
 
     def part(self, kinematics: Kinematics) -> Part | None:
         """The texts about one mechanism, which do not depend on the others. None where the language cannot express the

@@ -1,4 +1,3 @@
-// << generated >>
 /**
  * The calls that all machines share, around the programs of each.
  *
@@ -16,14 +15,15 @@
  */
 
 import {
-  AUTOMATIC, COINCIDENT, TIE, branchByte, slotsOf, squaredDistance, turnInside, turnOf,
+  AUTOMATIC, COINCIDENT, branchByte, slotsOf, squaredDistance, turnInside, turnOf,
 } from "./configuration.js";
+import { MEANINGS, Status, TIE } from "./constants.js";
 import { bytesOf, numbersOf, parametersOf, poseOf, refuseParameters } from "./input.js";
 import { constantsOf } from "./limits.js";
 import {
   DEGREE, RADIAN, angleOf, isReasonable, nearestOnArc, nearestPeriod, solveLinear, squareRoot,
 } from "./numbers.js";
-import { MEANINGS, Refusal, Status, inWords, refuse } from "./refusal.js";
+import { Refusal, inWords, refuse } from "./refusal.js";
 import { findRotation } from "./rotation.js";
 import { everyRoot, nearestRoot } from "./roots.js";
 import { sceneOf } from "./scene.js";

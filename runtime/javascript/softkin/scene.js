@@ -1,4 +1,3 @@
-// << generated >>
 /**
  * What can be drawn of a machine at a pose: bodies with frames that move with them, and joints.
  *

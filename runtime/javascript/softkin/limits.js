@@ -1,6 +1,6 @@
-// << generated >>
 /** The limits of axes and of other quantities, which are constants of a machine. */
 
+import { GEARED_TURN, LIMIT, ONE_TURN, UNLIMITED } from "./constants.js";
 import { refuseParameters } from "./input.js";
 import { Refusal } from "./refusal.js";
 
@@ -34,20 +34,20 @@ function windowOf(limit, parameters, isTested, otherwise, turns) {
     const finite = [low, high].filter(Number.isFinite);
     if (otherwise !== null) [low, high] = [Math.max(low, otherwise[0]), Math.min(high, otherwise[1])];
     if (!(low < high)) return refused();
-    const tolerance = << limit >> + finite.reduce((sum, end) => sum + << limit >> * Math.abs(end), 0);
-    const lowest = isTested && Number.isFinite(low) ? low - tolerance : -<< unlimited >>;
-    const highest = isTested && Number.isFinite(high) ? high + tolerance : << unlimited >>;
+    const tolerance = LIMIT + finite.reduce((sum, end) => sum + LIMIT * Math.abs(end), 0);
+    const lowest = isTested && Number.isFinite(low) ? low - tolerance : -UNLIMITED;
+    const highest = isTested && Number.isFinite(high) ? high + tolerance : UNLIMITED;
     const [first, last] = [low, high].map((end) => (Number.isFinite(end) ? end : null));
     return { values: [lowest, highest, false, 0], ends: { lower: first, upper: last } };
   }
-  const tolerance = << limit >> + << limit >> * Math.abs(low) + << limit >> * Math.abs(high);
+  const tolerance = LIMIT + LIMIT * Math.abs(low) + LIMIT * Math.abs(high);
   const hasLimits = isGiven || otherwise !== null;
   const isSingle = turns === null
-    ? high - low <= << one_turn >> + tolerance
-    : (high - low + 2 * tolerance) * turns <= << geared_turn >>;
+    ? high - low <= ONE_TURN + tolerance
+    : (high - low + 2 * tolerance) * turns <= GEARED_TURN;
   const isWide = !(hasLimits && isTested);
   const values = [
-    isWide ? -<< unlimited >> : low - tolerance, isWide ? << unlimited >> : high + tolerance,
+    isWide ? -UNLIMITED : low - tolerance, isWide ? UNLIMITED : high + tolerance,
     hasLimits && isSingle, 0.5 * low + 0.5 * high,
   ];
   return { values, ends: { lower: hasLimits ? low : null, upper: hasLimits ? high : null } };

@@ -1,15 +1,12 @@
-// << generated >>
 /** Configuration bytes: the branches that they leave open, and the bytes of a pose. */
 
-import { LARGEST, nearestPeriod } from "./numbers.js";
+import { EDGE, FREE_ANGLE, LARGEST } from "./constants.js";
+import { nearestPeriod } from "./numbers.js";
 
 /** The byte of an open branch; 1 and 2 are its two branches, 3 says that both coincide, and is read as open. */
 export const AUTOMATIC = 0;
 /** Branches coincide where their margin is at most this in size. */
-export const COINCIDENT = << free_angle >>;
-/** An automatic choice takes a later slot only where its squared distance (degrees) is smaller by more than this. */
-export const TIE = << tie >>;
-const EDGE = << edge >>;
+export const COINCIDENT = FREE_ANGLE;
 
 /**
  * The slots that branch bytes leave open, the first byte varies fastest.

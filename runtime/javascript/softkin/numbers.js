@@ -1,17 +1,15 @@
-// << generated >>
 /** The primitives of every program. Each is total: it has a value for any numbers. */
+
+import { EDGE, LARGEST, PIVOT, SOLVABLE } from "./constants.js";
 
 /** One degree in radians. */
 export const DEGREE = Math.PI / 180;
 /** One radian in degrees. */
 export const RADIAN = 180 / Math.PI;
-/** Numbers larger in size than this are refused. */
-export const LARGEST = << largest >>;
 const TURN = 2 * Math.PI;
 /** With more turns than this there is no nearest angle. */
 const MOST_TURNS = 1e18;
-const HALF_AND_EDGE = 180 + << edge >>;
-const SOLVABLE = << solvable >>;
+const HALF_AND_EDGE = 180 + EDGE;
 
 /** Whether all are numbers of reasonable size. */
 export function isReasonable(...numbers) {
@@ -32,7 +30,7 @@ export function angleOf(y, x) {
 }
 
 /**
- * value + 360 k in [centre - 180, centre + 180), in degrees; the interval is shifted down by << edge >>.
+ * value + 360 k in [centre - 180, centre + 180), in degrees; the interval is shifted down by EDGE.
  *
  * So a value on an edge stays on its side in spite of rounding.
  */
@@ -52,7 +50,7 @@ export function nearestOnArc(angle, centre, half) {
 /**
  * The determinant, then the solution by rows: LU decomposition with partial pivoting.
  *
- * Zeros where the matrix is singular, and where a number is NaN or beyond << solvable >> in size.
+ * Zeros where the matrix is singular, and where a number is NaN or beyond SOLVABLE in size.
  * @param {number[][]} matrix - by rows (n, n)
  * @param {number[][]} right - by rows (n, m); empty where the determinant alone is wanted
  * @returns {number[]} 1 + n m numbers
@@ -71,7 +69,7 @@ export function solveLinear(matrix, right) {
   for (let k = 0; k < size; k += 1) {
     let best = k;
     for (let i = k + 1; i < size; i += 1) if (Math.abs(rows[i][k]) > Math.abs(rows[best][k])) best = i;
-    if (!(Math.abs(rows[best][k]) > << pivot >> * largest)) return nothing;
+    if (!(Math.abs(rows[best][k]) > PIVOT * largest)) return nothing;
     if (best !== k) {
       [rows[k], rows[best]] = [rows[best], rows[k]];
       determinant = -determinant;

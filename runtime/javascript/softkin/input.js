@@ -1,8 +1,7 @@
-// << generated >>
 /** What a caller gives becomes arrays of numbers, or a refusal says what is wrong with it. No value raises an error. */
 
-import { LARGEST } from "./numbers.js";
-import { Refusal, Status, refuse } from "./refusal.js";
+import { LARGEST, Status } from "./constants.js";
+import { Refusal, refuse } from "./refusal.js";
 
 const IDENTITY = Object.freeze([[1, 0, 0], [0, 1, 0], [0, 0, 1]]);
 

@@ -1,19 +1,6 @@
-// << generated >>
 /** Statuses, and refusals with their reasons. */
 
-/** The outcome of a call, by its name; numbers and names are those of the Python package. */
-export const Status = Object.freeze({
-{% for status in statuses %}
-  << status.name >>: << loop.index0 >>,
-{% endfor %}
-});
-
-/** The meaning of every status, by its number. */
-export const MEANINGS = Object.freeze([
-{% for status in statuses %}
-  << status.meaning | text >>,
-{% endfor %}
-]);
+import { MEANINGS } from "./constants.js";
 
 /** Why a program refuses; programs return it in the place of their values. */
 export class Refusal {

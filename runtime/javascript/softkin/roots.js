@@ -1,4 +1,3 @@
-// << generated >>
 /**
  * All roots of a trial along one joint, by the rules of the Python package.
  *
@@ -10,11 +9,11 @@
  */
 
 // Every constant is explained in the sources of the compiler: `cells` and `roots`.
-{% for name, value in search_constants.items() %}
-const << name >> = << value >>;
-{% endfor %}
-const TRIALS = << trials >>;
-const FINISHED = << finished >>;
+import {
+  AHEAD, ASIDE, BENT, CELLS, CLOSING, FINEST, FINISHED, FLAT, GAP, NARROW, NEAR_ZERO, NEXT, RESERVE, RIM, SEAM,
+  SHIFTS, TOUCHED, TRIALS, TURNED, VANISHING,
+} from "./constants.js";
+
 const THIRD = (2 * Math.PI) / 3;
 
 /**
