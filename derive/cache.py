@@ -125,9 +125,8 @@ def _sources(root: Path) -> Iterator[Path]:
     for path in (root / "derive").rglob("*.py"):
         if path.parent != root / "derive" / "mechanisms" or path.name.startswith("_"):
             yield path
-    templates, runtime = (root / folder.relative_to(ROOT) for folder in (TEMPLATES, RUNTIME))
-    kept = (path for folder in (templates, runtime) for path in files_in(folder))
-    yield from (path for path in kept if templates / "view" not in path.parents)  # the viewer reads generated files
+    for folder in (root / each.relative_to(ROOT) for each in (TEMPLATES, RUNTIME)):  # the viewer reads generated files
+        yield from (path for path in files_in(folder) if folder / "view" not in path.parents)
     yield from root.glob("pyproject.toml")
 
 
