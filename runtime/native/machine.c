@@ -1,10 +1,12 @@
-/* {{ generated }} */
 /**
  * @file machine.c
- * The native core of the Python package: an object that holds a machine in C and answers the calls of its class.
+ * The native core of the Python package: an object that holds a machine in C and answers the calls of its
+ * class.
  *
- * It takes what it reads without running a line of Python: tuples and lists of plain numbers. Whatever else it is given, and
- * whatever is refused, it answers `NotImplemented`; then the class calls its Python, which converts, computes, or says in
+ * It takes what it reads without running a line of Python: tuples and lists of plain numbers. Whatever else
+ * it is given, and
+ * whatever is refused, it answers `NotImplemented`; then the class calls its Python, which converts,
+ * computes, or says in
  * words what is wrong. So both cores have the same answers and the same errors.
  */
 
@@ -45,7 +47,8 @@ static PyObject *item_of(PyObject *row, Py_ssize_t place) {
   return PyTuple_CheckExact(row) ? PyTuple_GetItem(row, place) : PyList_GetItem(row, place);
 }
 
-/* A float, a subclass of it as in NumPy, or a whole number: what needs no conversion that Python could have a say in. */
+/* A float, a subclass of it as in NumPy, or a whole number: what needs no conversion that Python could have a
+ * say in. */
 static bool take_real(PyObject *given, double *value) {
   if (PyFloat_CheckExact(given) || PyFloat_Check(given)) {
     *value = PyFloat_AsDouble(given);
@@ -62,7 +65,8 @@ static bool take_real(PyObject *given, double *value) {
   return true;
 }
 
-/* Whether an object is an array of NumPy, and of no class of its own: one with a mask is refused in Python. */
+/* Whether an object is an array of NumPy, and of no class of its own: one with a mask is refused in Python.
+ * */
 static bool is_array(machine_object *self, PyObject *given) {
   if (self->array == NULL) {
     PyObject *name = PyUnicode_InternFromString("numpy");
@@ -85,7 +89,8 @@ static bool take_array(machine_object *self, PyObject *given, int rows, int colu
     PyErr_Clear();
     return false;
   }
-  const bool fits = view.format != NULL && strcmp(view.format, "d") == 0 && view.ndim == (columns == 0 ? 1 : 2)
+  const bool fits = view.format != NULL && strcmp(view.format, "d") == 0
+      && view.ndim == (columns == 0 ? 1 : 2)
       && view.shape[0] == rows && (columns == 0 || view.shape[1] == columns);
   for (int i = 0; fits && i < rows; i += 1) {
     for (int j = 0; j < (columns == 0 ? 1 : columns); j += 1) {
@@ -157,7 +162,8 @@ static bool take_frame(machine_object *self, PyObject *given, softkin_frame *fra
   } else {
     position = rows = NULL;
   }
-  if (!(position == NULL ? take_matrix(self, given, frame) : take_reals(self, position, 3, frame->position))) {
+  if (!(position == NULL ? take_matrix(self, given, frame)
+      : take_reals(self, position, 3, frame->position))) {
     return false;
   }
   if (self->kind->reads_rotation) {
@@ -300,7 +306,8 @@ static PyObject *branch(PyObject *object, PyObject *const *given, Py_ssize_t cou
       || !take_reference(self, given[2], reference)) {
     return unanswered();
   }
-  const softkin_status status = self->kind->branch(self->machine, &frame, signs, turns, reference, axes, NULL);
+  const softkin_status status = self->kind->branch(self->machine, &frame, signs, turns, reference, axes,
+      NULL);
   if (status == SOFTKIN_OK) {
     return reals_of(axes, self->kind->axis_count);
   }
@@ -313,7 +320,8 @@ static PyObject *solve(PyObject *object, PyObject *const *given, Py_ssize_t coun
   softkin_frame frame;
   double reference[SOFTKIN_MOST_AXES], axes[SOFTKIN_MOST_AXES];
   int8_t signs[SOFTKIN_MOST_BRANCHES], turns[SOFTKIN_MOST_AXES];
-  if (!has(self, count, 5) || !take_reals(self, given[0], 3, frame.position) || !take_rows(self, given[1], frame.rotation)
+  if (!has(self, count, 5) || !take_reals(self, given[0], 3, frame.position)
+      || !take_rows(self, given[1], frame.rotation)
       || !take_signs(self, given[2], signs) || !take_bytes(given[3], self->kind->period_count, turns)
       || !take_reals(self, given[4], self->kind->axis_count, reference)
       || self->kind->branch(self->machine, &frame, signs, turns, reference, axes, NULL) != SOFTKIN_OK) {
@@ -339,7 +347,8 @@ static PyObject *branches(PyObject *object, PyObject *const *given, Py_ssize_t c
   softkin_frame frame;
   double reference[SOFTKIN_MOST_AXES], axes[SLOTS_ON_STACK*SOFTKIN_MOST_AXES];
   softkin_status statuses[SLOTS_ON_STACK];
-  if (!has(self, count, 2) || 1 << self->kind->branch_count > SLOTS_ON_STACK || !take_frame(self, given[0], &frame)
+  if (!has(self, count, 2) || 1 << self->kind->branch_count > SLOTS_ON_STACK
+      || !take_frame(self, given[0], &frame)
       || !take_reference(self, given[1], reference)
       || softkin_branches(self->kind, self->machine, &frame, reference, statuses, axes) != SOFTKIN_OK) {
     return unanswered();
@@ -354,7 +363,8 @@ static PyObject *inverse(PyObject *object, PyObject *const *given, Py_ssize_t co
   double reference[SOFTKIN_MOST_AXES], axes[SOFTKIN_MOST_AXES];
   int8_t bytes[SOFTKIN_MOST_BRANCHES + SOFTKIN_MOST_AXES];
   const int8_t *chosen = NULL;
-  if (!has(self, count, 3) || !take_frame(self, given[0], &frame) || !take_reference(self, given[2], reference)) {
+  if (!has(self, count, 3) || !take_frame(self, given[0], &frame)
+      || !take_reference(self, given[2], reference)) {
     return unanswered();
   }
   if (!Py_IsNone(given[1])) {
@@ -387,7 +397,8 @@ static PyObject *others_of(const softkin_others *others, int slot, int width) {
   return every;
 }
 
-static PyObject *solution_of(const machine_object *self, softkin_status status, const double *axes, const int8_t *bytes, PyObject *others) {
+static PyObject *solution_of(const machine_object *self, softkin_status status, const double *axes,
+    const int8_t *bytes, PyObject *others) {
   PyObject *found = others == NULL ? NULL : named_tuple(self->solution, 4);
   if (found == NULL) {
     return drop(others);
@@ -402,20 +413,23 @@ static PyObject *solution_of(const machine_object *self, softkin_status status, 
   return found;
 }
 
-/* What a call of all slots writes: on the stack, or for machines with many slots or with a search on the heap. */
+/* What a call of all slots writes: on the stack, or for machines with many slots or with a search on the
+ * heap. */
 typedef struct {
   double axes[SLOTS_ON_STACK*SOFTKIN_MOST_AXES];
   int8_t bytes[SLOTS_ON_STACK*(SOFTKIN_MOST_BRANCHES + SOFTKIN_MOST_AXES)];
   softkin_status statuses[SLOTS_ON_STACK];
 } every_slot;
 
-static PyObject *solutions_of(const machine_object *self, const every_slot *found, const softkin_others *others) {
+static PyObject *solutions_of(const machine_object *self, const every_slot *found,
+    const softkin_others *others) {
   const int slots = 1 << self->kind->branch_count, size = self->kind->branch_count + self->kind->period_count;
   PyObject *every = PyTuple_New(slots);
   for (int slot = 0; every != NULL && slot < slots; slot += 1) {
     PyObject *further = others == NULL ? PyTuple_New(0) : others_of(others, slot, self->kind->axis_count);
     PyObject *own = solution_of(
-        self, found->statuses[slot], &found->axes[slot*self->kind->axis_count], &found->bytes[slot*size], further);
+        self, found->statuses[slot], &found->axes[slot*self->kind->axis_count], &found->bytes[slot*size],
+            further);
     if (!put(every, slot, own)) {
       return drop(every);
     }
@@ -429,7 +443,8 @@ static PyObject *inverse_all(PyObject *object, PyObject *const *given, Py_ssize_
   softkin_frame frame;
   double reference[SOFTKIN_MOST_AXES];
   every_slot found;
-  if (!has(self, count, 2) || 1 << self->kind->branch_count > SLOTS_ON_STACK || !take_frame(self, given[0], &frame)
+  if (!has(self, count, 2) || 1 << self->kind->branch_count > SLOTS_ON_STACK
+      || !take_frame(self, given[0], &frame)
       || !take_reference(self, given[1], reference)) {
     return unanswered();
   }
@@ -437,13 +452,15 @@ static PyObject *inverse_all(PyObject *object, PyObject *const *given, Py_ssize_
     double axes[SOFTKIN_MOST_SOLUTIONS*SOFTKIN_MOST_AXES];
     int slots[SOFTKIN_MOST_SOLUTIONS];
     softkin_others others = {SOFTKIN_MOST_SOLUTIONS, axes, slots, 0};
-    if (softkin_inverse_all(self->kind, self->machine, &frame, reference, found.statuses, found.axes, found.bytes, NULL, &others)
+    if (softkin_inverse_all(self->kind, self->machine, &frame, reference, found.statuses, found.axes,
+        found.bytes, NULL, &others)
             != SOFTKIN_OK || others.count == SOFTKIN_MOST_SOLUTIONS) {
       return unanswered();
     }
     return solutions_of(self, &found, &others);
   }
-  if (softkin_inverse_all(self->kind, self->machine, &frame, reference, found.statuses, found.axes, found.bytes, NULL, NULL) != SOFTKIN_OK) {
+  if (softkin_inverse_all(self->kind, self->machine, &frame, reference, found.statuses, found.axes,
+      found.bytes, NULL, NULL) != SOFTKIN_OK) {
     return unanswered();
   }
   return solutions_of(self, &found, NULL);
@@ -459,7 +476,8 @@ static PyObject *forward(PyObject *object, PyObject *given) {
       || softkin_forward(self->kind, self->machine, axes, NULL, &frame, bytes, NULL, NULL) != SOFTKIN_OK) {
     return unanswered();
   }
-  PyObject *found = pair_of(named_tuple(self->frame, 2), reals_of(frame.position, 3), rows_of(&frame.rotation[0][0], 3, 3));
+  PyObject *found = pair_of(named_tuple(self->frame, 2), reals_of(frame.position, 3),
+      rows_of(&frame.rotation[0][0], 3, 3));
   return pair_of(PyTuple_New(2), found, bytes_of(bytes, self->kind->branch_count + self->kind->period_count));
 }
 
@@ -473,7 +491,8 @@ static PyObject *pose(PyObject *object, PyObject *given) {
     return unanswered();
   }
   PyObject *found = PyTuple_New(3);
-  if (found == NULL || !put(found, 0, reals_of(frame.position, 3)) || !put(found, 1, rows_of(&frame.rotation[0][0], 3, 3))
+  if (found == NULL || !put(found, 0, reals_of(frame.position, 3))
+      || !put(found, 1, rows_of(&frame.rotation[0][0], 3, 3))
       || !put(found, 2, reals_of(margins, self->kind->branch_count))) {
     return drop(found);
   }
@@ -484,7 +503,8 @@ static PyObject *pose(PyObject *object, PyObject *given) {
 static PyObject *jacobian(PyObject *object, PyObject *given) {
   machine_object *self = (machine_object *)object;
   double axes[SOFTKIN_MOST_AXES], rows[SOFTKIN_MOST_ROWS*SOFTKIN_MOST_AXES];
-  if (self->kind == NULL || self->kind->row_count > SOFTKIN_MOST_ROWS || !take_reals(self, given, self->kind->axis_count, axes)
+  if (self->kind == NULL || self->kind->row_count > SOFTKIN_MOST_ROWS
+      || !take_reals(self, given, self->kind->axis_count, axes)
       || self->kind->jacobian(self->machine, axes, rows, NULL) != SOFTKIN_OK) {
     return unanswered();
   }
@@ -495,7 +515,8 @@ static PyObject *jacobian(PyObject *object, PyObject *given) {
 static PyObject *margins_of(PyObject *object, PyObject *given) {
   machine_object *self = (machine_object *)object;
   double axes[SOFTKIN_MOST_AXES], margins[SOFTKIN_MOST_MARGINS];
-  if (self->kind == NULL || self->kind->margin_count > SOFTKIN_MOST_MARGINS || !take_reals(self, given, self->kind->axis_count, axes)
+  if (self->kind == NULL || self->kind->margin_count > SOFTKIN_MOST_MARGINS
+      || !take_reals(self, given, self->kind->axis_count, axes)
       || self->kind->singularity(self->machine, axes, margins, NULL) != SOFTKIN_OK) {
     return unanswered();
   }
@@ -517,8 +538,10 @@ static void release(arrays *held) {
   }
 }
 
-/* An array, or an error where it has another format, or fewer rows than `stop`. width: the values of a row. */
-static const Py_buffer *view_of(arrays *held, PyObject *given, int flags, const char *formats, Py_ssize_t width, Py_ssize_t stop) {
+/* An array, or an error where it has another format, or fewer rows than `stop`. width: the values of a row.
+ * */
+static const Py_buffer *view_of(arrays *held, PyObject *given, int flags, const char *formats,
+    Py_ssize_t width, Py_ssize_t stop) {
   Py_buffer *view = &held->views[held->count];
   if (PyObject_GetBuffer(given, view, flags | PyBUF_FORMAT) != 0) {
     return NULL;
@@ -528,7 +551,8 @@ static const Py_buffer *view_of(arrays *held, PyObject *given, int flags, const 
   for (int i = 1; i < view->ndim; i += 1) {
     values *= view->shape[i];
   }
-  if (view->ndim < 1 || view->format == NULL || strlen(view->format) != 1 || strchr(formats, view->format[0]) == NULL
+  if (view->ndim < 1 || view->format == NULL || strlen(view->format) != 1
+      || strchr(formats, view->format[0]) == NULL
       || view->shape[0] < stop || values != width) {
     PyErr_SetString(PyExc_ValueError, "an array of a batch has another form");
     return NULL;
@@ -537,7 +561,8 @@ static const Py_buffer *view_of(arrays *held, PyObject *given, int flags, const 
 }
 
 /* What is read: rows (N, width) of doubles or int64, with any strides. */
-static bool take_table(arrays *held, PyObject *given, const char *formats, Py_ssize_t width, Py_ssize_t stop, softkin_table *table) {
+static bool take_table(arrays *held, PyObject *given, const char *formats, Py_ssize_t width, Py_ssize_t stop,
+    softkin_table *table) {
   const Py_buffer *view = view_of(held, given, PyBUF_STRIDES, formats, width, stop);
   if (view == NULL) {
     return false;
@@ -551,7 +576,8 @@ static bool take_table(arrays *held, PyObject *given, const char *formats, Py_ss
 }
 
 /* None where the machine reads no rotation. */
-static bool take_rotations(const machine_object *self, arrays *held, PyObject *given, Py_ssize_t stop, softkin_table *table) {
+static bool take_rotations(const machine_object *self, arrays *held, PyObject *given, Py_ssize_t stop,
+    softkin_table *table) {
   *table = (softkin_table){NULL, 0, 0};
   return !self->kind->reads_rotation || take_table(held, given, "d", 9, stop, table);
 }
@@ -562,7 +588,8 @@ static void *written(arrays *held, PyObject *given, const char *formats, Py_ssiz
 }
 
 /* The rows of a batch: its last two arguments. */
-static bool take_range(const machine_object *self, PyObject *const *given, Py_ssize_t count, Py_ssize_t expected, softkin_rows *rows) {
+static bool take_range(const machine_object *self, PyObject *const *given, Py_ssize_t count,
+    Py_ssize_t expected, softkin_rows *rows) {
   if (self->kind == NULL || count != expected) {
     PyErr_SetString(PyExc_TypeError, "no machine, or other arguments");
     return false;
@@ -600,7 +627,8 @@ static PyObject *forward_rows(PyObject *object, PyObject *const *given, Py_ssize
       && take_table(&held, given[0], "d", self->kind->axis_count, rows.stop, &axes)
       && (positions = written(&held, given[1], "d", 3, rows.stop)) != NULL
       && (rotations = written(&held, given[2], "d", 9, rows.stop)) != NULL
-      && (configurations = written(&held, given[3], "b", self->kind->branch_count + self->kind->period_count, rows.stop)) != NULL
+      && (configurations = written(&held, given[3], "b", self->kind->branch_count + self->kind->period_count,
+          rows.stop)) != NULL
       && (statuses = written(&held, given[4], "B", 1, rows.stop)) != NULL;
   if (is_good) {
     Py_BEGIN_ALLOW_THREADS
@@ -621,7 +649,8 @@ static PyObject *inverse_rows(PyObject *object, PyObject *const *given, Py_ssize
   const bool is_good = take_range(self, given, count, 8, &rows)
       && take_table(&held, given[0], "d", 3, rows.stop, &positions)
       && take_rotations(self, &held, given[1], rows.stop, &rotations)
-      && take_table(&held, given[2], "lq", self->kind->branch_count + self->kind->period_count, rows.stop, &configurations)
+      && take_table(&held, given[2], "lq", self->kind->branch_count + self->kind->period_count, rows.stop,
+          &configurations)
       && take_table(&held, given[3], "d", self->kind->axis_count, rows.stop, &references)
       && (axes = written(&held, given[4], "d", self->kind->axis_count, rows.stop)) != NULL
       && (statuses = written(&held, given[5], "B", 1, rows.stop)) != NULL;
@@ -645,8 +674,10 @@ static PyObject *inverse_all_rows(PyObject *object, PyObject *const *given, Py_s
       && take_table(&held, given[0], "d", 3, rows.stop, &positions)
       && take_rotations(self, &held, given[1], rows.stop, &rotations)
       && take_table(&held, given[2], "d", self->kind->axis_count, rows.stop, &references)
-      && (axes = written(&held, given[3], "d", (Py_ssize_t)self->kind->axis_count << self->kind->branch_count, rows.stop)) != NULL
-      && (statuses = written(&held, given[4], "B", (Py_ssize_t)1 << self->kind->branch_count, rows.stop)) != NULL;
+      && (axes = written(&held, given[3], "d",
+          (Py_ssize_t)self->kind->axis_count << self->kind->branch_count, rows.stop)) != NULL
+      && (statuses = written(&held, given[4], "B", (Py_ssize_t)1 << self->kind->branch_count,
+          rows.stop)) != NULL;
   if (is_good) {
     Py_BEGIN_ALLOW_THREADS
     softkin_inverse_all_rows(&rows, &positions, &rotations, &references, axes, statuses);
@@ -665,7 +696,8 @@ static PyObject *jacobian_rows(PyObject *object, PyObject *const *given, Py_ssiz
   uint8_t *statuses = NULL;
   const bool is_good = take_range(self, given, count, 5, &rows)
       && take_table(&held, given[0], "d", self->kind->axis_count, rows.stop, &axes)
-      && (matrices = written(&held, given[1], "d", (Py_ssize_t)self->kind->row_count*self->kind->axis_count, rows.stop)) != NULL
+      && (matrices = written(&held, given[1], "d", (Py_ssize_t)self->kind->row_count*self->kind->axis_count,
+          rows.stop)) != NULL
       && (statuses = written(&held, given[2], "B", 1, rows.stop)) != NULL;
   if (is_good) {
     Py_BEGIN_ALLOW_THREADS
@@ -702,7 +734,8 @@ static bool made(const softkin_mechanism *kind, PyObject *given, void *machine) 
   return is_made;
 }
 
-/* Machine(key, parameters, Frame, Solution, statuses): unknown keys and refused parameters give one that answers nothing. */
+/* Machine(key, parameters, Frame, Solution, statuses): unknown keys and refused parameters give one that
+ * answers nothing. */
 static PyObject *make(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
   const char *key;
   PyObject *parameters, *frame, *solution, *statuses;
@@ -710,11 +743,13 @@ static PyObject *make(PyTypeObject *type, PyObject *arguments, PyObject *keyword
     PyErr_SetString(PyExc_TypeError, "Machine takes no keywords");
     return NULL;
   }
-  if (!PyArg_ParseTuple(arguments, "sOO!O!O!", &key, &parameters, &PyType_Type, &frame, &PyType_Type, &solution,
+  if (!PyArg_ParseTuple(arguments, "sOO!O!O!", &key, &parameters, &PyType_Type, &frame, &PyType_Type,
+      &solution,
           &PyTuple_Type, &statuses)) {
     return NULL;
   }
-  if (!PyType_IsSubtype((PyTypeObject *)frame, &PyTuple_Type) || !PyType_IsSubtype((PyTypeObject *)solution, &PyTuple_Type)) {
+  if (!PyType_IsSubtype((PyTypeObject *)frame, &PyTuple_Type)
+      || !PyType_IsSubtype((PyTypeObject *)solution, &PyTuple_Type)) {
     PyErr_SetString(PyExc_TypeError, "frames and solutions are tuples");
     return NULL;
   }
@@ -799,7 +834,8 @@ static PyType_Slot slots[] = {
 };
 
 static PyType_Spec type_of_machines = {
-    SOFTKIN_MODULE ".Machine", sizeof(machine_object), 0, Py_TPFLAGS_DEFAULT | Py_TPFLAGS_IMMUTABLETYPE, slots,
+    SOFTKIN_MODULE ".Machine", sizeof(machine_object), 0, Py_TPFLAGS_DEFAULT | Py_TPFLAGS_IMMUTABLETYPE,
+        slots,
 };
 
 static int fill(PyObject *module) {
@@ -826,7 +862,8 @@ static PyModuleDef_Slot steps[] = {
 };
 
 static struct PyModuleDef module = {
-    PyModuleDef_HEAD_INIT, SOFTKIN_MODULE, "The native core of the package.", 0, NULL, steps, NULL, NULL, NULL,
+    PyModuleDef_HEAD_INIT, SOFTKIN_MODULE, "The native core of the package.", 0, NULL, steps, NULL, NULL,
+        NULL,
 };
 
 PyMODINIT_FUNC SOFTKIN_START(void) {

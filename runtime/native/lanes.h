@@ -1,8 +1,8 @@
-/* {{ generated }} */
 /**
  * @file lanes.h  Several poses at a time: one number of each stands in a lane.
  *
- * Every loop over lanes is free of branches and calls, so that compilers take several lanes in one instruction. Rounding
+ * Every loop over lanes is free of branches and calls, so that compilers take several lanes in one
+ * instruction. Rounding
  * is that of plain arithmetic on every processor.
  */
 
@@ -30,12 +30,16 @@ typedef struct {
  * The axes of every lane on its branch, before any limit.
  *
  * @param near what each axis with turns is nearest to; an axis may be in another turn
- * @param misses more is added where a lane has no answer: its pose is singular or out of reach, and is asked by itself
+ * @param misses more is added where a lane has no answer: its pose is singular or out of reach, and is asked
+ * by itself
  */
-typedef void softkin_regular(const void *machine, const softkin_lanes *given, double (*axes)[SOFTKIN_LANES], double (*near)[SOFTKIN_LANES], double *misses);
+typedef void softkin_regular(const void *machine, const softkin_lanes *given, double (*axes)[SOFTKIN_LANES],
+    double (*near)[SOFTKIN_LANES], double *misses);
 
 /** The same of every slot, each with its status; no signs are read. */
-typedef void softkin_regular_all(const void *machine, const softkin_lanes *given, double (*statuses)[SOFTKIN_LANES], double (*axes)[SOFTKIN_LANES], double (*near)[SOFTKIN_LANES], double *misses);
+typedef void softkin_regular_all(const void *machine, const softkin_lanes *given,
+    double (*statuses)[SOFTKIN_LANES], double (*axes)[SOFTKIN_LANES], double (*near)[SOFTKIN_LANES],
+    double *misses);
 
 /** What a machine has of these; NULL: poses are computed one by one. */
 typedef struct {
@@ -43,12 +47,15 @@ typedef struct {
   softkin_regular_all *all;
 } softkin_in_lanes;
 
+#include "lane_programs.h"
+
 /** The square root of x, and 0 for a negative x. */
 static inline double softkin_lane_root(double x) {
   return sqrt(x > 0.0 ? x : 0.0);
 }
 
-/** `softkin_angle_of` to rounding: the angle of (x, y) in radians, in (-pi, pi]; 0 for (0, 0). Zeros have no sign. */
+/** `softkin_angle_of` to rounding: the angle of (x, y) in radians, in (-pi, pi]; 0 for (0, 0). Zeros have no
+ * sign. */
 static inline double softkin_lane_angle(double y, double x) {
   const double along = fabs(x), across = fabs(y);
   const double small = across < along ? across : along, large = across < along ? along : across;
@@ -56,8 +63,8 @@ static inline double softkin_lane_angle(double y, double x) {
   const double above = is_far ? small - large : small, below = is_far ? small + large : large;
   const double t = above/(below > 0.0 ? below : 1.0);
   const double z = t*t, zz = z*z;
-  const double even = {{ even }};
-  const double odd = {{ odd }};
+  const double even = softkin_lane_even(zz);
+  const double odd = softkin_lane_odd(zz);
   const double first = (is_far ? 0.25*SOFTKIN_LANE_PI : 0.0) + (t + t*z*(even + z*odd));
   const double quarter = across > along ? 0.5*SOFTKIN_LANE_PI - first : first;
   const double half = x < 0.0 ? SOFTKIN_LANE_PI - quarter : quarter;
@@ -67,11 +74,11 @@ static inline double softkin_lane_angle(double y, double x) {
 /** `softkin_on_turn`, for numbers of reasonable size; else some turn. */
 static inline double softkin_lane_turn(double value, double centre) {
   const double away = value - centre;
-  const double turns = (away + (180.0 + {{ edge }}))/360.0;
-  const double counted = fabs(turns) <= {{ largest }} ? turns : 0.0;
+  const double turns = (away + (180.0 + SOFTKIN_EDGE))/360.0;
+  const double counted = fabs(turns) <= SOFTKIN_LARGEST ? turns : 0.0;
   const double whole = (int)counted;
   const double below = whole > counted ? whole - 1.0 : whole;
-  return away >= -180.0 - {{ edge }} && away < 180.0 - {{ edge }} ? value : value - 360.0*below;
+  return away >= -180.0 - SOFTKIN_EDGE && away < 180.0 - SOFTKIN_EDGE ? value : value - 360.0*below;
 }
 
 #endif

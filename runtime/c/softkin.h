@@ -1,13 +1,14 @@
-/* @{ generated }@ */
 /**
  * @file softkin.h
- * The common part of all machines: statuses, refusals with their reasons, frames, the description of a machine,
+ * The common part of all machines: statuses, refusals with their reasons, frames, the description of a
+ * machine,
  * and its calls.
  *
- * It needs only C99 and libm, allocates no memory and has no global state. A machine is a struct of constants that its
+ * It needs only C99 and libm, allocates no memory and has no global state. A machine is a struct of constants
+ * that its
  * `_init` fills from a struct of parameters; afterwards every call only reads it, so that any number of
  * threads and tasks may use one machine. Every call returns a status for any input: numbers that are
- * NaN, infinite or larger than @{ largest }@ in size are refused. Results are written only where the status
+ * NaN, infinite or larger than SOFTKIN_LARGEST in size are refused. Results are written only where the status
  * is SOFTKIN_OK.
  *
  * Lengths and linear axes are in the user's unit of length (u), rotary axes in degrees, the Jacobian per
@@ -15,7 +16,7 @@
  * -ffp-contract=off all processors agree to the last digits.
  *
  * A call needs little stack (about 5 kB), except for machines whose inverse is a root scan: these need
- * about @{ stack }@ kB.
+ * about 36 kB.
  */
 
 #ifndef SOFTKIN_H
@@ -30,26 +31,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "softkin_constants.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/** The largest numbers of axes and of branches that a machine may have in C. */
-#define SOFTKIN_MOST_AXES @{ most_axes }@
-#define SOFTKIN_MOST_BRANCHES @{ most_branches }@
-/** The largest number of slots of a machine whose branches are computed together. */
-#define SOFTKIN_MOST_TOGETHER @{ most_together }@
 /** The largest number of roots of a scan that a call of all branches keeps. */
-#define SOFTKIN_MOST_SOLUTIONS @{ most_solutions }@
+#define SOFTKIN_MOST_SOLUTIONS 128
 
-/** The outcome of a call; numbers and names are those of the Python package. */
-typedef enum {
-{% for status in statuses %}
-  SOFTKIN_@{ status.name }@ = @{ loop.index0 }@, /**< @{ status.meaning }@ */
-{% endfor %}
-} softkin_status;
-
-/** The reason why a call refuses. Every call takes a pointer to one, or NULL, and fills it where it refuses. */
+/** The reason why a call refuses. Every call takes a pointer to one, or NULL, and fills it where it refuses.
+ * */
 typedef struct {
   softkin_status status;
   const char *reason;  /**< a sentence that names the axis, the leg or the parameter; constant text */
@@ -94,7 +86,8 @@ typedef struct {
   bool is_held;    /**< it keeps the value of the reference */
 } softkin_axis;
 
-/** The description of a parameter: a double in the struct of parameters, also a flag (0, 1) and a sign (-1, 1). */
+/** The description of a parameter: a double in the struct of parameters, also a flag (0, 1) and a sign (-1,
+ * 1). */
 typedef struct {
   const char *name, *kind, *unit, *meaning;
   double low, high;
@@ -148,19 +141,27 @@ typedef struct {
   const char *const *rows;
   const int *period_axes;   /**< whose turns the last bytes of the configuration name */
   const int *distance_axes; /**< whose distance to the reference decides an automatic choice */
-  const char *needs_reference; /**< the reason to refuse an inverse without a reference; NULL if it is allowed */
+  const char
+      *needs_reference; /**< the reason to refuse an inverse without a reference; NULL if it is allowed */
   softkin_status (*init)(void *machine, const void *parameters, softkin_refusal *why);
-  softkin_status (*forward)(const void *machine, const double *axes, softkin_frame *frame, double *margins, softkin_refusal *why);
-  softkin_status (*forward_from)(const void *machine, const double *axes, const softkin_frame *start, softkin_frame *frame, double *margins, softkin_refusal *why); /**< or NULL */
+  softkin_status (*forward)(const void *machine, const double *axes, softkin_frame *frame, double *margins,
+      softkin_refusal *why);
+  softkin_status (*forward_from)(const void *machine, const double *axes, const softkin_frame *start,
+      softkin_frame *frame, double *margins, softkin_refusal *why); /**< or NULL */
   void (*start_at)(const void *machine, const softkin_frame *start, void *moved); /**< or NULL */
-  softkin_status (*branch)(const void *machine, const softkin_frame *frame, const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
+  softkin_status (*branch)(const void *machine, const softkin_frame *frame, const int8_t *signs,
+      const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
   softkin_status (*limit)(const void *machine, const double *axes, softkin_refusal *why);
-  softkin_status (*singularity)(const void *machine, const double *axes, double *margins, softkin_refusal *why);
+  softkin_status (*singularity)(const void *machine, const double *axes, double *margins,
+      softkin_refusal *why);
   softkin_status (*jacobian)(const void *machine, const double *axes, double *rows, softkin_refusal *why);
   softkin_status (*quantities)(const void *machine, const double *axes, double *values, softkin_refusal *why);
-  softkin_status (*search_given)(const void *machine, const softkin_frame *frame, const int8_t *signs, const int8_t *turns, const double *reference, double *given, softkin_refusal *why);
-  softkin_status (*from_joints)(const void *machine, const double *joints, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
-  bool (*every_branch)(const void *machine, const softkin_frame *frame, const double *reference, softkin_status *statuses, double *axes); /**< all branches in one straight line, or NULL */
+  softkin_status (*search_given)(const void *machine, const softkin_frame *frame, const int8_t *signs,
+      const int8_t *turns, const double *reference, double *given, softkin_refusal *why);
+  softkin_status (*from_joints)(const void *machine, const double *joints, const int8_t *turns,
+      const double *reference, double *axes, softkin_refusal *why);
+  bool (*every_branch)(const void *machine, const softkin_frame *frame, const double *reference,
+      softkin_status *statuses, double *axes); /**< all branches in one straight line, or NULL */
   void (*every_root)(const void *machine, const double *given, softkin_take take, void *context);
   void (*turn_sizes)(const void *machine, double *sizes); /**< or NULL, where all are 1 */
 } softkin_mechanism;
@@ -177,7 +178,8 @@ void softkin_defaults(const softkin_mechanism *kind, void *parameters);
  * @return SOFTKIN_OK, or SOFTKIN_NOT_INITIALIZED where a parameter is not allowed: the machine stays as it
  *   was
  */
-softkin_status softkin_init(const softkin_mechanism *kind, void *machine, const void *parameters, softkin_refusal *why);
+softkin_status softkin_init(const softkin_mechanism *kind, void *machine, const void *parameters,
+    softkin_refusal *why);
 
 /**
  * The frame at axis values. Limits are not tested.
@@ -187,16 +189,20 @@ softkin_status softkin_init(const softkin_mechanism *kind, void *machine, const 
  * @param configuration bytes of the pose, NULL if not wanted; margins: signed, of the branches, NULL likewise
  * @return SOFTKIN_OK, SOFTKIN_NOT_INITIALIZED, SOFTKIN_BAD_INPUT, SOFTKIN_IMPOSSIBLE
  */
-softkin_status softkin_forward(const softkin_mechanism *kind, const void *machine, const double *axes, const softkin_frame *start, softkin_frame *frame, int8_t *configuration, double *margins, softkin_refusal *why);
+softkin_status softkin_forward(const softkin_mechanism *kind, const void *machine, const double *axes,
+    const softkin_frame *start, softkin_frame *frame, int8_t *configuration, double *margins,
+    softkin_refusal *why);
 
 /**
- * The machine whose forward kinematics begins at `start`: with it, every call of axis values answers for the frame that
+ * The machine whose forward kinematics begins at `start`: with it, every call of axis values answers for the
+ * frame that
  * they have there.
  *
  * @param start the frame that the axes have, or one nearby; `kind` must have `start_at`
  * @param moved `kind->machine_size` bytes
  */
-softkin_status softkin_start_at(const softkin_mechanism *kind, const void *machine, const softkin_frame *start, void *moved, softkin_refusal *why);
+softkin_status softkin_start_at(const softkin_mechanism *kind, const void *machine,
+    const softkin_frame *start, void *moved, softkin_refusal *why);
 
 /**
  * The axis values that reach a frame.
@@ -209,7 +215,9 @@ softkin_status softkin_start_at(const softkin_mechanism *kind, const void *machi
  * @return SOFTKIN_OK, SOFTKIN_NOT_INITIALIZED, SOFTKIN_BAD_INPUT, SOFTKIN_UNREACHABLE (out of reach, or
  *   beyond a limit), SOFTKIN_IMPOSSIBLE
  */
-softkin_status softkin_inverse(const softkin_mechanism *kind, const void *machine, const softkin_frame *frame, const int8_t *configuration, const double *reference, double *axes, softkin_refusal *why);
+softkin_status softkin_inverse(const softkin_mechanism *kind, const void *machine,
+    const softkin_frame *frame, const int8_t *configuration, const double *reference, double *axes,
+    softkin_refusal *why);
 
 /**
  * Every branch of the inverse, in fixed slots: branch 1 before branch 2, the first byte varies fastest.
@@ -223,7 +231,9 @@ softkin_status softkin_inverse(const softkin_mechanism *kind, const void *machin
  * @param others further solutions; needed where the machine is searched, else it may be NULL
  * @return SOFTKIN_OK, SOFTKIN_NOT_INITIALIZED; SOFTKIN_BAD_INPUT for a missing array
  */
-softkin_status softkin_inverse_all(const softkin_mechanism *kind, const void *machine, const softkin_frame *frame, const double *reference, softkin_status *statuses, double *axes, int8_t *configurations, softkin_refusal *whys, softkin_others *others);
+softkin_status softkin_inverse_all(const softkin_mechanism *kind, const void *machine,
+    const softkin_frame *frame, const double *reference, softkin_status *statuses, double *axes,
+    int8_t *configurations, softkin_refusal *whys, softkin_others *others);
 
 /**
  * One branch, for inner loops: no limits, no choice, no repair of the rotation, which must be one.
@@ -231,19 +241,24 @@ softkin_status softkin_inverse_all(const softkin_mechanism *kind, const void *ma
  * @param signs of each branch: 1 for byte 1, -1 for byte 2
  * @param turns of each multi-turn axis, as in a configuration
  */
-softkin_status softkin_branch(const softkin_mechanism *kind, const void *machine, const softkin_frame *frame, const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
+softkin_status softkin_branch(const softkin_mechanism *kind, const void *machine, const softkin_frame *frame,
+    const int8_t *signs, const int8_t *turns, const double *reference, double *axes, softkin_refusal *why);
 
 /**
- * Every branch with automatic turns, for inner loops, in the slots of `softkin_inverse_all`: no limits, no repair of
+ * Every branch with automatic turns, for inner loops, in the slots of `softkin_inverse_all`: no limits, no
+ * repair of
  * the rotation, which must be exact.
  *
  * @param statuses one for each slot; axes: of each slot, without a meaning where it refuses
- * @return SOFTKIN_OK, SOFTKIN_NOT_INITIALIZED; SOFTKIN_BAD_INPUT for a missing array and for numbers that are none
+ * @return SOFTKIN_OK, SOFTKIN_NOT_INITIALIZED; SOFTKIN_BAD_INPUT for a missing array and for numbers that are
+ * none
  */
-softkin_status softkin_branches(const softkin_mechanism *kind, const void *machine, const softkin_frame *frame, const double *reference, softkin_status *statuses, double *axes);
+softkin_status softkin_branches(const softkin_mechanism *kind, const void *machine,
+    const softkin_frame *frame, const double *reference, softkin_status *statuses, double *axes);
 
 /** The Jacobian by rows, per radian: `row_count` times `axis_count`, rows as in `rows`. */
-softkin_status softkin_jacobian(const softkin_mechanism *kind, const void *machine, const double *axes, double *rows, softkin_refusal *why);
+softkin_status softkin_jacobian(const softkin_mechanism *kind, const void *machine, const double *axes,
+    double *rows, softkin_refusal *why);
 
 /**
  * The margins, each zero at its singularity.
@@ -251,13 +266,16 @@ softkin_status softkin_jacobian(const softkin_mechanism *kind, const void *machi
  * @param is_singular whether one is smaller in size than the parameter `warning_distance`; NULL if not wanted
  * @return SOFTKIN_OK, or why the axis values allow no pose: then they are singular, and have no margins
  */
-softkin_status softkin_singularity(const softkin_mechanism *kind, const void *machine, const double *axes, double *margins, bool *is_singular, softkin_refusal *why);
+softkin_status softkin_singularity(const softkin_mechanism *kind, const void *machine, const double *axes,
+    double *margins, bool *is_singular, softkin_refusal *why);
 
 /** Whether axis values are inside the limits, if these are tested: SOFTKIN_OK, or SOFTKIN_UNREACHABLE. */
-softkin_status softkin_limits(const softkin_mechanism *kind, const void *machine, const double *axes, softkin_refusal *why);
+softkin_status softkin_limits(const softkin_mechanism *kind, const void *machine, const double *axes,
+    softkin_refusal *why);
 
 /** The quantities other than axes that have limits, `quantity_count` of them. */
-softkin_status softkin_quantities(const softkin_mechanism *kind, const void *machine, const double *axes, double *values, softkin_refusal *why);
+softkin_status softkin_quantities(const softkin_mechanism *kind, const void *machine, const double *axes,
+    double *values, softkin_refusal *why);
 
 /** The byte of a branch by its signed margin: 1, 2, or 3 where both branches meet. */
 int8_t softkin_branch_byte(double margin);
@@ -288,21 +306,22 @@ typedef struct {
   const void *machine;
   const double *arguments;
   /* value, slope, guard, its slope, then cosine and sine of every direction */
-  softkin_status (*trial)(const void *machine, const double *arguments, const softkin_place *place, double *results);
+  softkin_status (*trial)(const void *machine, const double *arguments, const softkin_place *place,
+      double *results);
   /* whether the root fits, then the values */
-  softkin_status (*finish)(const void *machine, const double *arguments, const softkin_place *place, double *values);
+  softkin_status (*finish)(const void *machine, const double *arguments, const softkin_place *place,
+      double *values);
   int directions; /* at most SOFTKIN_MOST_DIRECTIONS */
   int count;      /* of the values, at most SOFTKIN_MOST_AXES + 1 */
-  /* where the trial lists candidates, a joint value and whether it is one of each: their sides; else NULL, 0 */
+  /* where the trial lists candidates, a joint value and whether it is one of each: their sides; else NULL, 0
+   * */
   const int *sides;
   int listed; /* at most SOFTKIN_MOST_LISTED */
 } softkin_search;
 
-#define SOFTKIN_MOST_DIRECTIONS @{ most_directions }@
-#define SOFTKIN_MOST_LISTED @{ most_listed }@
-
 /** Fill a refusal, if there is one to fill, and return the status. */
-softkin_status softkin_refuse(softkin_refusal *why, softkin_status status, const char *reason, const char *unit, double missing, int turn);
+softkin_status softkin_refuse(softkin_refusal *why, softkin_status status, const char *reason,
+    const char *unit, double missing, int turn);
 softkin_status softkin_refuse_parameters(softkin_refusal *why, const char *reason, const char *parameters);
 double softkin_nearest_period(double value, double centre);
 double softkin_nearest_on_arc(double angle, double centre, double half);
@@ -311,14 +330,16 @@ bool softkin_refuse_all(softkin_status status, softkin_status *statuses, int cou
 int softkin_turn_inside(double axis, double lowest, double highest);
 /** Solve `system` (rows, rows + columns) in place; the determinant. All is zero where it is singular. */
 double softkin_solve(double *system, int rows, int columns);
-softkin_status softkin_window_of(const softkin_limit *limit, double lower, double upper, bool is_tested, const double *otherwise, double turns, softkin_window *window, softkin_ends *ends, softkin_refusal *why);
+softkin_status softkin_window_of(const softkin_limit *limit, double lower, double upper, bool is_tested,
+    const double *otherwise, double turns, softkin_window *window, softkin_ends *ends, softkin_refusal *why);
 void softkin_nearest_root(const softkin_search *search, double start, bool is_wanted, double *values);
-void softkin_every_root(const softkin_search *search, double start, bool is_wanted, softkin_take take, void *context);
+void softkin_every_root(const softkin_search *search, double start, bool is_wanted, softkin_take take,
+    void *context);
 
 /** Whether all are numbers of reasonable size. */
 static inline bool softkin_are_reasonable(const double *numbers, int count) {
   for (int i = 0; i < count; i += 1) {
-    if (!(fabs(numbers[i]) <= @{ largest }@)) {
+    if (!(fabs(numbers[i]) <= SOFTKIN_LARGEST)) {
       return false;
     }
   }
@@ -338,7 +359,8 @@ static inline double softkin_angle_of(double y, double x) {
 /** `softkin_nearest_period`, which nearly always is the value itself. */
 static inline double softkin_on_turn(double value, double centre) {
   const double away = value - centre;
-  return away >= -180.0 - @{ edge }@ && away < 180.0 - @{ edge }@ ? value : softkin_nearest_period(value, centre);
+  return away >= -180.0 - SOFTKIN_EDGE && away < 180.0 - SOFTKIN_EDGE ? value
+      : softkin_nearest_period(value, centre);
 }
 
 #ifdef __cplusplus
