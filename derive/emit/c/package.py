@@ -30,7 +30,7 @@ from derive.emit.c.program import (
 from derive.emit.c.setup import constants_read, setup
 from derive.emit.interface import arguments_of, read_by
 from derive.emit.language import GENERATED, Part, environment, runtime, short_name
-from derive.emit.shared_constants import COUNTS, NUMBERS, OF_THE_SEARCH, STATUSES
+from derive.emit.shared_constants import CONSTANTS, STATUSES
 from derive.ir.symbols import symbols_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
@@ -100,14 +100,12 @@ def _fits(kin: Kinematics) -> bool:
 def _templates() -> Environment:
     templates = environment(name).overlay(variable_start_string="@{", variable_end_string="}@")
     templates.filters |= {"text": text}
-    templates.globals |= {key: number(value) for key, value in NUMBERS.items()}
-    constants = {**NUMBERS, **COUNTS, **OF_THE_SEARCH}
     rotation = function_lines(rotation_function(), "", {}, reasons_of_rotation())
     templates.globals |= {
         "generated": GENERATED,
         "statuses": STATUSES,
         "rotation": laid_out(rotation),
-        "constants": {name.upper(): _literal(constants[name]) for name in sorted(constants, key=str.upper)},
+        "constants": {name: _literal(value) for name, value in CONSTANTS.items()},
         "no_meaning": NO_MEANING,
         "most_axes": MOST_AXES,
         "most_branches": MOST_BRANCHES,

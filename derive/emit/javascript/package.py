@@ -22,7 +22,7 @@ from derive.emit.javascript.program import function_lines, looked_for
 from derive.emit.javascript.refusal import Refusals
 from derive.emit.javascript.setup import setup_lines
 from derive.emit.language import GENERATED, Part, environment, runtime, short_name
-from derive.emit.shared_constants import COUNTS, NUMBERS, OF_THE_SEARCH, STATUSES
+from derive.emit.shared_constants import CONSTANTS, STATUSES
 from derive.ir.program import FindRoot
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
@@ -71,14 +71,12 @@ def module_name(mechanism: str) -> str:
 def _templates() -> Environment:
     templates = environment(name).overlay(variable_start_string="<<", variable_end_string=">>")
     templates.filters |= {"text": text}
-    templates.globals |= {key: PRINTER.number(value) for key, value in NUMBERS.items()}
-    constants = {**NUMBERS, **COUNTS, **OF_THE_SEARCH}
     templates.globals |= {
         "generated": GENERATED,
         "version": _VERSION,
         "statuses": STATUSES,
         "rotation": laid_out(function_lines(rotation_function(), Refusals(reasons_of_rotation()))),
-        "constants": {name.upper(): _literal(constants[name]) for name in sorted(constants, key=str.upper)},
+        "constants": {name: _literal(value) for name, value in CONSTANTS.items()},
     }
     return templates
 

@@ -15,7 +15,7 @@ from derive.emit.python.arrays import OF_A_SEARCH
 from derive.emit.python.layout import documented
 from derive.emit.python.printer import literal
 from derive.emit.python.rotation import rotation_functions
-from derive.emit.shared_constants import COUNTS, NUMBERS, OF_THE_SEARCH, STATUSES
+from derive.emit.shared_constants import CONSTANTS, STATUSES
 from derive.ir import cells, roots
 from derive.ir.reason import Why
 from derive.report.reasons import NO_MEANING, OTHER_TURN
@@ -34,13 +34,12 @@ def templates() -> Environment:
     """The templates, which know the constants."""
     found = environment(NAME)
     found.filters |= {"paragraph": _paragraph, "literal": entries.literal}
-    found.globals |= {key: literal(value) for key, value in NUMBERS.items()} | {
+    found.globals |= {
         "generated": GENERATED,
         "statuses": STATUSES,
         "version": _VERSION,
         "rotation": rotation_functions(),
         "constants": _constants(),
-        "one_turn": literal(int(NUMBERS["one_turn"])),
         "cells": _after_docstring(Path(cells.__file__).read_text()),
         "roots": _after_docstring(Path(roots.__file__).read_text()),
         "usual": {role.value: entries.usual(role) for role in Role},
@@ -50,9 +49,9 @@ def templates() -> Environment:
 
 def _constants() -> dict[str, str]:
     """The literals of the constants that modules of the runtime import, by their names."""
-    texts = {"above": Why.ABOVE.value, "below": Why.BELOW.value, "no_meaning": NO_MEANING, "other_turn": OTHER_TURN}
-    values = {**NUMBERS, **COUNTS, **OF_THE_SEARCH, **texts, "of_a_search": OF_A_SEARCH}
-    return {name.upper(): _literal(values[name]) for name in sorted(values, key=str.upper)}
+    texts = {"ABOVE": Why.ABOVE.value, "BELOW": Why.BELOW.value, "NO_MEANING": NO_MEANING, "OTHER_TURN": OTHER_TURN}
+    values = {**CONSTANTS, **texts, "OF_A_SEARCH": OF_A_SEARCH}
+    return {name: _literal(values[name]) for name in sorted(values)}
 
 
 def _literal(value: str | float | tuple[float, ...]) -> str:

@@ -11,49 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from softkin._constants import EDGE, LARGEST, PIVOT, SOLVABLE
-from softkin._scalar import DEGREE
+from softkin._scalar import DEGREE as DEGREE
 from softkin._start import with_start
 from softkin._types import Status
-
-__all__ = [
-    "DEGREE",
-    "Array",
-    "Codes",
-    "Matrix",
-    "OrientationPrograms",
-    "Programs",
-    "Real",
-    "Reals",
-    "Rotation",
-    "Signs",
-    "Turns",
-    "Vector",
-    "StartedPrograms",
-    "Truth",
-    "Values",
-    "Whole",
-    "absolute",
-    "advanced",
-    "atan2",
-    "both_signs",
-    "cos",
-    "degrees",
-    "elsewhere",
-    "initial",
-    "nearest_on_arc",
-    "nearest_period",
-    "opposite",
-    "passed",
-    "reasonable",
-    "require",
-    "root",
-    "run_where",
-    "select",
-    "settled",
-    "sin",
-    "solve",
-    "sqrt",
-]
 
 Array: TypeAlias = NDArray[np.float64]
 Real: TypeAlias = Any

@@ -8,20 +8,8 @@ from math import cos, floor, nan, pi, sin, sqrt
 
 from softkin._constants import EDGE, LARGEST, PIVOT, SOLVABLE
 
-__all__ = [
-    "DEGREE",
-    "RADIAN",
-    "arctan2",
-    "atan2",
-    "cos",
-    "nearest_on_arc",
-    "nearest_period",
-    "reasonable",
-    "root",
-    "sin",
-    "solve",
-    "sqrt",
-]
+__all__ = ["arctan2", "cos", "sin", "sqrt"]
+"""What other modules import from here although it comes from elsewhere."""
 
 DEGREE = pi / 180.0
 """One degree in radians."""
