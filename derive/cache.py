@@ -1,9 +1,9 @@
 """The results of earlier runs, kept by the content of everything on which they depend.
 
-A key is a hash of the compiler's sources and templates, of the interpreter, the platform and every library with its
-version, of the profile, and of a description: its text, and the mechanism to which the text evaluates, whatever it
-imports. An entry is used only if its own hash is right, which covers its key and all of its bytes; otherwise the
-mechanism is derived anew.
+A key is a hash of the compiler's sources, templates and runtime, of the interpreter, the platform and every library
+with its version, of the profile, and of a description: its text, and the mechanism to which the text evaluates,
+whatever it imports. An entry is used only if its own hash is right, which covers its key and all of its bytes;
+otherwise the mechanism is derived anew.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from typing import Any
 import sympy as sp
 
 from derive.description.catalogue import MECHANISMS, Entry
-from derive.emit.language import TEMPLATES
+from derive.emit.language import RUNTIME, TEMPLATES, files_in
 
 ROOT = MECHANISMS.parents[1]
 _KEPT = 400
@@ -93,8 +93,8 @@ def entry_key(foundation: str, entry: Entry) -> str | None:
 
 
 def foundation(profile: str | None, root: Path = ROOT) -> str:
-    """The hash of everything that all mechanisms depend on: sources, templates, libraries, interpreter, platform,
-    profile.
+    """The hash of everything that all mechanisms depend on: sources, templates, runtime, libraries, interpreter,
+    platform, profile.
     """
     found = sha256(key_of(_FORMAT, sys.version, platform.platform(), repr(profile), *_libraries()).encode())
     for path in sorted(_sources(root)):
@@ -125,9 +125,8 @@ def _sources(root: Path) -> Iterator[Path]:
     for path in (root / "derive").rglob("*.py"):
         if path.parent != root / "derive" / "mechanisms" or path.name.startswith("_"):
             yield path
-    templates = root / TEMPLATES.relative_to(ROOT)
-    kept = (path for path in templates.rglob("*") if path.is_file() and path.suffix != ".pyc")
-    yield from (path for path in kept if templates / "view" not in path.parents)  # the viewer reads generated files
+    for folder in (root / each.relative_to(ROOT) for each in (TEMPLATES, RUNTIME)):  # the viewer reads generated files
+        yield from (path for path in files_in(folder) if folder / "view" not in path.parents)
     yield from root.glob("pyproject.toml")
 
 

@@ -152,6 +152,7 @@ def project(tmp_path: Path) -> Path:
         "derive/mechanisms/kin_a.py",
         "derive/mechanisms/_shared.py",
         "templates/st/a.toml",
+        "runtime/python/a.py",
     ):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("x = 1\n")
@@ -159,12 +160,15 @@ def project(tmp_path: Path) -> Path:
     return tmp_path
 
 
-FOUNDATIONS = ("derive/solver/solve.py", "derive/mechanisms/_shared.py", "templates/st/a.toml", "pyproject.toml")
+FOUNDATIONS = (
+    *("derive/solver/solve.py", "derive/mechanisms/_shared.py", "templates/st/a.toml", "runtime/python/a.py"),
+    "pyproject.toml",
+)
 
 
 @pytest.mark.parametrize("name", FOUNDATIONS)
-def test_everything_stands_on_sources_and_templates(project: Path, name: str) -> None:
-    """A change of a source or a template invalidates all entries."""
+def test_everything_stands_on_sources(project: Path, name: str) -> None:
+    """A change of a source, a template or the runtime invalidates all entries."""
     before = foundation(None, project)
     assert foundation(None, project) == before
     (project / name).write_text("x = 2\n")

@@ -19,8 +19,9 @@ ROOT = Path(__file__).resolve().parents[1]
 IMPORT_LINTER = "from importlinter.cli import lint_imports_command as lint; lint(['--no-cache'])"
 TOOLS = {
     "ruff": ("-m", "ruff", "check", "--no-cache", "."),
-    "ruff format": ("-m", "ruff", "format", "--check", "--no-cache", "derive", "tests", "bench", "prove"),
+    "ruff format": ("-m", "ruff", "format", "--check", "--no-cache", "derive", "runtime", "tests", "bench", "prove"),
     "mypy": ("-m", "mypy", "--strict", "derive", "prove"),
+    "mypy of the runtime": ("-m", "mypy", "--strict", "--explicit-package-bases", "runtime/python/softkin"),
     "mypy of the generated package": ("-m", "mypy", "--strict", "generated/python/softkin"),
     "directions of imports": ("-c", IMPORT_LINTER),
 }
@@ -88,7 +89,9 @@ def test_the_map_names_what_there_is() -> None:
 
 def is_in_the_project(path: str) -> bool:
     """Whether it is a path, or the end of one below the folders that the map describes."""
-    below = (p for top in ("derive", "docs", "generated", "tests") for p in (ROOT / top).rglob(Path(path).name))
+    below = (
+        p for top in ("derive", "docs", "generated", "runtime", "tests") for p in (ROOT / top).rglob(Path(path).name)
+    )
     return (ROOT / path).exists() or any(found.as_posix().endswith(f"/{path.rstrip('/')}") for found in below)
 
 

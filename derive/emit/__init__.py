@@ -4,8 +4,9 @@ It may import the folders from `ir` to `drawing`. No other folder knows a langua
 layers, each of which may import those before it: first `c`, `javascript`, `plcopen` and `picture`, then `python`, then
 `st` and `linuxcnc`, then `softmotion`, then `page`.
 
-Text that is the same for every mechanism stands in `templates/`, in a folder for each language; `templates/native` has
-the extension module that joins the C of machines with Python.
+What is the same for every mechanism stands in `runtime/`, in a folder for each language: it is copied, and reads the
+constants of the compiler from one file that the language writes. `runtime/native` has the extension module that joins
+the C of machines with Python.
 
 braces: indents, blocks with braces, and long statements broken into lines
 c/: C99
@@ -24,7 +25,7 @@ picture/: the drawing of a machine as PNG and SVG
 plcopen/: objects of a Structured Text project, and PLCopenXML
 python/: the Python package
 setup: the setup program of a machine, for Python, C and JavaScript
-shared_constants: the constants that the runtimes of Python, C and JavaScript print
+shared_constants: the constants that the runtimes of Python, C and JavaScript read
 softmotion/: function blocks for SoftMotion
 st/: Structured Text
 """

@@ -13,15 +13,12 @@ from derive.emit.c import lanes
 from derive.emit.c import package as c
 from derive.emit.c.arc_tangent import horner
 from derive.emit.c.layout import laid_out, page
-from derive.emit.c.printer import number
-from derive.emit.language import GENERATED, environment
-from derive.ir.constants import EDGE, LARGEST
+from derive.emit.language import GENERATED, environment, runtime
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 
 FOLDER = "native"
 """The folder beside the package whose files are compiled, and never imported."""
-_SHARED = ("batches.c", "batches.h", "lanes.h", "machine.c")
 _DIGITS = 16
 
 
@@ -71,16 +68,21 @@ def shared(listed: Sequence[Mapping[str, Any]], package: str) -> dict[str, str]:
             if entry["key"]
         ],
     }
-    found = {f"{FOLDER}/{path}": text for path, text in c.shared().items()}
-    for path in (*_SHARED, "machines.c", "machines.h"):
-        found[f"{FOLDER}/{path}"] = page(_templates().get_template(f"{path}.j2").render(known))
-    return found
+    listing = {
+        path: page(_templates().get_template(f"{path}.j2").render(known)) for path in ("machines.c", "machines.h")
+    }
+    return {f"{FOLDER}/{path}": text for path, text in {**_runtime(), **listing}.items()}
 
 
 def digest_of_shared() -> str:
     """The digest of the C that all machines share: structures, calls, and the Python object."""
-    own = {path: _templates().get_template(f"{path}.j2").render() for path in _SHARED}
-    return _digest({**c.shared(), **own})
+    return _digest(_runtime())
+
+
+def _runtime() -> dict[str, str]:
+    """The files that all machines share, whatever the package."""
+    programs = "lane_programs.h"
+    return {**c.shared(), **runtime(FOLDER), programs: page(_templates().get_template(f"{programs}.j2").render())}
 
 
 @cache
@@ -89,8 +91,6 @@ def _templates() -> Environment:
     even, odd = horner("zz")
     found.globals |= {
         "generated": GENERATED,
-        "edge": number(EDGE),
-        "largest": number(float(LARGEST)),
         "even": even,
         "odd": odd,
         "rotation": laid_out(lanes.rotation_lines()),

@@ -1,28 +1,29 @@
-"""The constants of the compiler that the runtimes of Python, C and JavaScript print: no template states one itself."""
+"""The constants of the compiler that the runtimes of Python, C and JavaScript read: they state none themselves."""
 
 from __future__ import annotations
 
 from derive.ir import cells, constants, roots
 from derive.ir.program import Status
 
-NUMBERS = {
-    **{name.lower(): float(vars(constants)[name]) for name in (
+_NUMBERS = {
+    **{name: float(vars(constants)[name]) for name in (
         *("EDGE", "FREE_ANGLE", "GEARED_TURN", "HELD", "LARGEST", "LEAST", "LIMIT"),
         *("ONE_TURN", "PIVOT", "SINGULAR", "SOLVABLE", "TIE", "UNLIMITED"),
     )},
-    "exact": float(constants.EXACT_ROTATION),
-    "largest_error": float(constants.ROTATION),
+    "EXACT": float(constants.EXACT_ROTATION),
+    "LARGEST_ERROR": float(constants.ROTATION),
+    "TRIALS": constants.TRIALS,
+    "FINISHED": constants.FINISHED,
 }  # fmt: skip
-"""The bounds and tolerances, by their names in the templates."""
-COUNTS = {"trials": constants.TRIALS, "finished": constants.FINISHED}
-"""The bounds of iterations, which are written as they are."""
-OF_THE_SEARCH: dict[str, float | tuple[float, ...]] = {
+"""Bounds, tolerances, and bounds of iterations."""
+_OF_THE_SEARCH = {
     name: (vars(cells) | vars(roots))[name] for name in (
         *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
         *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
     )
 }  # fmt: skip
-"""The constants of the root search."""
+CONSTANTS: dict[str, float | tuple[float, ...]] = dict(sorted((_NUMBERS | _OF_THE_SEARCH).items()))
+"""The constants by their names in the runtimes."""
 _MEANINGS = {
     Status.OK: "no error",
     Status.NOT_INITIALIZED: "a parameter is not allowed",

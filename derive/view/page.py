@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
 
-from derive.emit.language import TEMPLATES
+from derive.emit.language import RUNTIME, TEMPLATES
 from derive.view.node import installed, run
 
-_SOURCE = TEMPLATES / "view"
+_SOURCE = RUNTIME / "view"
+_PAGE = TEMPLATES / "view" / "page.html"
 _TARGET = "es2022"
 _POLICY = (
     "default-src 'none'; script-src {program}; worker-src blob:; style-src {style}; img-src data: blob:; "
@@ -79,7 +80,7 @@ def page(content: Content, packages: Path) -> str:
         "program": _program(content.modules, modules),
     }
     values["policy"] = _POLICY.format(program=_digest(values["program"]), style=_digest(values["style"]))
-    return _FIELDS.sub(lambda found: values[found[1]], (_SOURCE / "page.html").read_text(encoding="utf-8"))
+    return _FIELDS.sub(lambda found: values[found[1]], _PAGE.read_text(encoding="utf-8"))
 
 
 def _digest(text: str) -> str:

@@ -47,15 +47,15 @@ def compiled(part: Part, options: tuple[str, ...] = SANITIZED) -> Path:
 def compiled_with_a_fault(part: Part, file: str, found: str, wrong: str, options: tuple[str, ...]) -> Path:
     """The same with a change of one place of one source, which must be there; the other source is as it was.
 
-    file: the begin of the name of the source; options: of the compiler.
+    file: the begin of the name of the source, or the name of a shared header; options: of the compiler.
     """
     texts = dict(files_of(part))
-    path = next(path for path in texts if path.startswith(file) and path.endswith(".c"))
+    path = next(path for path in texts if path == file or path.startswith(file) and path.endswith(".c"))
     changed = re.sub(found, wrong, texts[path])
     assert changed != texts[path], f"{path} does not hold {found}"
     folder = written(texts | {path: changed})
     calls, driver = _common(options)
-    return _linked(part, folder, options, ("softkin.c" if path == "softkin.c" else calls, driver))
+    return _linked(part, folder, options, ("softkin.c" if path.startswith("softkin") else calls, driver))
 
 
 def _linked(part: Part, folder: Path, options: tuple[str, ...], common: tuple[str, str]) -> Path:

@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from derive.emit.language import files_in
 from tests.command.files import RAIL, ROOT
 
 
@@ -64,9 +65,10 @@ def run(installed: Path, folder: Path, program: str) -> None:
 
 def test_what_is_installed_derives_a_machine(installed: Path, tmp_path: Path) -> None:
     """No file of the source tree is read: templates and runtime come with the compiler; nor is one of them missing."""
-    templates = {str(p.relative_to(ROOT / "templates")) for p in (ROOT / "templates").rglob("*") if p.is_file()}
-    copied = {str(p.relative_to(installed / "derive/templates")) for p in (installed / "derive/templates").rglob("*")}
-    assert templates <= copied
+    for name in ("templates", "runtime"):
+        assert {p.relative_to(ROOT / name) for p in files_in(ROOT / name)} <= {
+            p.relative_to(installed / "derive" / name) for p in files_in(installed / "derive" / name)
+        }
     (tmp_path / "rail.py").write_text(RAIL)
     run(installed, tmp_path, RUN)
     assert (tmp_path / "build/st/own/Rail.st").is_file() and (tmp_path / "build/python/rail/_core.py").is_file()

@@ -18,6 +18,11 @@ SOURCES = ROOT / "generated" / "python" / "native"
 FOLDER = ROOT / "build" / "native"
 """Not in `generated/`, which holds what is generated and nothing else; tests find it on the path."""
 EXTENSION = "_softkin_native"
+SHARED = (
+    *("softkin.c", "softkin.h", "softkin_constants.h", "softkin_rotation.h", "batches.c", "batches.h"),
+    *("lanes.h", "lane_programs.h", "machine.c", "machines.c", "machines.h"),
+)
+"""The files that hold no machine of their own."""
 STRICT = (
     "-std=c99",
     "-Wall",
@@ -78,7 +83,7 @@ def built(folder: Path = FOLDER, options: Sequence[str] = ("-O3",), sources: Pat
 
 
 def _is_of_a_machine(path: Path) -> bool:
-    return path.name not in ("softkin.h", "batches.h", "lanes.h", "machines.h")
+    return path.name not in SHARED
 
 
 def _object(source: Path, folder: Path, command: Sequence[str], shared: str) -> Path:

@@ -8,11 +8,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tests.native.build import EXTENSION, ROOT, SANITIZED, SOURCES, built, compiler
+from tests.native.build import EXTENSION, ROOT, SANITIZED, SHARED, SOURCES, built, compiler
 
 FEW = ("articulatedrobot_6dof", "crane", "wrist2", "scara4_zccoupled_type1", "pos_rrr")
 """The machines of the extension that is built for this: their formulas are tested elsewhere, in all machines."""
-SHARED = ("softkin.c", "softkin.h", "batches.c", "batches.h", "lanes.h", "machine.c", "machines.c", "machines.h")
 CODE = """
 import warnings
 warnings.simplefilter("ignore")

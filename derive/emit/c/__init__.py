@@ -1,4 +1,4 @@
-"""C99: a header and a source a mechanism, on the one source that all share in `templates/c`.
+"""C99: a header and a source a mechanism, on the one source that all share in `runtime/c`.
 
 It may import no other folder of `emit`. It writes these files on demand, and the native core of the Python package.
 

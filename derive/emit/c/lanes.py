@@ -131,7 +131,7 @@ def rotation_lines() -> list[str]:
         *(_missing(condition, printer) for condition in surely_exact()),
         "misses[lane] = missed;",
     ]
-    head = f"static void find_inexact({_GIVEN}, double *SOFTKIN_RESTRICT misses)"
+    head = f"static inline void softkin_lanes_inexact({_GIVEN}, double *SOFTKIN_RESTRICT misses)"
     return function_of("Lanes miss where the rotation is not exact.", head, block(_LOOP, lane))
 
 

@@ -29,27 +29,23 @@ from derive.emit.c.program import (
 )
 from derive.emit.c.setup import constants_read, setup
 from derive.emit.interface import arguments_of, read_by
-from derive.emit.language import GENERATED, Part, environment, short_name
-from derive.emit.shared_constants import COUNTS, NUMBERS, OF_THE_SEARCH, STATUSES
-from derive.ir.roots import SHIFTS
+from derive.emit.language import GENERATED, Part, environment, runtime, short_name
+from derive.emit.shared_constants import CONSTANTS, STATUSES
 from derive.ir.symbols import symbols_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
-from derive.report.reasons import reasons_of, reasons_of_rotation
+from derive.report.reasons import NO_MEANING, reasons_of, reasons_of_rotation
 
 name = "c"
 MOST_AXES, MOST_BRANCHES, MOST_DIRECTIONS, MOST_LISTED = 24, 12, 6, 10
-_SHARED = ("softkin.c", "softkin.h")
+_WRITTEN = ("softkin_constants.h", "softkin_rotation.h")
+"""The files beside the runtime that hold constants and a program."""
 _TAKEN = frozenset(
-    "softkin batches lanes machine machines assert complex ctype errno fenv float inttypes iso646 limits locale math "
-    "setjmp signal stdalign stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time "
-    "uchar wchar wctype".split()
+    "softkin softkin_constants softkin_rotation batches lane_programs lanes machine machines assert complex ctype "
+    "errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic stdbool stddef "
+    "stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype".split()
 )
 """Names that no machine may have: those of shared files, here or in the core of the Python package, and of headers."""
-_CELLS, _PLACES, _SOLUTIONS = 64, 128, 128
-"""The sizes of the arrays of a scan: cells that are still to be cut, candidates, roots of all branches together."""
-_STACK = 36
-"""The stack that a scan needs (kB): its cells and candidates, and little more."""
 
 
 def part(kinematics: Kinematics) -> Part | None:
@@ -81,7 +77,7 @@ def files(parts: Sequence[Part]) -> dict[str, str]:
 @cache
 def shared() -> Mapping[str, str]:
     """The files that are the same for all mechanisms."""
-    return {path: page(_templates().get_template(f"{path}.j2").render()) for path in _SHARED}
+    return runtime(name) | {path: page(_templates().get_template(f"{path}.j2").render()) for path in _WRITTEN}
 
 
 def module_name(mechanism: str) -> str:
@@ -104,25 +100,26 @@ def _fits(kin: Kinematics) -> bool:
 def _templates() -> Environment:
     templates = environment(name).overlay(variable_start_string="@{", variable_end_string="}@")
     templates.filters |= {"text": text}
-    templates.globals |= COUNTS | {key: number(value) for key, value in NUMBERS.items()}
     rotation = function_lines(rotation_function(), "", {}, reasons_of_rotation())
     templates.globals |= {
         "generated": GENERATED,
         "statuses": STATUSES,
         "rotation": laid_out(rotation),
-        "search_constants": {key: f"{value!r}" for key, value in OF_THE_SEARCH.items() if key != "SHIFTS"},
-        "shifts": list_of(map(number, SHIFTS)),
+        "constants": {name: _literal(value) for name, value in CONSTANTS.items()},
+        "no_meaning": NO_MEANING,
         "most_axes": MOST_AXES,
         "most_branches": MOST_BRANCHES,
         "most_directions": MOST_DIRECTIONS,
         "most_listed": MOST_LISTED,
-        "most_solutions": _SOLUTIONS,
         "most_together": MOST_SLOTS,
-        "most_cells": _CELLS,
-        "most_places": _PLACES,
-        "stack": _STACK,
     }
     return templates
+
+
+def _literal(value: float | tuple[float, ...]) -> str:
+    if isinstance(value, tuple):
+        return list_of(map(number, value))
+    return repr(value) if isinstance(value, int) else number(value)
 
 
 def _known(kin: Kinematics, module: str) -> dict[str, Any]:

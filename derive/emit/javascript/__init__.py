@@ -1,4 +1,4 @@
-"""JavaScript: an ES module a mechanism, written on demand, on the runtime in `templates/javascript`.
+"""JavaScript: an ES module a mechanism, written on demand, on the runtime in `runtime/javascript`.
 
 It may import no other folder of `emit`.
 

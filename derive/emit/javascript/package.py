@@ -21,8 +21,8 @@ from derive.emit.javascript.printer import PRINTER, RUNTIME, list_of, spelled, t
 from derive.emit.javascript.program import function_lines, looked_for
 from derive.emit.javascript.refusal import Refusals
 from derive.emit.javascript.setup import setup_lines
-from derive.emit.language import GENERATED, Part, environment, short_name
-from derive.emit.shared_constants import COUNTS, NUMBERS, OF_THE_SEARCH, STATUSES
+from derive.emit.language import GENERATED, Part, environment, runtime, short_name
+from derive.emit.shared_constants import CONSTANTS, STATUSES
 from derive.ir.program import FindRoot
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
@@ -30,12 +30,9 @@ from derive.report.reasons import reasons_of, reasons_of_rotation
 
 name = "javascript"
 _VERSION = "0.1.0"
-_RUNTIME = tuple(
-    f"softkin/{name}.js"
-    for name in ("configuration", "input", "limits", "numbers", "refusal", "roots", "rotation", "scene", "softkin")
-)
-"""The files that are the same for all mechanisms; a machine may have the name of one of them."""
 _AROUND = ("index.js", "package.json")
+_WRITTEN = ("softkin/constants.js", "softkin/rotation.js")
+"""The files beside the runtime that hold constants and a program."""
 _TEXT = 90
 """The largest number of columns of a text; a longer one is written as a sum."""
 
@@ -57,7 +54,8 @@ def files(parts: Sequence[Part]) -> dict[str, str]:
     """All files: path → text."""
     index = sorted((part["index"] for part in parts), key=lambda entry: str(entry["module"]))
     known = {"index": index}
-    found = {path: _templates().get_template(f"{path}.j2").render(known) for path in (*_RUNTIME, *_AROUND)}
+    found = runtime(name)
+    found |= {path: _templates().get_template(f"{path}.j2").render(known) for path in (*_AROUND, *_WRITTEN)}
     for one in parts:
         found |= one["files"]
     return found
@@ -73,13 +71,12 @@ def module_name(mechanism: str) -> str:
 def _templates() -> Environment:
     templates = environment(name).overlay(variable_start_string="<<", variable_end_string=">>")
     templates.filters |= {"text": text}
-    templates.globals |= COUNTS | {key: PRINTER.number(value) for key, value in NUMBERS.items()}
     templates.globals |= {
         "generated": GENERATED,
         "version": _VERSION,
         "statuses": STATUSES,
         "rotation": laid_out(function_lines(rotation_function(), Refusals(reasons_of_rotation()))),
-        "search_constants": {key: _literal(value) for key, value in OF_THE_SEARCH.items()},
+        "constants": {name: _literal(value) for name, value in CONSTANTS.items()},
     }
     return templates
 

@@ -1,7 +1,7 @@
 """The Python package.
 
-It may import these folders of `emit`: `c`, `javascript`, `plcopen`, `picture`. Text that is the same for every
-mechanism stands in `templates/python/softkin`, where each module says what it holds. On arrays there is only the
+It may import these folders of `emit`: `c`, `javascript`, `plcopen`, `picture`. What is the same for every
+mechanism stands in `runtime/python/softkin`, where each module says what it holds. On arrays there is only the
 program of one branch: all branches at once are a call in which each branch has both signs, along an axis of the array.
 On plain numbers the branches are unrolled (`straight_line`).
 
@@ -18,7 +18,7 @@ printer: expressions, on plain numbers and on arrays
 program: a program as a method on plain numbers, with early returns
 refusal: how a method on plain numbers refuses
 rotation: the repair of the commanded rotation
-runtime: the templates, with the constants that they print
+runtime: the templates, with the constants that they and the runtime read
 setup: the setup program, which computes the constants of a machine
 straight_line/: all branches in a straight line
 """

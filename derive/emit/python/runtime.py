@@ -1,4 +1,4 @@
-"""The templates of the package, with the constants of the compiler that they print: the runtime states none itself."""
+"""The templates of the package, with the constants of the compiler, which the runtime imports."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from derive.emit.python.arrays import OF_A_SEARCH
 from derive.emit.python.layout import documented
 from derive.emit.python.printer import literal
 from derive.emit.python.rotation import rotation_functions
-from derive.emit.shared_constants import COUNTS, NUMBERS, OF_THE_SEARCH, STATUSES
+from derive.emit.shared_constants import CONSTANTS, STATUSES
 from derive.ir import cells, roots
 from derive.ir.reason import Why
 from derive.report.reasons import NO_MEANING, OTHER_TURN
@@ -27,8 +27,6 @@ _VERSION = "0.1.0"
 
 _TEXT = 110
 """The most columns of a line of a docstring."""
-_CHUNK = 8192
-"""The rows of a batch that are computed together: an array then has 64 KiB."""
 
 
 @cache
@@ -36,30 +34,31 @@ def templates() -> Environment:
     """The templates, which know the constants."""
     found = environment(NAME)
     found.filters |= {"paragraph": _paragraph, "literal": entries.literal}
-    found.globals |= COUNTS | {key: literal(value) for key, value in NUMBERS.items()}
     found.globals |= {
         "generated": GENERATED,
         "statuses": STATUSES,
         "version": _VERSION,
-        "chunk": _CHUNK,
-        "values_of_a_search": OF_A_SEARCH,
         "rotation": rotation_functions(),
-        "search_constants": {key: _literal(value) for key, value in OF_THE_SEARCH.items()},
-        "one_turn": literal(int(NUMBERS["one_turn"])),
+        "constants": _constants(),
         "cells": _after_docstring(Path(cells.__file__).read_text()),
         "roots": _after_docstring(Path(roots.__file__).read_text()),
-        "no_meaning": NO_MEANING,
-        "below": entries.literal(Why.BELOW.value),
-        "above": entries.literal(Why.ABOVE.value),
-        "other_turn": entries.literal(OTHER_TURN),
-        "kinds_of_parameters": {role.value: entries.usual(role) for role in Role},
+        "usual": {role.value: entries.usual(role) for role in Role},
     }
     return found
 
 
-def _literal(value: float | tuple[float, ...]) -> str:
-    """The literal of a constant of the search."""
-    return f"({', '.join(map(literal, value))})" if isinstance(value, tuple) else literal(value)
+def _constants() -> dict[str, str]:
+    """The literals of the constants that modules of the runtime import, by their names."""
+    texts = {"ABOVE": Why.ABOVE.value, "BELOW": Why.BELOW.value, "NO_MEANING": NO_MEANING, "OTHER_TURN": OTHER_TURN}
+    values = {**CONSTANTS, **texts, "OF_A_SEARCH": OF_A_SEARCH}
+    return {name: _literal(values[name]) for name in sorted(values)}
+
+
+def _literal(value: str | float | tuple[float, ...]) -> str:
+    """The literal of a constant."""
+    if isinstance(value, tuple):
+        return f"({', '.join(map(literal, value))})"
+    return entries.literal(value) if isinstance(value, str) else literal(value)
 
 
 def _after_docstring(source: str) -> str:

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from jinja2 import Environment
 
-from derive.emit.language import GENERATED, TEMPLATES, Part, environment
+from derive.emit.language import GENERATED, TEMPLATES, Part, environment, runtime
 from derive.emit.plcopen import document as plcopen
 from derive.emit.plcopen.objects import Object, objects_of, ruled
 from derive.emit.plcopen.uses import needed
@@ -103,12 +103,13 @@ def _objects(
 ) -> Iterator[tuple[str, tuple[Object, ...]]]:
     """The objects of every file, by the path without its ending."""
     rotation, limits = rotation_function(contract), limits_function(contract)
-    for path in sorted((TEMPLATES / _FOLDER / _SHARED).glob("*.st.j2")):
-        text = templates.get_template(f"{_SHARED}/{path.name}").render(
-            contract.spelling, rotation=rotation, limits=limits, names=contract.names
-        )
-        name = path.name.removesuffix(".st.j2")
-        yield f"{_SHARED}/{name}", objects_of(text, name)
+    shared = {path.removesuffix(".st"): text for path, text in runtime(_FOLDER).items()}
+    for path in (TEMPLATES / _FOLDER / _SHARED).glob("*.st.j2"):
+        shared[f"{_SHARED}/{path.name.removesuffix('.st.j2')}"] = templates.get_template(
+            f"{_SHARED}/{path.name}"
+        ).render(contract.spelling, rotation=rotation, limits=limits, names=contract.names)
+    for name, text in sorted(shared.items()):
+        yield name, objects_of(text, name.removeprefix(f"{_SHARED}/"))
     if (own := contract.own_interface) is not None:
         yield f"{_SHARED}/{own}", objects_of(interface_text(contract, templates))
     base = objects_of(base_text(contract, templates))

@@ -77,29 +77,11 @@ typedef struct {
   const softkin_table *positions, *rotations, *configurations, *references;
 } asked;
 
-/* Lanes miss where the rotation is not exact. */
-static void find_inexact(const softkin_lanes *given, double *SOFTKIN_RESTRICT misses) {
-  for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
-    const double r11 = given->rotation[0][lane], r12 = given->rotation[1][lane],
-        r13 = given->rotation[2][lane], r21 = given->rotation[3][lane], r22 = given->rotation[4][lane],
-        r23 = given->rotation[5][lane], r31 = given->rotation[6][lane], r32 = given->rotation[7][lane],
-        r33 = given->rotation[8][lane];
-    double missed = misses[lane];
-    missed += fabs(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-13 ? 0.0 : 1.0;
-    missed += fabs(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-13 ? 0.0 : 1.0;
-    missed += fabs(r11*r12 + r21*r22 + r31*r32) <= 1e-13 ? 0.0 : 1.0;
-    missed += fabs(r13 + r22*r31 - r21*r32) <= 1e-13 ? 0.0 : 1.0;
-    missed += fabs(r23 + r11*r32 - r12*r31) <= 1e-13 ? 0.0 : 1.0;
-    missed += fabs(r33 + r12*r21 - r11*r22) <= 1e-13 ? 0.0 : 1.0;
-    misses[lane] = missed;
-  }
-}
-
 /* Lanes miss where the number of one is none, or is not of reasonable size. */
 static void find_unreasonable(int count, double (*numbers)[SOFTKIN_LANES], double *misses) {
   for (int i = 0; i < count; i += 1) {
     for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
-      misses[lane] += fabs(numbers[i][lane]) <= 1e9 ? 0.0 : 1.0;
+      misses[lane] += fabs(numbers[i][lane]) <= SOFTKIN_LARGEST ? 0.0 : 1.0;
     }
   }
 }
@@ -111,7 +93,7 @@ static void choose_turns(const softkin_mechanism *kind, double (*near)[SOFTKIN_L
     double *own = axes[kind->period_axes[i]];
     for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
       own[lane] = softkin_lane_turn(own[lane], near[i][lane]);
-      misses[lane] += fabs(own[lane] - near[i][lane]) <= 180.0 + 2.0*1e-9 ? 0.0 : 1.0;
+      misses[lane] += fabs(own[lane] - near[i][lane]) <= 180.0 + 2.0*SOFTKIN_EDGE ? 0.0 : 1.0;
     }
   }
 }
@@ -155,7 +137,7 @@ static void take_lanes(const softkin_mechanism *kind, const asked *given, ptrdif
   find_unreasonable(3, lanes->position, misses);
   find_unreasonable(kind->axis_count, lanes->reference, misses);
   if (kind->reads_rotation) {
-    find_inexact(lanes, misses);
+    softkin_lanes_inexact(lanes, misses);
   }
 }
 

@@ -48,6 +48,8 @@ typedef struct {
   softkin_regular_all *all;
 } softkin_in_lanes;
 
+#include "lane_programs.h"
+
 /** The square root of x, and 0 for a negative x. */
 static inline double softkin_lane_root(double x) {
   return sqrt(x > 0.0 ? x : 0.0);
@@ -62,13 +64,8 @@ static inline double softkin_lane_angle(double y, double x) {
   const double above = is_far ? small - large : small, below = is_far ? small + large : large;
   const double t = above/(below > 0.0 ? below : 1.0);
   const double z = t*t, zz = z*z;
-  const double even = -0.3333333333333333
-      + zz*(-0.14285714284666542
-      + zz*(-0.09090904578123903
-      + zz*(-0.06664511447381948 + zz*(-0.0508544973794026 + zz*-0.01917688711906226))));
-  const double odd = 0.1999999999999552
-      + zz*(0.11111111015256361 + zz
-      *(0.07692183190826087 + zz*(0.0585814891280221 + zz*0.03923165829558719)));
+  const double even = softkin_lane_even(zz);
+  const double odd = softkin_lane_odd(zz);
   const double first = (is_far ? 0.25*SOFTKIN_LANE_PI : 0.0) + (t + t*z*(even + z*odd));
   const double quarter = across > along ? 0.5*SOFTKIN_LANE_PI - first : first;
   const double half = x < 0.0 ? SOFTKIN_LANE_PI - quarter : quarter;
@@ -78,11 +75,11 @@ static inline double softkin_lane_angle(double y, double x) {
 /** `softkin_on_turn`, for numbers of reasonable size; else some turn. */
 static inline double softkin_lane_turn(double value, double centre) {
   const double away = value - centre;
-  const double turns = (away + (180.0 + 1e-9))/360.0;
-  const double counted = fabs(turns) <= 1e9 ? turns : 0.0;
+  const double turns = (away + (180.0 + SOFTKIN_EDGE))/360.0;
+  const double counted = fabs(turns) <= SOFTKIN_LARGEST ? turns : 0.0;
   const double whole = (int)counted;
   const double below = whole > counted ? whole - 1.0 : whole;
-  return away >= -180.0 - 1e-9 && away < 180.0 - 1e-9 ? value : value - 360.0*below;
+  return away >= -180.0 - SOFTKIN_EDGE && away < 180.0 - SOFTKIN_EDGE ? value : value - 360.0*below;
 }
 
 #endif

@@ -3,42 +3,18 @@
 
 #include "softkin.h"
 
-#define LARGEST 1e9
 #define READY UINT32_C(0x50F7C1C5)
 #define MOST_TURNS 1e18 /* with more turns than this there is no nearest angle */
-#define EDGE 1e-9
-#define COINCIDENT 1e-11 /* branches meet where their margin is at most this in size */
+#define COINCIDENT SOFTKIN_FREE_ANGLE /* branches meet where their margin is at most this in size */
 #define SAME 2e-3 /* axes (degrees, lengths) that differ by less are one solution of a searched branch */
-#define UNLIMITED 1e12
 #define PI 3.14159265358979323846
 
-static const char *const MEANINGS[] = {
-    "no error",
-    "a parameter is not allowed",
-    "numbers must be finite and at most 1e9 in size, and a rotation must be one",
-    "out of reach or beyond a limit",
-    "the mechanism cannot be assembled there, or a joint is undetermined",
-    "this pair of position and orientation kinematics is impossible",
-};
-
-static const char *const NO_MEANING[SOFTKIN_MOST_BRANCHES] = {
-    "byte 0 of the configuration means nothing",
-    "byte 1 of the configuration means nothing",
-    "byte 2 of the configuration means nothing",
-    "byte 3 of the configuration means nothing",
-    "byte 4 of the configuration means nothing",
-    "byte 5 of the configuration means nothing",
-    "byte 6 of the configuration means nothing",
-    "byte 7 of the configuration means nothing",
-    "byte 8 of the configuration means nothing",
-    "byte 9 of the configuration means nothing",
-    "byte 10 of the configuration means nothing",
-    "byte 11 of the configuration means nothing",
-};
+static const char *const MEANINGS[] = SOFTKIN_MEANINGS;
+static const char *const NO_MEANING[] = SOFTKIN_NO_MEANING;
 
 const char *softkin_meaning(softkin_status status) {
   const int number = (int)status;
-  return number >= 0 && number < 6 ? MEANINGS[number] : "no status";
+  return number >= 0 && number < (int)(sizeof MEANINGS/sizeof *MEANINGS) ? MEANINGS[number] : "no status";
 }
 
 softkin_status softkin_refuse(softkin_refusal *why, softkin_status status, const char *reason,
@@ -63,10 +39,11 @@ static softkin_status bad(softkin_refusal *why, const char *reason) {
 
 /* ---- numbers ---- */
 
-/* value + 360 k in [centre - 180, centre + 180), in degrees; the interval is shifted down by EDGE: so a value
+/* value + 360 k in [centre - 180, centre + 180), in degrees; the interval is shifted down by SOFTKIN_EDGE: so
+ * a value
  * on an edge stays on its side in spite of rounding. */
 double softkin_nearest_period(double value, double centre) {
-  const double turns = (value - centre + (180.0 + EDGE))/360.0;
+  const double turns = (value - centre + (180.0 + SOFTKIN_EDGE))/360.0;
   return turns > -MOST_TURNS && turns < MOST_TURNS ? value - 360.0*floor(turns) : NAN;
 }
 
@@ -80,7 +57,8 @@ double softkin_nearest_on_arc(double angle, double centre, double half) {
   return centre + fmin(fmax(away - 2.0*PI*floor(turns), -half), half);
 }
 
-/* LU decomposition with partial pivoting. Singular, or not solved: a number that is NaN or beyond 1e30. */
+/* LU decomposition with partial pivoting. Singular, or not solved: a number that is NaN or beyond
+ * SOFTKIN_SOLVABLE. */
 double softkin_solve(double *system, int rows, int columns) {
   const int width = rows + columns;
   double largest = 0.0, determinant = 1.0;
@@ -88,17 +66,17 @@ double softkin_solve(double *system, int rows, int columns) {
   for (int i = 0; i < rows; i += 1) {
     for (int j = 0; j < width; j += 1) {
       const double size = fabs(system[i*width + j]);
-      is_solvable = is_solvable && size <= 1e30;
+      is_solvable = is_solvable && size <= SOFTKIN_SOLVABLE;
       largest = j < rows && size > largest ? size : largest;
     }
   }
-  is_solvable = is_solvable && largest >= 1.0/1e30;
+  is_solvable = is_solvable && largest >= 1.0/SOFTKIN_SOLVABLE;
   for (int k = 0; k < rows && is_solvable; k += 1) {
     int best = k;
     for (int i = k + 1; i < rows; i += 1) {
       best = fabs(system[i*width + k]) > fabs(system[best*width + k]) ? i : best;
     }
-    if (!(fabs(system[best*width + k]) > 1e-14*largest)) {
+    if (!(fabs(system[best*width + k]) > SOFTKIN_PIVOT*largest)) {
       is_solvable = false;
       break;
     }
@@ -143,7 +121,7 @@ int8_t softkin_branch_byte(double margin) {
 }
 
 int8_t softkin_turn_of(double value) {
-  const double turn = floor((value + 180.0 + EDGE)/360.0);
+  const double turn = floor((value + 180.0 + SOFTKIN_EDGE)/360.0);
   const double number = turn >= 0.0 ? turn + 1.0 : turn;
   return (int8_t)(number >= -127.0 && number <= 127.0 ? number : 0.0);
 }
@@ -167,8 +145,8 @@ softkin_status softkin_window_of(const softkin_limit *limit, double lower, doubl
   }
   double low = is_given ? lower : otherwise != NULL ? otherwise[0] : 0.0;
   double high = is_given ? upper : otherwise != NULL ? otherwise[1] : 0.0;
-  const double tolerance = 1e-9 + (isfinite(low) ? 1e-9*fabs(low) : 0.0)
-      + (isfinite(high) ? 1e-9*fabs(high) : 0.0);
+  const double tolerance = SOFTKIN_LIMIT + (isfinite(low) ? SOFTKIN_LIMIT*fabs(low) : 0.0)
+      + (isfinite(high) ? SOFTKIN_LIMIT*fabs(high) : 0.0);
   const bool is_open = !(isfinite(low) && isfinite(high));
   if (is_open && otherwise != NULL) {
     low = fmax(low, otherwise[0]);
@@ -181,16 +159,16 @@ softkin_status softkin_window_of(const softkin_limit *limit, double lower, doubl
   const bool is_wide = !(has_limits && is_tested);
   *ends = (softkin_ends){has_limits ? low : -INFINITY, has_limits ? high : INFINITY};
   if (is_open) {
-    window->lowest = is_tested && isfinite(low) ? low - tolerance : -UNLIMITED;
-    window->highest = is_tested && isfinite(high) ? high + tolerance : UNLIMITED;
+    window->lowest = is_tested && isfinite(low) ? low - tolerance : -SOFTKIN_UNLIMITED;
+    window->highest = is_tested && isfinite(high) ? high + tolerance : SOFTKIN_UNLIMITED;
     window->single = false;
     window->middle = 0.0;
     return SOFTKIN_OK;
   }
-  const bool is_single = turns == 0.0 ? high - low <= 350.0 + tolerance
-                                      : (high - low + 2.0*tolerance)*turns <= 350.001;
-  window->lowest = is_wide ? -UNLIMITED : low - tolerance;
-  window->highest = is_wide ? UNLIMITED : high + tolerance;
+  const bool is_single = turns == 0.0 ? high - low <= SOFTKIN_ONE_TURN + tolerance
+                                      : (high - low + 2.0*tolerance)*turns <= SOFTKIN_GEARED_TURN;
+  window->lowest = is_wide ? -SOFTKIN_UNLIMITED : low - tolerance;
+  window->highest = is_wide ? SOFTKIN_UNLIMITED : high + tolerance;
   window->single = has_limits && is_single;
   window->middle = 0.5*low + 0.5*high;
   return SOFTKIN_OK;
@@ -198,85 +176,7 @@ softkin_status softkin_window_of(const softkin_limit *limit, double lower, doubl
 
 /* ---- the rotation of a caller ---- */
 
-/* Every entry of |R^T R - I| may be up to 0.0001, as in single precision. Above 1e-12 the
- * rotation is repaired: z keeps its direction, x is made perpendicular to it, and y = z x x. */
-/* The rotation as it is used. */
-static softkin_status find_rotation(const softkin_frame *frame, softkin_frame *repaired,
-    softkin_refusal *why) {
-  const double r11 = frame->rotation[0][0], r12 = frame->rotation[0][1], r13 = frame->rotation[0][2],
-      r21 = frame->rotation[1][0], r22 = frame->rotation[1][1], r23 = frame->rotation[1][2],
-      r31 = frame->rotation[2][0], r32 = frame->rotation[2][1], r33 = frame->rotation[2][2];
-  if (!softkin_are_reasonable((const double[]){r11, r12, r13, r21, r22, r23, r31, r32, r33}, 9)) {
-    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
-  }
-  const double uneven_x = fabs(r11*r11 + r21*r21 + r31*r31 - 1.0);
-  const double uneven_y = fabs(r12*r12 + r22*r22 + r32*r32 - 1.0);
-  const double uneven_z = fabs(r13*r13 + r23*r23 + r33*r33 - 1.0);
-  /* columns not of length one; was the frame converted from REAL? */
-  if (!(uneven_x <= 0.0001 && uneven_y <= 0.0001 && uneven_z <= 0.0001)) {
-    return softkin_refuse(why, SOFTKIN_BAD_INPUT,
-        "columns not of length one; was the frame converted from REAL?", "",
-        (uneven_z > (uneven_y > uneven_x ? uneven_y : uneven_x) ? uneven_z
-        : (uneven_y > uneven_x ? uneven_y : uneven_x)), 0);
-  }
-  const double askew_xy = fabs(r11*r12 + r21*r22 + r31*r32);
-  const double askew_xz = fabs(r11*r13 + r21*r23 + r31*r33);
-  const double askew_yz = fabs(r12*r13 + r22*r23 + r32*r33);
-  /* columns not at right angles; was the frame converted from REAL? */
-  if (!(askew_xy <= 0.0001 && askew_xz <= 0.0001 && askew_yz <= 0.0001)) {
-    return softkin_refuse(why, SOFTKIN_BAD_INPUT,
-        "columns not at right angles; was the frame converted from REAL?", "",
-        (askew_yz > (askew_xz > askew_xy ? askew_xz : askew_xy) ? askew_yz
-        : (askew_xz > askew_xy ? askew_xz : askew_xy)), 0);
-  }
-  /* a right-handed frame */
-  if (!(r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0)) {
-    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: a right-handed frame", "", 0.0, 0);
-  }
-  double made_r11, made_r12, made_r13, made_r21, made_r22, made_r23, made_r31, made_r32, made_r33;
-  if (askew_xy <= 1e-12 && askew_xz <= 1e-12 && askew_yz <= 1e-12 && uneven_x <= 1e-12 && uneven_y <= 1e-12
-      && uneven_z <= 1e-12) {
-    made_r11 = r11;
-    made_r12 = r12;
-    made_r13 = r13;
-    made_r21 = r21;
-    made_r22 = r22;
-    made_r23 = r23;
-    made_r31 = r31;
-    made_r32 = r32;
-    made_r33 = r33;
-  } else {
-    /* z keeps its direction, which is that of the tool */
-    const double length_z = sqrt(r13*r13 + r23*r23 + r33*r33);
-    const double divisor_z = length_z > 0.5 ? length_z : 1.0;
-    made_r13 = r13/divisor_z;
-    made_r23 = r23/divisor_z;
-    made_r33 = r33/divisor_z;
-    const double along_z = made_r13*r11 + made_r23*r21 + made_r33*r31;
-    const double across_z1 = r11 - along_z*made_r13;
-    const double across_z2 = r21 - along_z*made_r23;
-    const double across_z3 = r31 - along_z*made_r33;
-    /* x is made perpendicular to z */
-    const double length_x = sqrt(across_z1*across_z1 + across_z2*across_z2 + across_z3*across_z3);
-    const double divisor_x = length_x > 0.5 ? length_x : 1.0;
-    made_r11 = across_z1/divisor_x;
-    made_r12 = (across_z3*made_r23 - across_z2*made_r33)/divisor_x;
-    made_r21 = across_z2/divisor_x;
-    made_r22 = (across_z1*made_r33 - across_z3*made_r13)/divisor_x;
-    made_r31 = across_z3/divisor_x;
-    made_r32 = (across_z2*made_r13 - across_z1*made_r23)/divisor_x;
-  }
-  repaired->rotation[0][0] = made_r11;
-  repaired->rotation[0][1] = made_r12;
-  repaired->rotation[0][2] = made_r13;
-  repaired->rotation[1][0] = made_r21;
-  repaired->rotation[1][1] = made_r22;
-  repaired->rotation[1][2] = made_r23;
-  repaired->rotation[2][0] = made_r31;
-  repaired->rotation[2][1] = made_r32;
-  repaired->rotation[2][2] = made_r33;
-  return SOFTKIN_OK;
-}
+#include "softkin_rotation.h"
 
 /* ---- machines ---- */
 
@@ -297,11 +197,11 @@ static bool is_allowed(const softkin_parameter *parameter, double value) {
   if (parameter->end != 0 && isinf(value)) {
     return (value < 0.0) == (parameter->end < 0);
   }
-  if (parameter->is_never_zero && !(fabs(value) > 1e-12)) {
+  if (parameter->is_never_zero && !(fabs(value) > SOFTKIN_LEAST)) {
     return false;
   }
   const bool is_above = parameter->low_is_open ? value > parameter->low : value >= parameter->low;
-  return is_above && value <= parameter->high && value <= LARGEST;
+  return is_above && value <= parameter->high && value <= SOFTKIN_LARGEST;
 }
 
 softkin_status softkin_init(const softkin_mechanism *kind, void *machine, const void *parameters,
@@ -424,7 +324,7 @@ static double squared_distance(const softkin_mechanism *kind, const double *axes
   double total = 0.0;
   for (int i = 0; i < kind->distance_count; i += 1) {
     const int axis = kind->distance_axes[i];
-    if (!(fabs(reference[axis]) <= LARGEST)) {
+    if (!(fabs(reference[axis]) <= SOFTKIN_LARGEST)) {
       return 0.0;
     }
     total += (axes[axis] - reference[axis])*(axes[axis] - reference[axis]);
@@ -799,30 +699,11 @@ softkin_status softkin_inverse_all(const softkin_mechanism *kind, const void *ma
  * at s < 0), its number of cuts, and both ends: s, and the trial there. Every constant is explained in the
  * sources of the compiler. */
 
-#define AHEAD 1e-07
-#define ASIDE 0.47
-#define BENT 0.125
-#define CELLS 72
-#define CLOSING 60
-#define FINEST 1e-15
-#define FLAT 1e-07
-#define GAP 1e-06
-#define NARROW 1e-10
-#define NEAR_ZERO 0.5
-#define NEXT 1e-06
-#define RESERVE 126
-#define RIM 0.999
-#define SEAM 0.001
-#define TOUCHED 1e-12
-#define TURNED 0.7
-#define VANISHING 1e-10
-#define TRIALS 760
-#define FINISHED 24
 #define MOST_RESULTS (4 + 2*SOFTKIN_MOST_DIRECTIONS)
 #define MOST_CELLS 64
 #define MOST_PLACES 128
 
-static const double SHIFTS[] = {0.414, 0.192};
+static const double SHIFTS[] = SOFTKIN_SHIFTS;
 
 typedef struct {
   double base, scale;
@@ -894,13 +775,14 @@ static void add(scan *on, softkin_place place) {
 /* Store the place of a trial if it is a root. Where the guard vanishes, the value has half of its digits. */
 static void offer(scan *on, const path *map, double s, const double *results) {
   const double value = fabs(results[0]), guard = results[2];
-  if (!((value <= VANISHING && guard >= 0.0) || (value <= NEXT && fabs(guard) <= VANISHING))) {
+  if (!((value <= SOFTKIN_VANISHING && guard >= 0.0)
+      || (value <= SOFTKIN_NEXT && fabs(guard) <= SOFTKIN_VANISHING))) {
     return;
   }
   const softkin_place place = place_of(map, s);
   for (int i = 0; i < on->found; i += 1) {
     const softkin_place *other = &on->places[i];
-    if (other->side == place.side && other->freed == -1 && fabs(place.tried - other->tried) < FLAT) {
+    if (other->side == place.side && other->freed == -1 && fabs(place.tried - other->tried) < SOFTKIN_FLAT) {
       return;
     }
   }
@@ -940,16 +822,16 @@ static double turned_most(const scan *on, const double *first, const double *las
  * not. */
 static double between(double f, double df, double f1, double df1, double width) {
   if (df == df1) {
-    return ASIDE*width;
+    return SOFTKIN_ASIDE*width;
   }
   const double met = (f1 - f - df1*width)/(df - df1);
-  return met > 0.0 && met < width ? met : ASIDE*width;
+  return met > 0.0 && met < width ? met : SOFTKIN_ASIDE*width;
 }
 
 /* The place of the cut: where tangents meet, and near the middle in every third step. */
 static double where_to_cut(int cuts, double f, double df, double f1, double df1, double width) {
   if (cuts % 3 == 2) {
-    return ASIDE*width;
+    return SOFTKIN_ASIDE*width;
   }
   return fmin(fmax(between(f, df, f1, df1, width), 0.02*width), 0.98*width);
 }
@@ -966,7 +848,8 @@ static bool comes_back(double f, double df, double f1, double df1, double width)
   if (!(rest*(df - df1) > 0.0 && fabs(rest) < fabs(df - df1)*width)) {
     return true;
   }
-  const double margin = TOUCHED + NEAR_ZERO*fmin(fabs(f), fabs(f1)) + BENT*fabs(df1 - df)*width;
+  const double margin = SOFTKIN_TOUCHED + SOFTKIN_NEAR_ZERO*fmin(fabs(f), fabs(f1))
+      + SOFTKIN_BENT*fabs(df1 - df)*width;
   return sign*(f + df*between(f, df, f1, df1, width)) <= margin;
 }
 
@@ -996,7 +879,7 @@ static bool is_doubtful(double f, double a, double f1, double b) {
   if (f*f1 < 0.0) {
     return sign*a >= 0.0 && sign*b >= 0.0;
   }
-  return f*f1 > 0.0 && lowest <= NEAR_ZERO*fmin(fabs(f), fabs(f1));
+  return f*f1 > 0.0 && lowest <= SOFTKIN_NEAR_ZERO*fmin(fabs(f), fabs(f1));
 }
 
 /* Whether there may be more roots within a cell than the signs at its ends show. */
@@ -1020,12 +903,12 @@ static closed closing(scan *on, const cell *one, int column, double level) {
   copy(first, one->first);
   copy(last, one->last);
   double a = first[column] - level, b = last[column] - level;
-  for (int number = 0; number < CLOSING && a != 0.0 && b != 0.0; number += 1) {
+  for (int number = 0; number < SOFTKIN_CLOSING && a != 0.0 && b != 0.0; number += 1) {
     const bool is_better = fabs(a) <= fabs(b);
     const double slope = (is_better ? first : last)[column + 1];
     double s = (is_better ? low : high) - (slope != 0.0 ? (is_better ? a : b)/slope : 0.0);
     if (!(low < s && s < high) || slope == 0.0 || number % 3 == 2) {
-      s = low + ASIDE*(high - low);
+      s = low + SOFTKIN_ASIDE*(high - low);
     }
     evaluate(on, &one->map, s, results);
     const double value = results[column] - level;
@@ -1038,7 +921,8 @@ static closed closing(scan *on, const cell *one, int column, double level) {
       copy(last, results);
       b = value;
     }
-    if (fabs(value) <= FINEST*fabs(results[column + 1]) || extent_of(&one->map, low, high) <= FINEST) {
+    if (fabs(value) <= SOFTKIN_FINEST*fabs(results[column + 1])
+        || extent_of(&one->map, low, high) <= SOFTKIN_FINEST) {
       break;
     }
   }
@@ -1049,13 +933,13 @@ static closed closing(scan *on, const cell *one, int column, double level) {
 /* The cells around a zero of the guard, from the end with solutions to the other side. The sides join where
  * the guard is slightly above zero; on the strip from there to zero they are one curve. */
 static void over_the_end(scan *on, const cell *one) {
-  const double level = fmax(one->first[2], one->last[2]) > TOUCHED ? TOUCHED : 0.0;
+  const double level = fmax(one->first[2], one->last[2]) > SOFTKIN_TOUCHED ? SOFTKIN_TOUCHED : 0.0;
   const double meet = closing(on, one, 2, level).best;
   const double rim = closing(on, one, 2, 0.0).best;
   const double end = one->map.base + one->map.scale*meet;
   const double within = one->map.base + one->map.scale*(one->first[2] >= 0.0 ? one->low : one->high);
   const path curve = {end, within - end, true}, strip = {end, one->map.scale*(rim - meet), false};
-  const double ends[3][2] = {{-0.5, 0.5}, {0.5, 1.0}, {0.0, RIM}};
+  const double ends[3][2] = {{-0.5, 0.5}, {0.5, 1.0}, {0.0, SOFTKIN_RIM}};
   for (int i = 0; i < 3; i += 1) {
     cell part = {.map = i < 2 ? curve : strip, .cuts = one->cuts, .low = ends[i][0], .high = ends[i][1]};
     evaluate(on, &part.map, part.low, part.first);
@@ -1092,7 +976,7 @@ static void jump(scan *on, const path *map, double low, const double *first, dou
   const double swing = sqrt(along*along + across*across), centre = atan2(across, along);
   const double half = swing > 0.0 ? acos(fmin(fmax(-level/swing, -1.0), 1.0)) : 0.5*PI;
   const double angles[] = {centre - half, centre + half, centre - half + PI, centre + half + PI};
-  const int count = fabs(level) + swing <= NEXT ? 4 : 2;
+  const int count = fabs(level) + swing <= SOFTKIN_NEXT ? 4 : 2;
   for (int i = 0; i < count; i += 1) {
     place.freed_angle = angles[i];
     add(on, place);
@@ -1103,7 +987,7 @@ static void jump(scan *on, const path *map, double low, const double *first, dou
 static void close_in(scan *on, const cell *one) {
   const closed at = closing(on, one, 0, 0.0);
   add(on, place_of(&one->map, at.best));
-  if (fabs(at.value) > TOUCHED) {
+  if (fabs(at.value) > SOFTKIN_TOUCHED) {
     double first[MOST_RESULTS], last[MOST_RESULTS];
     evaluate(on, &one->map, at.low, first);
     evaluate(on, &one->map, at.high, last);
@@ -1134,14 +1018,14 @@ static void cut(scan *on, const cell *one) {
   const double extent = extent_of(&one->map, low, high);
   const double f = one->first[0], df = one->first[1], g = one->first[2], dg = one->first[3];
   const double f1 = one->last[0], df1 = one->last[1], g1 = one->last[2], dg1 = one->last[3];
-  const bool is_seam = is_curved && -2.0*SEAM <= low && high <= 2.0*SEAM;
-  if (on->trials > TRIALS - RESERVE) {
+  const bool is_seam = is_curved && -2.0*SOFTKIN_SEAM <= low && high <= 2.0*SOFTKIN_SEAM;
+  if (on->trials > SOFTKIN_TRIALS - SOFTKIN_RESERVE) {
     return;
   }
-  if (turned_most(on, one->first, one->last) < TURNED) {
-    if (extent > NARROW && !is_seam) {
-      halves(on, one, low + ASIDE*width);
-    } else if (g >= -GAP || g1 >= -GAP) {
+  if (turned_most(on, one->first, one->last) < SOFTKIN_TURNED) {
+    if (extent > SOFTKIN_NARROW && !is_seam) {
+      halves(on, one, low + SOFTKIN_ASIDE*width);
+    } else if (g >= -SOFTKIN_GAP || g1 >= -SOFTKIN_GAP) {
       jump(on, &one->map, low, one->first, high, one->last);
       if (is_seam) {
         touch(on, one, is_seam);
@@ -1149,7 +1033,7 @@ static void cut(scan *on, const cell *one) {
     }
     return;
   }
-  if (!is_curved && extent > NARROW && hides_roots(g, dg, g1, dg1, width)) {
+  if (!is_curved && extent > SOFTKIN_NARROW && hides_roots(g, dg, g1, dg1, width)) {
     halves(on, one, low + where_to_cut(one->cuts, g, dg, g1, dg1, width));
     return;
   }
@@ -1161,11 +1045,11 @@ static void cut(scan *on, const cell *one) {
     return;
   }
   const bool changes = f*f1 <= 0.0, doubtful = hides_roots(f, df, f1, df1, width);
-  const bool small = fmin(fabs(f), fabs(f1)) <= TOUCHED;
-  if (doubtful && extent > FINEST && !small && !is_seam) {
+  const bool small = fmin(fabs(f), fabs(f1)) <= SOFTKIN_TOUCHED;
+  if (doubtful && extent > SOFTKIN_FINEST && !small && !is_seam) {
     const double s = low + where_to_cut(one->cuts, f, df, f1, df1, width);
-    const double beside = high > 1.5*SEAM ? SEAM : -SEAM;
-    halves(on, one, is_curved && fabs(s) < SEAM ? beside : s);
+    const double beside = high > 1.5*SOFTKIN_SEAM ? SOFTKIN_SEAM : -SOFTKIN_SEAM;
+    halves(on, one, is_curved && fabs(s) < SOFTKIN_SEAM ? beside : s);
   } else if (changes) {
     close_in(on, one);
   } else if (doubtful && (small || is_seam)) {
@@ -1175,19 +1059,20 @@ static void cut(scan *on, const cell *one) {
 
 /* Candidates for roots, in no order; only the complete closure decides whether a candidate is a root. */
 static void find_roots(scan *on, double start, double shift) {
-  const double width = 2.0*PI/CELLS;
+  const double width = 2.0*PI/SOFTKIN_CELLS;
   const path still = {start, 0.0, false};
   double results[MOST_RESULTS], begin[MOST_RESULTS], next[MOST_RESULTS];
   on->found = 0;
   path map = {width*shift, width, false};
   evaluate(on, &map, 0.0, begin);
-  on->trials += CELLS - 1; /* those at the ends of the other cells, which are made when they are needed */
+  /* Those at the ends of the other cells are made when they are needed. */
+  on->trials += SOFTKIN_CELLS - 1;
   evaluate(on, &still, 0.0, results);
   offer(on, &still, 0.0, results);
   copy(results, begin);
-  for (int k = 0; k < CELLS; k += 1) {
+  for (int k = 0; k < SOFTKIN_CELLS; k += 1) {
     cell one = {.map = {width*(k + shift), width, false}, .cuts = 0, .low = 0.0, .high = 1.0};
-    if (k + 1 < CELLS) {
+    if (k + 1 < SOFTKIN_CELLS) {
       map.base = width*(k + 1 + shift);
       evaluate(on, &map, 0.0, next);
       on->trials -= 1;
@@ -1208,7 +1093,7 @@ static void find_roots(scan *on, double start, double shift) {
 }
 
 static double away_from(double start, const softkin_place *place) {
-  const double way = place->tried - start - AHEAD + PI;
+  const double way = place->tried - start - SOFTKIN_AHEAD + PI;
   return fabs(way - 2.0*PI*floor(way/(2.0*PI)) - PI);
 }
 
@@ -1250,7 +1135,7 @@ static void finished(const softkin_search *search, double start, int most, softk
   on.trials = 0;
   on.waiting = 0;
   for (int i = 0; i < (int)(sizeof SHIFTS/sizeof SHIFTS[0]); i += 1) {
-    if (i > 0 && on.trials + CELLS > TRIALS - RESERVE) {
+    if (i > 0 && on.trials + SOFTKIN_CELLS > SOFTKIN_TRIALS - SOFTKIN_RESERVE) {
       return;
     }
     if (search->listed > 0) {
@@ -1298,7 +1183,7 @@ void softkin_nearest_root(const softkin_search *search, double start, bool is_wa
     values[i] = 0.0;
   }
   if (is_wanted) {
-    finished(search, start, FINISHED, take_one, &target);
+    finished(search, start, SOFTKIN_FINISHED, take_one, &target);
   }
 }
 
@@ -1317,6 +1202,6 @@ void softkin_every_root(const softkin_search *search, double start, bool is_want
     void *context) {
   handed to = {take, context};
   if (is_wanted) {
-    finished(search, start, TRIALS, hand_on, &to);
+    finished(search, start, SOFTKIN_TRIALS, hand_on, &to);
   }
 }

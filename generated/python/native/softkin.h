@@ -9,7 +9,7 @@
  * that its
  * `_init` fills from a struct of parameters; afterwards every call only reads it, so that any number of
  * threads and tasks may use one machine. Every call returns a status for any input: numbers that are
- * NaN, infinite or larger than 1e9 in size are refused. Results are written only where the status
+ * NaN, infinite or larger than SOFTKIN_LARGEST in size are refused. Results are written only where the status
  * is SOFTKIN_OK.
  *
  * Lengths and linear axes are in the user's unit of length (u), rotary axes in degrees, the Jacobian per
@@ -32,27 +32,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "softkin_constants.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/** The largest numbers of axes and of branches that a machine may have in C. */
-#define SOFTKIN_MOST_AXES 24
-#define SOFTKIN_MOST_BRANCHES 12
-/** The largest number of slots of a machine whose branches are computed together. */
-#define SOFTKIN_MOST_TOGETHER 16
 /** The largest number of roots of a scan that a call of all branches keeps. */
 #define SOFTKIN_MOST_SOLUTIONS 128
-
-/** The outcome of a call; numbers and names are those of the Python package. */
-typedef enum {
-  SOFTKIN_OK = 0, /**< no error */
-  SOFTKIN_NOT_INITIALIZED = 1, /**< a parameter is not allowed */
-  SOFTKIN_BAD_INPUT = 2, /**< numbers must be finite and at most 1e9 in size, and a rotation must be one */
-  SOFTKIN_UNREACHABLE = 3, /**< out of reach or beyond a limit */
-  SOFTKIN_IMPOSSIBLE = 4, /**< the mechanism cannot be assembled there, or a joint is undetermined */
-  SOFTKIN_INVALID_COUPLING = 5, /**< this pair of position and orientation kinematics is impossible */
-} softkin_status;
 
 /** The reason why a call refuses. Every call takes a pointer to one, or NULL, and fills it where it refuses.
  * */
@@ -333,9 +320,6 @@ typedef struct {
   int listed; /* at most SOFTKIN_MOST_LISTED */
 } softkin_search;
 
-#define SOFTKIN_MOST_DIRECTIONS 6
-#define SOFTKIN_MOST_LISTED 10
-
 /** Fill a refusal, if there is one to fill, and return the status. */
 softkin_status softkin_refuse(softkin_refusal *why, softkin_status status, const char *reason,
     const char *unit, double missing, int turn);
@@ -356,7 +340,7 @@ void softkin_every_root(const softkin_search *search, double start, bool is_want
 /** Whether all are numbers of reasonable size. */
 static inline bool softkin_are_reasonable(const double *numbers, int count) {
   for (int i = 0; i < count; i += 1) {
-    if (!(fabs(numbers[i]) <= 1e9)) {
+    if (!(fabs(numbers[i]) <= SOFTKIN_LARGEST)) {
       return false;
     }
   }
@@ -376,7 +360,8 @@ static inline double softkin_angle_of(double y, double x) {
 /** `softkin_nearest_period`, which nearly always is the value itself. */
 static inline double softkin_on_turn(double value, double centre) {
   const double away = value - centre;
-  return away >= -180.0 - 1e-9 && away < 180.0 - 1e-9 ? value : softkin_nearest_period(value, centre);
+  return away >= -180.0 - SOFTKIN_EDGE && away < 180.0 - SOFTKIN_EDGE ? value
+      : softkin_nearest_period(value, centre);
 }
 
 #ifdef __cplusplus

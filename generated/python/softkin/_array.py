@@ -10,49 +10,10 @@ from typing import Any, ClassVar, Self, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from softkin._scalar import DEGREE
+from softkin._constants import EDGE, LARGEST, PIVOT, SOLVABLE
+from softkin._scalar import DEGREE as DEGREE
 from softkin._start import with_start
 from softkin._types import Status
-
-__all__ = [
-    "DEGREE",
-    "Array",
-    "Codes",
-    "Matrix",
-    "OrientationPrograms",
-    "Programs",
-    "Real",
-    "Reals",
-    "Rotation",
-    "Signs",
-    "Turns",
-    "Vector",
-    "StartedPrograms",
-    "Truth",
-    "Values",
-    "Whole",
-    "absolute",
-    "advanced",
-    "atan2",
-    "both_signs",
-    "cos",
-    "degrees",
-    "elsewhere",
-    "initial",
-    "nearest_on_arc",
-    "nearest_period",
-    "opposite",
-    "passed",
-    "reasonable",
-    "require",
-    "root",
-    "run_where",
-    "select",
-    "settled",
-    "sin",
-    "solve",
-    "sqrt",
-]
 
 Array: TypeAlias = NDArray[np.float64]
 Real: TypeAlias = Any
@@ -72,7 +33,7 @@ Codes: TypeAlias = NDArray[np.uint8]
 """A `Status` for every row."""
 
 _TURN = 2.0 * np.pi
-_HALF_AND_EDGE = 180.0 + 1e-9
+_HALF_AND_EDGE = 180.0 + EDGE
 _BOTH_SIGNS = np.array([1, -1])
 
 
@@ -184,12 +145,12 @@ def require(status: Codes, condition: Truth, otherwise: Status) -> None:
 
 
 def reasonable(*values: Real) -> Truth:
-    """The rows in which the size of all values is at most 1e9."""
+    """The rows in which the size of all values is at most LARGEST."""
     found: Truth = True
     for value in values:
         # Nearly always all of them are; the least and the greatest value decide.
-        if not isinstance(value, np.ndarray) or not (value.min() >= -1e9 and value.max() <= 1e9):
-            found = found & (abs(value) <= 1e9)
+        if not isinstance(value, np.ndarray) or not (value.min() >= -LARGEST and value.max() <= LARGEST):
+            found = found & (abs(value) <= LARGEST)
     return found
 
 
@@ -309,8 +270,8 @@ def select(condition: Truth, first: _Number, second: _Number) -> _Number:
 
 
 def nearest_period(value: Real, centre: Real) -> Real:
-    """value + 360 k in [centre - 180, centre + 180), in degrees; the interval is shifted down by 1e-9."""
-    if isinstance(value, np.ndarray) and not isinstance(centre, np.ndarray):
+    """value + 360 k in [centre - 180, centre + 180), in degrees; the interval is shifted down by EDGE."""
+    if isinstance(value, np.ndarray) and not isinstance(centre, np.ndarray):  # noqa: SIM102
         # Nearly always all values are inside already; the least and the greatest value decide.
         if value.min() - centre + _HALF_AND_EDGE >= 0.0 and value.max() - centre + _HALF_AND_EDGE < 360.0:
             return value
@@ -329,15 +290,15 @@ def nearest_on_arc(angle: Real, centre: Real, half: Real) -> Real:
 def solve(matrix: Sequence[Reals], right: Sequence[Reals]) -> Reals:
     """The determinant, then the solution by rows: LU decomposition with partial pivoting.
 
-    All of them are zero where the matrix is singular, or a number is NaN or beyond 1e30 in size.
+    All of them are zero where the matrix is singular, or a number is NaN or beyond SOLVABLE in size.
     """
     size = len(matrix)
     rows = [[*row, *more] for row, more in zip(matrix, right or [()] * size, strict=True)]
     entries = np.broadcast_arrays(*(entry for row in rows for entry in row))
     table = np.array(entries).reshape(size, len(rows[0]), -1)
     largest = np.max(np.abs(table[:, :size]), axis=(0, 1))
-    tiny, determinant = 1e-14 * largest, np.ones_like(largest)
-    regular = np.all(np.abs(table) <= 1e30, axis=(0, 1)) & (largest >= 1.0 / 1e30)
+    tiny, determinant = PIVOT * largest, np.ones_like(largest)
+    regular = np.all(np.abs(table) <= SOLVABLE, axis=(0, 1)) & (largest >= 1.0 / SOLVABLE)
     every = np.arange(len(tiny))
     for k in range(size):
         best = k + np.argmax(np.abs(table[k:, k]), axis=0)

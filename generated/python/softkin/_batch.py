@@ -25,7 +25,8 @@ from softkin._array import (
 )
 from softkin._array_rotation import made_rotations
 from softkin._columns import Bytes, Configurations, Mask, Poses, Rows, Table, columns, configurations
-from softkin._configuration import COINCIDE, COINCIDENT, EDGE, FIRST, SECOND
+from softkin._configuration import COINCIDE, COINCIDENT, FIRST, SECOND
+from softkin._constants import EDGE, OF_A_SEARCH
 from softkin._table import numbers, starts, whole_numbers
 from softkin._types import FrameLike, Status
 
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from softkin._core import Mechanism
 
 CHUNK = 8192
-"""The rows that are computed together."""
+"""The rows that are computed together: an array then has 64 KiB."""
 EVERY_SLOT = 3 * CHUNK
 """The largest number of rows times slots computed together where all slots are computed, since slots share values."""
 FEWEST, FEWEST_SEARCHED = 512, 96
@@ -161,7 +162,7 @@ def _rows_together(values: int, rows: int, slots: int, width: int) -> int:
     values: the number of values of one row, some of them separate for every slot.
     """
     on_the_way = 8.0 * (slots * width + 1.35 * values + 16.0)
-    least = 1 if rows >= MANY else FEWEST if values < 120000 else FEWEST_SEARCHED
+    least = 1 if rows >= MANY else FEWEST if values < OF_A_SEARCH else FEWEST_SEARCHED
     wanted = int(SHARE * rows * slots * (8 * width + 1) / on_the_way)
     return max(1, min(CHUNK, EVERY_SLOT // slots, max(least, wanted)))
 

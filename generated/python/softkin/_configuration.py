@@ -8,22 +8,19 @@ from itertools import product
 from math import floor
 from typing import NamedTuple, TypeAlias
 
+from softkin._constants import EDGE, FREE_ANGLE, LARGEST
 from softkin._scalar import nearest_period
 from softkin._types import Configuration, KinematicsError, Reals, Signs, Status
 
 AUTOMATIC, FIRST, SECOND, COINCIDE = 0, 1, 2, 3
 """The values of a branch byte. `COINCIDE` is written where the branches meet, and read as automatic."""
 
-COINCIDENT = 1e-11
+COINCIDENT = FREE_ANGLE
 """Branches coincide where their margin is at most this in size."""
-EDGE = 1e-9
-"""The shift (degrees) by which the intervals of the periods begin earlier, so that rounding crosses no edge."""
 FIRST_TURN, SECOND_TURN = -180.0 - EDGE, 180.0 - EDGE
-"""The lower ends of the turns with the numbers 1 and 2 (degrees)."""
+"""The lower ends of the turns with the numbers 1 and 2 (degrees): earlier, so that rounding crosses no edge."""
 UNREACHABLE = int(Status.UNREACHABLE)
 """The number that stands in a slot where an axis is beyond its limits."""
-TIE = 1e-6
-"""An automatic choice takes a later slot only where its squared distance (degrees) is smaller by more than this."""
 
 
 class Criterion(NamedTuple):
@@ -81,7 +78,7 @@ def squared_distance(axes: Reals, reference: Reals, counted: tuple[int, ...]) ->
     It is 0 for a reference that is no number of reasonable size: then the first branch is taken.
     """
     total = 0.0
-    if not all(abs(reference[i]) <= 1e9 for i in counted):
+    if not all(abs(reference[i]) <= LARGEST for i in counted):
         return total
     for i in counted:
         difference = axes[i] - reference[i]

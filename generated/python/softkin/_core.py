@@ -14,7 +14,6 @@ from softkin._configuration import (
     AUTOMATIC,
     FIRST_TURN,
     SECOND_TURN,
-    TIE,
     Criterion,
     Slot,
     branch_byte,
@@ -22,6 +21,7 @@ from softkin._configuration import (
     slots,
     squared_distance,
 )
+from softkin._constants import GEARED_TURN, LIMIT, NO_MEANING, ONE_TURN, SINGULAR, TIE, UNLIMITED
 from softkin._ends import given_ends, limit_names
 from softkin._frame import Frame
 from softkin._input import bytes_of, parameter_value, pose_of, position_of, reals, unusable
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
     from softkin._nearest import Measure
     from softkin._path import Path
 
-WARNING_DISTANCE = 0.001
+WARNING_DISTANCE = SINGULAR
 """A pose of a coupling, which has no parameters, is singular where a margin is smaller than this in size."""
 
 TWIST = ("x", "y", "z", "turn x", "turn y", "turn z")
@@ -224,27 +224,27 @@ class Mechanism(Value, ABC):
         low, high = (lower, upper) if is_given or otherwise is None else otherwise
         if not (isfinite(low) and isfinite(high)):
             return self._one_sided_window(key, low, high, otherwise)
-        tolerance = 1e-9 + 1e-9 * abs(low) + 1e-9 * abs(high)
+        tolerance = LIMIT + LIMIT * abs(low) + LIMIT * abs(high)
         middle = 0.5 * low + 0.5 * high
         has_limits = is_given or otherwise is not None
-        single = has_limits and high - low <= 350 + tolerance
+        single = has_limits and high - low <= ONE_TURN + tolerance
         if turns is not None:
-            single = has_limits and (high - low + 2.0 * tolerance) * turns <= 350.001
+            single = has_limits and (high - low + 2.0 * tolerance) * turns <= GEARED_TURN
         if not (has_limits and self.checks_limits):
-            return Window(-1e12, 1e12, single, middle)
+            return Window(-UNLIMITED, UNLIMITED, single, middle)
         return Window(low - tolerance, high + tolerance, single, middle)
 
     def _one_sided_window(self, key: str, low: float, high: float, otherwise: tuple[float, float] | None) -> Window:
         """The range of an axis with one limited end; where the axis always has limits, these are the other end."""
-        tolerance = 1e-9 + sum([1e-9 * abs(end) for end in (low, high) if isfinite(end)])
+        tolerance = LIMIT + sum([LIMIT * abs(end) for end in (low, high) if isfinite(end)])
         if otherwise is not None:
             low, high = max(low, otherwise[0]), min(high, otherwise[1])
             if not low < high:
                 raise self._refusal(f"lower_{key} below upper_{key}", f"lower_{key}", f"upper_{key}")
         if not self.checks_limits:
             low, high = -inf, inf
-        lowest = low - tolerance if isfinite(low) else -1e12
-        return Window(lowest, high + tolerance if isfinite(high) else 1e12, False, 0.0)
+        lowest = low - tolerance if isfinite(low) else -UNLIMITED
+        return Window(lowest, high + tolerance if isfinite(high) else UNLIMITED, False, 0.0)
 
     def _refusal(self, condition: str, *names: str) -> KinematicsError:
         """The error for the named parameters, which violate a condition; the condition on a single one is its range."""
@@ -354,9 +354,7 @@ class Mechanism(Value, ABC):
         branches, turns = self._read(configuration)
         for place, byte in zip(self._branch_bytes, branches, strict=True):
             if byte not in (0, 1, 2, 3):
-                return Diagnosis(
-                    Status.BAD_INPUT, "byte {byte} of the configuration means nothing".format(byte=place), 0.0
-                )
+                return Diagnosis(Status.BAD_INPUT, NO_MEANING.format(byte=place), 0.0)
         rotation = self._made(rows)
         if isinstance(rotation, Diagnosis):
             return rotation

@@ -8,7 +8,8 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self, TypeAlias, TypeVar
 
-from softkin._configuration import TIE, Criterion
+from softkin._configuration import Criterion
+from softkin._constants import TIE
 from softkin._core import SEVERAL_AXES, TURN, TWIST, Image, Mechanism, Pose
 from softkin._ends import Ends
 from softkin._input import bytes_of

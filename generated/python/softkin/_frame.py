@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from math import cos, hypot, sin
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from softkin._constants import FREE_ANGLE, LARGEST, LARGEST_ERROR
 from softkin._input import pose_of, reals, rotation_by_rows
 from softkin._rotation import in_words, made_rotation
 from softkin._scalar import DEGREE, RADIAN, atan2
@@ -19,9 +20,7 @@ if TYPE_CHECKING:
 
 ORIGIN: Vector = (0.0, 0.0, 0.0)
 IDENTITY: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-LARGEST_ERROR = 0.0001
-"""No entry of |R^T R - I| may be larger, and the length of a quaternion may differ no more from one."""
-_NO_DIRECTION = 1e-11
+_NO_DIRECTION = FREE_ANGLE
 """Two axes are parallel where the sine of the angle between them is at most this."""
 
 
@@ -169,7 +168,7 @@ def _error(rows: Rotation) -> float:
     """The largest entry of |R^T R - I|; NaN entries are infinite errors."""
     gram = product(transposed(rows), rows)
     entries = [abs(gram[i][k] - float(i == k)) for i in range(3) for k in range(3)]
-    return max(entries) if all(entry <= 1e9 for entry in entries) else float("inf")
+    return max(entries) if all(entry <= LARGEST for entry in entries) else float("inf")
 
 
 def _orthogonal(rows: Rotation) -> Rotation:
@@ -213,6 +212,6 @@ def _place(position: Numbers) -> Vector:
 
 def _finite(numbers: tuple[float, ...], what: str) -> Vector:
     x, y, z = numbers
-    if not all(abs(number) <= 1e9 for number in numbers):
+    if not all(abs(number) <= LARGEST for number in numbers):
         raise KinematicsError(Status.BAD_INPUT, f"{what} must be finite numbers of at most 1e9 in size, not {numbers}")
     return x, y, z

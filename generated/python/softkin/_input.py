@@ -9,10 +9,9 @@ from collections.abc import Iterable, Mapping, Set
 from math import isnan, nan
 from typing import Any
 
+from softkin._constants import LARGEST
 from softkin._types import FrameLike, KinematicsError, Numbers, Parameter, Rotation, Status, Vector
 
-LARGEST = 1e9
-"""Numbers larger in size than this are refused."""
 _LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 _ROUNDED = 1e-9
 """The last row of a matrix (4, 4) may differ by this."""

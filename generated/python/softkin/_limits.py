@@ -6,13 +6,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from softkin._configuration import turn_inside
+from softkin._constants import ABOVE, BELOW, OTHER_TURN
 from softkin._types import Diagnosis, Status
 
 __all__ = ["beyond", "beyond_turn", "turn_inside"]
-
-_BELOW = "{}: below its lower limit"
-_ABOVE = "{}: above its upper limit"
-_OTHER_TURN = "{subject}: this turn{axis} is beyond a limit, name one inside"
 
 
 def beyond(
@@ -29,9 +26,9 @@ def beyond(
         if turn:
             axis = "" if name == subject else f" of {name}"
             return Diagnosis(
-                Status.UNREACHABLE, f"{_OTHER_TURN.format(subject=subject, axis=axis)} [{unit}]", missing, turn
+                Status.UNREACHABLE, f"{OTHER_TURN.format(subject=subject, axis=axis)} [{unit}]", missing, turn
             )
-    reason = (_BELOW if is_below else _ABOVE).format(subject)
+    reason = (BELOW if is_below else ABOVE).format(subject)
     return Diagnosis(Status.UNREACHABLE, f"{reason} [{unit}]", missing)
 
 

@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self, cast
 
 from softkin._configuration import AUTOMATIC, Criterion, slots
+from softkin._constants import EXACT
 from softkin._core import PITCH, TURN, TWIST, Image, Mechanism, Pose
 from softkin._ends import Ends
 from softkin._frame import IDENTITY, ORIGIN, Frame
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
 PASSES = 50
 """The passes of the iteration for a flange that follows the pitch; each one takes the rotation of the flange from the
 pass before."""
-MET = 1e-12
+MET = EXACT
 """The position is met where it is missed by at most this share of the distances in the sum."""
 PLAIN = Frame(ORIGIN)
 NOWHERE: Vector = (nan, nan, nan)

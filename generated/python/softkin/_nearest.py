@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from math import ceil, floor, sqrt
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
+from softkin._constants import EDGE, LARGEST, UNLIMITED
 from softkin._input import reals
 from softkin._scalar import reasonable
 from softkin._types import Diagnosis, KinematicsError, Numbers, Reals, Rotation, Status, Vector
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 MOST_TURNS = 254
 """The turns that are tried in each sense from the reference: as many as a period byte can name."""
-_UNLIMITED = 1e12 / 2
+_UNLIMITED = UNLIMITED / 2
 _SAME = 1e-12
 """The share of an axis value that is rounding."""
 Measure: TypeAlias = Literal["squares", "largest"]
@@ -71,7 +72,7 @@ def metric_of(robot: Mechanism, weights: Numbers | None, measure: Measure) -> Me
         ties = tuple(c.tie for c in robot._criteria)
     else:
         given = reals(weights, count, "weights")
-        if not all(0.0 <= w <= 1e9 for w in given):
+        if not all(0.0 <= w <= LARGEST for w in given):
             raise KinematicsError(Status.BAD_INPUT, f"weights must be numbers from 0 to 1e9, not {given}")
         first = robot._criteria[0]
         rows, ties = (given,), (first.tie * max((given[i] ** 2 for i in first.axes), default=0.0),)
@@ -217,7 +218,7 @@ def _nearest_value(value: float, centre: float, step: float, ends: Range) -> flo
 
 def turns_to(value: float, centre: float, step: float) -> int:
     """The number of steps from a value to the value nearest to a centre; on an edge as in `nearest_period`."""
-    return floor((value - centre) / step + (0.5 + 1e-9 / 360.0))
+    return floor((value - centre) / step + (0.5 + EDGE / 360.0))
 
 
 class _Search:

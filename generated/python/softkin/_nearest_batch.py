@@ -12,6 +12,7 @@ from softkin._array import Array, Codes, Reals
 from softkin._batch import CHUNK, EVERY_SLOT
 from softkin._columns import Poses, Table
 from softkin._configuration import AUTOMATIC, slots
+from softkin._constants import EDGE, LARGEST
 from softkin._nearest import Metric, Turning, nearest, turning_of
 from softkin._types import Diagnosis, Rotation, Status, Vector
 
@@ -39,7 +40,7 @@ def _chunk(robot: Mechanism, poses: Poses, metric: Metric) -> tuple[Array, Codes
     """The rows of a chunk: all at once where every axis finds its turn by itself; the other rows one by one."""
     near = _table(poses.reference, (poses.count,))
     refused = np.broadcast_to(poses.refused, poses.count).copy()
-    refused[(refused == Status.OK) & ~(np.abs(near) <= 1e9).all(axis=1)] = Status.BAD_INPUT
+    refused[(refused == Status.OK) & ~(np.abs(near) <= LARGEST).all(axis=1)] = Status.BAD_INPUT
     if robot._has_one_solution_a_branch():
         programs = robot._array_programs()
         turns = (0,) * len(robot.PERIOD_AXES)
@@ -121,7 +122,7 @@ def _inside(robot: Mechanism, near: Array) -> NDArray[np.bool_]:
 def _nearest_values(value: Array, centre: Array, step: float, ends: tuple[float, float]) -> Array:
     """`_nearest._nearest_value` on arrays."""
     lowest, highest = ends
-    turned = value - step * np.floor((value - centre) / step + (0.5 + 1e-9 / 360.0))
+    turned = value - step * np.floor((value - centre) / step + (0.5 + EDGE / 360.0))
     turned = turned - step * np.maximum(np.ceil((turned - highest) / step), 0.0)
     return turned + np.where(turned < lowest, step * np.ceil((lowest - turned) / step), 0.0)
 

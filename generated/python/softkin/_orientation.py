@@ -6,6 +6,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, TypeAlias
 
+from softkin._constants import HELD
 from softkin._core import Mechanism
 from softkin._rotation import made_rotation
 from softkin._types import Diagnosis, OrientationImage, Rotation, Status, Vector
@@ -14,7 +15,7 @@ from softkin._vectors import transposed, turned
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
 
-SAME_AXIS = 1e-9
+SAME_AXIS = HELD
 """Two axes are the same where the sine of the angle between them is at most this."""
 _ZERO: Vector = (0.0, 0.0, 0.0)
 

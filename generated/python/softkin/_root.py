@@ -12,27 +12,30 @@ from collections.abc import Callable, Iterator, Sequence
 from math import acos, atan2, hypot, pi, sqrt
 from typing import Any
 
-# The constants of `_cells` and `_roots`, where they are explained.
-AHEAD = 1e-7
-ASIDE = 0.47
-BENT = 0.125
-CELLS = 72
-CLOSING = 60
-FINEST = 1e-15
-FLAT = 1e-7
-GAP = 1e-6
-NARROW = 1e-10
-NEAR_ZERO = 0.5
-NEXT = 1e-6
-RESERVE = 126
-RIM = 0.999
-SEAM = 0.001
-SHIFTS = (0.414, 0.192)
-TOUCHED = 1e-12
-TURNED = 0.7
-VANISHING = 1e-10
-_TRIALS = 760
-_FINISHED = 24
+# `_cells` and `_roots` explain the constants.
+from softkin._constants import (
+    AHEAD,
+    ASIDE,
+    BENT,
+    CELLS,
+    CLOSING,
+    FINEST,
+    FINISHED,
+    FLAT,
+    GAP,
+    NARROW,
+    NEAR_ZERO,
+    NEXT,
+    RESERVE,
+    RIM,
+    SEAM,
+    SHIFTS,
+    TOUCHED,
+    TRIALS,
+    TURNED,
+    VANISHING,
+)
+
 _PLACE = ("tried", "side", "freed", "freed_angle")
 _THIRD = 2.0 * pi / 3.0
 Values = tuple[Any, ...]
@@ -63,7 +66,7 @@ def nearest_root(
     candidates, where the trial lists them.
     """
     if wanted:
-        for values in _finished(trial, finish, start, trial_given, finish_given, scan, sides, _FINISHED):
+        for values in _finished(trial, finish, start, trial_given, finish_given, scan, sides, FINISHED):
             return values
     return (False, *(count - 1) * (0.0,))
 
@@ -80,7 +83,7 @@ def every_root(
     sides: tuple[int, ...] = (),
 ) -> list[Values]:
     """The results of `finish` at all roots that fit, the nearest to the start first."""
-    every = _finished(trial, finish, start, trial_given, finish_given, scan, sides, _TRIALS) if wanted else ()
+    every = _finished(trial, finish, start, trial_given, finish_given, scan, sides, TRIALS) if wanted else ()
     return [values[1:] for values in every]
 
 
@@ -101,7 +104,7 @@ def _finished(
         yield from (values for values in map(at, places) if values[0])
         return
     for shift in SHIFTS:
-        if shift != SHIFTS[0] and search.trials + CELLS > _TRIALS - RESERVE:
+        if shift != SHIFTS[0] and search.trials + CELLS > TRIALS - RESERVE:
             return
         places = search.roots(start, shift, _scanned(scan, shift, trial_given))
         places.sort(key=lambda place: _away(place, start))
@@ -189,12 +192,12 @@ class _Search:
     def cut(self, cell: Cell) -> list[Cell]:
         """The cells into which a cell must be cut; none where its root is found, or it has no root."""
         base, scale, curved, depth, low, first, high, last = cell
-        if self.trials > _TRIALS - RESERVE:
+        if self.trials > TRIALS - RESERVE:
             return []
         width, extent = high - low, _extent(scale, curved, low, high)
         f, df, g, dg = first[:4]
         f1, df1, g1, dg1 = last[:4]
-        seam = curved and -2.0 * SEAM <= low and high <= 2.0 * SEAM
+        seam = curved and low >= -2.0 * SEAM and high <= 2.0 * SEAM
         if _turned(first, last) < TURNED:
             if extent > NARROW and not seam:
                 return self.halves(cell, low + ASIDE * width)

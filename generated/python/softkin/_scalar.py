@@ -7,20 +7,10 @@ from collections.abc import Sequence
 from math import atan2 as arctan2
 from math import cos, floor, nan, pi, sin, sqrt
 
-__all__ = [
-    "DEGREE",
-    "RADIAN",
-    "arctan2",
-    "atan2",
-    "cos",
-    "nearest_on_arc",
-    "nearest_period",
-    "reasonable",
-    "root",
-    "sin",
-    "solve",
-    "sqrt",
-]
+from softkin._constants import EDGE, LARGEST, PIVOT, SOLVABLE
+
+__all__ = ["arctan2", "cos", "sin", "sqrt"]
+"""What other modules import from here although it comes from elsewhere."""
 
 DEGREE = pi / 180.0
 """One degree in radians."""
@@ -29,13 +19,13 @@ RADIAN = 180.0 / pi
 _TURN = 2.0 * pi
 _MOST_TURNS = 1e18
 """With more turns than this there is no nearest angle."""
-_HALF_AND_EDGE = 180.0 + 1e-9
+_HALF_AND_EDGE = 180.0 + EDGE
 
 
 def reasonable(*numbers: float) -> bool:
     """Whether all are numbers of reasonable size."""
-    for number in numbers:
-        if not -1e9 <= number <= 1e9:
+    for number in numbers:  # noqa: SIM110 - faster than `all`
+        if not -LARGEST <= number <= LARGEST:
             return False
     return True
 
@@ -51,7 +41,7 @@ def atan2(y: float, x: float) -> float:
 
 
 def nearest_period(value: float, centre: float) -> float:
-    """value + 360 k in [centre - 180, centre + 180), in degrees; the interval is shifted down by 1e-9.
+    """value + 360 k in [centre - 180, centre + 180), in degrees; the interval is shifted down by EDGE.
 
     So a value on an edge stays on its side in spite of rounding.
     """
@@ -72,19 +62,19 @@ def nearest_on_arc(angle: float, centre: float, half: float) -> float:
 def solve(matrix: Sequence[Sequence[float]], right: Sequence[Sequence[float]]) -> tuple[float, ...]:
     """The determinant, then the solution by rows: LU decomposition with partial pivoting.
 
-    Zeros where the matrix is singular, and where a number is NaN or beyond 1e30 in size.
+    Zeros where the matrix is singular, and where a number is NaN or beyond SOLVABLE in size.
     matrix, right: by rows; without right-hand sides the determinant alone.
     """
     rows = [[*row, *more] for row, more in zip(matrix, right or [()] * len(matrix), strict=True)]
     size, width = len(matrix), len(rows[0])
     nothing = (0.0,) * (1 + size * (width - size))
     largest = max(abs(entry) for row in matrix for entry in row)
-    if not (largest >= 1.0 / 1e30 and all(abs(entry) <= 1e30 for row in rows for entry in row)):
+    if not (largest >= 1.0 / SOLVABLE and all(abs(entry) <= SOLVABLE for row in rows for entry in row)):
         return nothing
     determinant = 1.0
     for k in range(size):
         best = max(range(k, size), key=lambda i: abs(rows[i][k]))
-        if not abs(rows[best][k]) > 1e-14 * largest:
+        if not abs(rows[best][k]) > PIVOT * largest:
             return nothing
         if best != k:
             rows[k], rows[best] = rows[best], rows[k]

@@ -7,6 +7,7 @@ from abc import abstractmethod
 from collections.abc import Iterable, Sequence
 
 from softkin._configuration import AUTOMATIC, Slot, slots
+from softkin._constants import FREE_ANGLE
 from softkin._core import Mechanism
 from softkin._types import (
     Diagnosis,
@@ -25,7 +26,7 @@ from softkin._types import (
 _SAME = 2e-3
 """Axes that differ by less than this (degrees, lengths) are one solution of a branch: where the residual only touches
 zero, the scan finds the same root twice, and between two solutions of a branch there is one of another branch."""
-_COINCIDE = 1e-11
+_COINCIDE = FREE_ANGLE
 """A solution with a smaller margin belongs to both branches."""
 
 

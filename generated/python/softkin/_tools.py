@@ -17,12 +17,13 @@ from __future__ import annotations
 
 from math import hypot
 
+from softkin._constants import EXACT, HELD
 from softkin._core import DIRECTION, FIXED, ONE_AXIS, SEVERAL_AXES, TWIST, Mechanism
 from softkin._frame import ORIGIN, Frame
 from softkin._types import KinematicsError, Status, Vector
 from softkin._vectors import turned
 
-UNNOTICED = 1e-9
+UNNOTICED = HELD
 """A shift of a tool is not noticed where it is at most this share of the tool."""
 TILTS = ("tilt x", "tilt y")
 """The rows of a Jacobian about the axes of the tool."""
@@ -78,5 +79,5 @@ def rows_of(bare: Mechanism, base: Frame, tool: Frame) -> tuple[str, ...]:
     for names in (_TRANSLATIONS, _ROTATIONS):
         inside = [i for i, name in enumerate(names) if name in rows]
         outside = [i for i in range(3) if i not in inside]
-        keeps = keeps and all(abs(base.rotation[o][i]) <= 1e-12 for o in outside for i in inside)
+        keeps = keeps and all(abs(base.rotation[o][i]) <= EXACT for o in outside for i in inside)
     return rows if keeps else TWIST

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any, NamedTuple, Protocol, Self, TypeAlias
 
+from softkin._constants import LARGEST, LEAST, STATUSES, USUAL
+
 Vector: TypeAlias = tuple[float, float, float]
 Rotation: TypeAlias = tuple[Vector, Vector, Vector]
 """Three rows; the columns are the axes of the frame."""
@@ -52,24 +54,12 @@ class Status(IntEnum):
         member.meaning = meaning
         return member
 
-    OK = (0, "SMC_NO_ERROR", "no error")
-    NOT_INITIALIZED = (1, "SMC_TRAFO_NOT_INITIALIZED", "a parameter is not allowed")
-    BAD_INPUT = (
-        2,
-        "SMC_CP_ERROR_CREATING_PARAM_TRANSFORM",
-        "numbers must be finite and at most 1e9 in size, and a rotation must be one",
-    )
-    UNREACHABLE = (3, "SMC_AXIS_INVERSE_TRAFO_EXCEEDING_POSLIMITS", "out of reach or beyond a limit")
-    IMPOSSIBLE = (
-        4,
-        "SMC_TRAFO_INVALID_CONSTELLATION",
-        "the mechanism cannot be assembled there, or a joint is undetermined",
-    )
-    INVALID_COUPLING = (
-        5,
-        "SMC_TRAFO_INVALID_COUPLING",
-        "this pair of position and orientation kinematics is impossible",
-    )
+    OK = STATUSES["OK"]
+    NOT_INITIALIZED = STATUSES["NOT_INITIALIZED"]
+    BAD_INPUT = STATUSES["BAD_INPUT"]
+    UNREACHABLE = STATUSES["UNREACHABLE"]
+    IMPOSSIBLE = STATUSES["IMPOSSIBLE"]
+    INVALID_COUPLING = STATUSES["INVALID_COUPLING"]
 
 
 class KinematicsError(ValueError):
@@ -163,22 +153,6 @@ class Axis:
     """Whether the configuration has a period number for the axis."""
 
 
-_USUAL: dict[str, dict[str, Any]] = {
-    "length": {"unit": "u", "low": 0.0, "high": 1000000000.0, "low_is_open": True, "default": None},
-    "signed length": {"unit": "u", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": None},
-    "distance": {"unit": "u", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
-    "pitch": {"unit": "u/rev", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
-    "gear": {"unit": "u/deg", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
-    "coupling": {"unit": "1", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
-    "ratio": {"unit": "1", "low": 0.0, "high": 1.0, "low_is_open": False, "default": 0.0},
-    "transmission": {"unit": "1", "low": -1000000.0, "high": 1000000.0, "low_is_open": False, "default": None},
-    "flag": {"unit": "", "low": 0.0, "high": 1.0, "low_is_open": False, "default": 0.0},
-    "sign": {"unit": "", "low": -1.0, "high": 1.0, "low_is_open": False, "default": 1.0},
-    "angle": {"unit": "deg", "low": -1000000000.0, "high": 1000000000.0, "low_is_open": False, "default": 0.0},
-}
-"""For each kind of parameter, the values that its parameters have unless they state others."""
-
-
 @dataclass(frozen=True, slots=True)
 class Parameter:
     """A parameter of a mechanism: a keyword of its class."""
@@ -190,14 +164,14 @@ class Parameter:
     low: float
     high: float
     low_is_open: bool
-    """Whether the value must be more than `low`, and more than 1e-12, so that no product of lengths vanishes."""
+    """Whether the value must be more than `low`, and more than LEAST, so that no product of lengths vanishes."""
     default: float | None
     """None where the parameter must be given."""
 
     @classmethod
     def of(cls, kind: str, name: str, meaning: str, **unusual: Any) -> Self:
         """A parameter of a kind. unusual: its unit, its range or its default, if they differ from those of the kind."""
-        return cls(name=name, kind=kind, meaning=meaning, **{**_USUAL[kind], **unusual})
+        return cls(name=name, kind=kind, meaning=meaning, **{**USUAL[kind], **unusual})
 
     def allows(self, value: float) -> bool:
         """Whether a number, or the truth value of a flag, is in the range."""
@@ -205,10 +179,10 @@ class Parameter:
             return True
         if self.kind == "sign":
             return value in (1, -1)
-        if self.kind in ("signed length", "transmission") and not (value > 1e-12 or value < -1e-12):
+        if self.kind in ("signed length", "transmission") and not (value > LEAST or value < -LEAST):
             return False
-        above = value > max(self.low, 1e-12) if self.low_is_open else value >= self.low
-        return above and value <= min(self.high, 1e9)
+        above = value > max(self.low, LEAST) if self.low_is_open else value >= self.low
+        return above and value <= min(self.high, LARGEST)
 
     @property
     def range(self) -> str:
@@ -217,8 +191,8 @@ class Parameter:
             return "True or False"
         if self.kind == "sign":
             return "1 or -1"
-        low = f"more than {max(self.low, 1e-12):g}" if self.low_is_open else f"at least {self.low:g}"
-        size = ", and more than 1e-12 in size" if self.kind in ("signed length", "transmission") else ""
+        low = f"more than {max(self.low, LEAST):g}" if self.low_is_open else f"at least {self.low:g}"
+        size = f", and more than {LEAST:g} in size" if self.kind in ("signed length", "transmission") else ""
         return f"{low} and at most {self.high:g}{size}"
 
 

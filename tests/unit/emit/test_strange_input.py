@@ -86,9 +86,7 @@ def test_the_package_says_its_version_and_its_licence() -> None:
     project = tomllib.loads((ROOT / "generated/python/pyproject.toml").read_text())["project"]
     assert softkin.__version__ == project["version"]
     assert project["license-files"] == ["LICENSE"]
-    texts = {
-        (ROOT / path).read_text() for path in ("LICENSE", "generated/python/LICENSE", "templates/python/LICENSE.j2")
-    }
+    texts = {(ROOT / path).read_text() for path in ("LICENSE", "generated/python/LICENSE", "runtime/python/LICENSE")}
     assert len(texts) == 1
     assert {"Configuration", "Rotation", "FrameLike", "orthonormalize", "Mounted"} <= set(softkin.__all__)
     assert softkin.Rotation and softkin.Configuration and softkin.FrameLike

@@ -1,0 +1,399 @@
+"""A position kinematics coupled with an orientation kinematics, as one mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Self, TypeAlias, TypeVar
+
+from softkin._configuration import Criterion
+from softkin._constants import TIE
+from softkin._core import SEVERAL_AXES, TURN, TWIST, Image, Mechanism, Pose
+from softkin._ends import Ends
+from softkin._input import bytes_of
+from softkin._orientation import OrientationKinematics, turning_axis
+from softkin._twist import TwistChoice
+from softkin._types import (
+    Axis,
+    Configuration,
+    ConfigurationByte,
+    Diagnosis,
+    KinematicsError,
+    Matrix,
+    Reals,
+    Rotation,
+    Signs,
+    Status,
+    Turns,
+    Vector,
+)
+from softkin._vectors import moved, plus, product, seen_from, transposed, turned
+
+if TYPE_CHECKING:
+    from softkin._array import Programs
+
+_Choice: TypeAlias = tuple[Signs, Turns, Reals]
+"""Signs of the branches, turns and reference of one part."""
+_Named = TypeVar("_Named", Axis, ConfigurationByte)
+_ORIGIN: Vector = (0.0, 0.0, 0.0)
+
+
+class Coupled(Mechanism):
+    """A position kinematics with an orientation kinematics at its flange.
+
+    Axes: those of the position kinematics, then those of the orientation kinematics; the bytes of the configuration
+    likewise. An axis or a byte of the second part with a name that the first part has is called `orientation <name>`.
+    An automatic choice counts the rotary axes of both; where they tie, and only linear axes distinguish the branches of
+    the position kinematics, it counts these.
+    The position is reached or refused; of the rotation, the tool direction comes before the twist.
+    Limits and parameters are those of the parts, `position_part` and `orientation_part`. The Jacobian has all six rows.
+    """
+
+    NAME = "Coupled"
+    PARAMETERS = ()
+    JACOBIAN_ROWS = TWIST
+    ROLE = "complete"
+
+    def __init__(self, position: Mechanism, orientation: OrientationKinematics) -> None:
+        """Couple two mechanisms.
+
+        Raises INVALID_COUPLING for any other pair, and where a commanded frame does not determine the axes: where the
+        position axes turn the flange, the end point on the flange must not depend on these axes.
+        """
+        _check(position, orientation)
+        self.NAME = f"Coupled({position.NAME}, {orientation.NAME})"
+        self.position_part, self.orientation_part = position, orientation
+        self.parameters = MappingProxyType({})
+        self.checks_limits = position.checks_limits or orientation.checks_limits
+        carrying = position.orientation_image()
+        self._axis = turning_axis(carrying)
+        self._flange = carrying.rotation if carrying.freedom == "zero" else None
+        self._tool = _tool_of(orientation) if _commands_the_flange(position, orientation) else None
+        total = orientation.image_on(carrying)
+        self.FREEDOM = total.freedom
+        self._orientations: Image = total.rotation, total.base_axis, total.flange_axis
+        self._describe(position, orientation)
+        self._seal()
+
+    def _describe(self, first: Mechanism, second: Mechanism) -> None:
+        """Set the axes, the bytes and the margins of both parts."""
+        self._count = count = len(first.AXES)
+        self.AXES = first.AXES + _distinct(second.AXES, first.AXES)
+        self.CONFIGURATION = first.CONFIGURATION + _distinct(second.CONFIGURATION, first.CONFIGURATION)
+        self.DEFAULT_CONFIGURATION = first.DEFAULT_CONFIGURATION + second.DEFAULT_CONFIGURATION
+        taken = first.MARGINS
+        self.MARGINS = taken + tuple(f"orientation_{m}" if m in taken else m for m in second.MARGINS)
+        self.READS_ROTATION = first.READS_ROTATION or second.READS_ROTATION
+        self.BRANCHES = first.BRANCHES + second.BRANCHES
+        self.HELD = first.HELD + tuple(count + i for i in second.HELD)
+        self.PERIOD_AXES = first.PERIOD_AXES + tuple(count + i for i in second.PERIOD_AXES)
+        angles = tuple(i for i, axis in enumerate(self.AXES) if axis.unit != "u")
+        seen = set(first.DISTANCE_AXES) & set(angles) or not first.BRANCHES
+        self.DISTANCE_AXES = angles if seen and angles else (*first.DISTANCE_AXES, *angles)
+        rotary = (Criterion(angles, TIE * (first._full_turn() / 360.0) ** 2),) if angles else ()
+        self._nearest_by = rotary if seen and angles else (*rotary, *first._criteria)
+
+    @property
+    def _criteria(self) -> tuple[Criterion, ...]:
+        return self._nearest_by
+
+    def __repr__(self) -> str:
+        """The call that makes this mechanism."""
+        return f"Coupled({self.position_part!r}, {self.orientation_part!r})"
+
+    def _keywords(self) -> dict[str, Any]:
+        return {"position": self.position_part, "orientation": self.orientation_part}
+
+    def __hash__(self) -> int:
+        """A hash by value."""
+        return hash((type(self), self.position_part, self.orientation_part))
+
+    __eq__ = Mechanism.__eq__
+
+    @property
+    def limits(self) -> dict[str, Ends | None]:
+        """The limits of both parts: those of the axes, then those of other quantities."""
+        first, second = self.position_part, self.orientation_part
+        own = {
+            axis.name: second.limits[name.name]
+            for axis, name in zip(self.AXES[self._count :], second.AXES, strict=True)
+        }
+        return {axis.name: first.limits[axis.name] for axis in first.AXES} | own | first.limits
+
+    def changed(self, **parameters: Any) -> Self:
+        """A coupling of this kind with other parts: `position=` and `orientation=`."""
+        made: Self = super().changed(**parameters)
+        return made
+
+    def in_degrees(self) -> Self:
+        """The same coupling of the parts in degrees."""
+        first, second = self.position_part.in_degrees(), self.orientation_part.in_degrees()
+        return self if first is self.position_part else type(self)(first, second)
+
+    def in_radians(self) -> Self:
+        """The same coupling in radians: see `Mechanism.in_radians`."""
+        return super().in_radians() if self.in_degrees() is self else self
+
+    def _full_turn(self) -> float:
+        return self.position_part._full_turn()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Both parts as plain data."""
+        parts = self.position_part.to_dict(), self.orientation_part.to_dict()
+        return {"mechanism": "Coupled", "position": parts[0], "orientation": parts[1]}
+
+    @classmethod
+    def from_dict(cls, given: Mapping[str, Any]) -> Self:
+        """The coupling of `to_dict`. Raises NOT_INITIALIZED for other data, INVALID_COUPLING for an impossible pair."""
+        values = dict(given)
+        is_radian = values.pop("in_radians", False)
+        if values.pop("mechanism", "Coupled") != "Coupled" or set(values) != {"position", "orientation"}:
+            raise KinematicsError(Status.NOT_INITIALIZED, "Coupled: the entries must be position and orientation")
+        for part in ("position", "orientation"):
+            if not isinstance(values[part], Mapping):
+                raise KinematicsError(Status.NOT_INITIALIZED, f"Coupled: {part} must be the dictionary of a machine")
+        position = Mechanism.from_dict(values["position"])
+        orientation = OrientationKinematics.from_dict(values["orientation"])
+        made = cls(position, orientation)
+        return made.in_radians() if is_radian else made
+
+    @property
+    def _branch_bytes(self) -> list[int]:
+        return [i for i, byte in enumerate(self.CONFIGURATION) if byte.kind == "branch"]
+
+    @property
+    def _period_bytes(self) -> list[int]:
+        return [i for i, byte in enumerate(self.CONFIGURATION) if byte.kind == "period"]
+
+    def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Turns]:
+        """The branch bytes and the commanded turns of both parts."""
+        given = self.DEFAULT_CONFIGURATION if configuration is None else configuration
+        found = bytes_of(given, len(self.CONFIGURATION))
+        return tuple(found[i] for i in self._branch_bytes), tuple(found[i] for i in self._period_bytes)
+
+    def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:
+        first, turning = self.position_part.BRANCHES, len(self.position_part.PERIOD_AXES)
+        return branches[:first] + periods[:turning] + branches[first:] + periods[turning:]
+
+    def _turn_sizes(self) -> Reals:
+        return self.position_part._turn_sizes() + self.orientation_part._turn_sizes()
+
+    def _periods(self, axes: Reals) -> Configuration:
+        return self.position_part._periods(axes[: self._count]) + self.orientation_part._periods(axes[self._count :])
+
+    def _written(self, margins: Reals, axes: Reals) -> Configuration:
+        """The configuration of a pose: the bytes of the first part, then those of the second."""
+        first, second, cut = self.position_part, self.orientation_part, self.position_part.BRANCHES
+        carrier_bytes = first._written(margins[:cut], axes[: self._count])
+        return carrier_bytes + second._written(margins[cut:], axes[self._count :])
+
+    def _forward(self, axes: Reals) -> Pose | Status:
+        carrier = self.position_part._forward(axes[: self._count])
+        if isinstance(carrier, Status):
+            return carrier
+        own = self.orientation_part._forward(axes[self._count :])
+        if isinstance(own, Status):
+            return own
+        position, flange, margins = carrier
+        return plus(position, turned(flange, own[0])), product(flange, own[1]), margins + own[2]
+
+    def _orientation(self, axes: Reals) -> Rotation | Status:
+        flange = self.position_part._orientation(axes[: self._count])
+        if isinstance(flange, Status):
+            return flange
+        own = self.orientation_part._orientation(axes[self._count :])
+        return own if isinstance(own, Status) else product(flange, own)
+
+    def _branch(
+        self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
+    ) -> Reals | Diagnosis:
+        """The axes of both parts: those that reach the position, and those that orient the tool on the flange."""
+        solve = self._position_first if self._flange is None else self._orientation_first
+        axes = solve(position, rotation, *self._split(signs, turns, reference))
+        return (
+            Diagnosis(axes, f"{self.orientation_part.NAME}: its end point", 0.0) if isinstance(axes, Status) else axes
+        )
+
+    def _split(self, signs: Signs, turns: Turns, reference: Reals) -> tuple[_Choice, _Choice]:
+        """The signs, the turns and the reference of each part."""
+        first, cut = self.position_part, len(self.position_part.PERIOD_AXES)
+        carrier = signs[: first.BRANCHES], turns[:cut], reference[: self._count]
+        return carrier, (signs[first.BRANCHES :], turns[cut:], reference[self._count :])
+
+    def _orientation_first(
+        self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
+    ) -> Reals | Diagnosis | Status:
+        """The axes where the flange keeps its orientation: first the orientation axes, then the position axes."""
+        flange = self._flange
+        assert flange is not None
+        own = self.orientation_part._branch(_ORIGIN, seen_from(flange, rotation), *wrist)
+        if isinstance(own, Diagnosis):
+            return _of(self.orientation_part, own)
+        end = self.orientation_part._forward(own)
+        if isinstance(end, Status):
+            return end
+        axes = self.position_part._branch(plus(position, turned(flange, end[0]), -1.0), rotation, *carrier)
+        return _of(self.position_part, axes) if isinstance(axes, Diagnosis) else axes + own
+
+    def _position_first(
+        self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
+    ) -> Reals | Diagnosis | Status:
+        """The axes where the position axes turn the flange: in an allowed pair the position axes are solved first."""
+        if self._tool is not None:
+            return self._with_tool(position, rotation, carrier, *self._tool)
+        shift = self.orientation_part._end_point_shift(rotation, *self._axis)
+        if isinstance(shift, Status):
+            return shift
+        axes = self.position_part._branch(plus(position, shift, -1.0), rotation, *carrier)
+        if isinstance(axes, Diagnosis):
+            return _of(self.position_part, axes)
+        flange = self.position_part._orientation(axes)
+        if isinstance(flange, Status):
+            return flange
+        own = self.orientation_part._branch(_ORIGIN, seen_from(flange, rotation), *wrist)
+        return _of(self.orientation_part, own) if isinstance(own, Diagnosis) else axes + own
+
+    def _with_tool(
+        self, position: Vector, rotation: Rotation, carrier: _Choice, end: Vector, turn: Rotation
+    ) -> Reals | Diagnosis:
+        """The axes of the position part where the commanded rotation determines how they turn the flange."""
+        wanted = product(rotation, transposed(turn))
+        flange = self.position_part._nearest_flange(wanted)
+        shift = _ORIGIN if isinstance(flange, Status) else turned(flange, end)  # refused below, with the reason
+        axes = self.position_part._branch(plus(position, shift, -1.0), wanted, *carrier)
+        return _of(self.position_part, axes) if isinstance(axes, Diagnosis) else axes
+
+    def _follows(self) -> str:
+        """The orientation part follows the rotation; without axes it is a tool on the flange of the position part."""
+        position, orientation = self.position_part, self.orientation_part
+        if self.FREEDOM == "zero" or not orientation.AXES:
+            return position._follows()
+        follows = orientation._follows()
+        return SEVERAL_AXES if follows == TURN and self.FREEDOM == "three" else follows
+
+    def _nearest_flange(self, rotation: Rotation) -> Rotation | Status:
+        """The nearest rotation of the tool, where the commanded rotation determines the turn of the flange."""
+        if self._tool is not None:
+            _, turn = self._tool
+            flange = self.position_part._nearest_flange(product(rotation, transposed(turn)))
+            return flange if isinstance(flange, Status) else product(flange, turn)
+        at_zero = self.position_part.orientation_image().rotation
+        own = self.orientation_part._nearest_flange(seen_from(at_zero, rotation))
+        return own if isinstance(own, Status) else product(at_zero, own)
+
+    def _limits(self, axes: Reals) -> Diagnosis | None:
+        parts = (self.position_part, axes[: self._count]), (self.orientation_part, axes[self._count :])
+        for part, own in parts:
+            refused = part._beyond_limits(own)
+            if refused is not None:
+                return _of(part, refused)
+        return None
+
+    def _parameter_units(self) -> dict[str, str]:
+        return self.orientation_part._parameter_units() | self.position_part._parameter_units()
+
+    def _ranges(self) -> tuple[tuple[float, float], ...]:
+        """The ranges of all axes, then of all other quantities."""
+        first, second = self.position_part._ranges(), self.orientation_part._ranges()
+        cut, count = self._count, len(self.orientation_part.AXES)
+        return first[:cut] + second[:count] + first[cut:] + second[count:]
+
+    def _quantities(self, axes: Reals) -> Reals | Status:
+        first, second = (
+            self.position_part._quantities(axes[: self._count]),
+            self.orientation_part._quantities(axes[self._count :]),
+        )
+        if isinstance(first, Status):
+            return first
+        return second if isinstance(second, Status) else first + second
+
+    def _has_one_solution_a_branch(self) -> bool:
+        return self.position_part._has_one_solution_a_branch() and self.orientation_part._has_one_solution_a_branch()
+
+    def _singularity(self, axes: Reals) -> Reals | Status:
+        carrier = self.position_part._singularity(axes[: self._count])
+        if isinstance(carrier, Status):
+            return carrier
+        own = self.orientation_part._singularity(axes[self._count :])
+        return own if isinstance(own, Status) else carrier + own
+
+    def _jacobian(self, axes: Reals) -> Matrix | Status:
+        """The Jacobian: the flange moves the end point as a rigid body, and the orientation axes move it relatively."""
+        first, second = axes[: self._count], axes[self._count :]
+        carrier, own = self.position_part._twist(first), self.orientation_part._twist(second)
+        flange, end = self.position_part._orientation(first), self.orientation_part._forward(second)
+        for part in (carrier, own, flange, end):
+            if isinstance(part, Status):
+                return part
+        assert not (isinstance(carrier, Status) or isinstance(own, Status))
+        assert not (isinstance(flange, Status) or isinstance(end, Status))
+        arm = turned(flange, end[0])
+        columns = [moved(column, arm) for column in zip(*carrier, strict=True)]
+        columns += [(*turned(flange, c[:3]), *turned(flange, c[3:])) for c in zip(*own, strict=True)]
+        return tuple(zip(*columns, strict=True)) if columns else ((),) * len(TWIST)
+
+    def _image(self) -> Image | Status:
+        return self._orientations
+
+    def _array_programs(self) -> Programs:
+        """The programs on arrays, which run those of both parts one after the other."""
+        from softkin._array_coupled import CoupledPrograms
+
+        return CoupledPrograms(self.position_part, self.orientation_part, self._flange, self._axis, self._tool)
+
+
+def _check(position: Mechanism, orientation: Mechanism) -> None:
+    """Refuse any other pair, and a pair whose axes a commanded frame does not determine."""
+    for place, part, role in (("first", position, "position"), ("second", orientation, "orientation")):
+        found = part.ROLE if isinstance(part, Mechanism) else None
+        if found != role:
+            name = f"{part.NAME} is {_a(found)} kinematics" if found else f"{part!r} is no mechanism"
+            raise _refused(f"the {place} part must be {_a(role)} kinematics, but {name}")
+    assert isinstance(orientation, OrientationKinematics)
+    if position._full_turn() != orientation._full_turn():
+        raise _refused(f"{position!r} and {orientation!r} must have the same unit of angles")
+    if isinstance(position, TwistChoice) and orientation.AXES:
+        raise _refused(f"{position.NAME} follows the turn of the tool itself: {orientation.NAME} may have no axes")
+    image = position.orientation_image()
+    if not _commands_the_flange(position, orientation) and not orientation.is_compatible(image):
+        how = "about one axis" if image.freedom == "one" else "freely"
+        raise _refused(
+            f"the axes of {position.NAME} turn its flange {how}, and a commanded frame does not determine where "
+            f"{orientation!r} then has its end point: only shifts along the axis of that turn, and those whose "
+            "direction the commanded rotation tells, may be there; all others must be 0"
+        )
+
+
+def _commands_the_flange(position: Mechanism, orientation: OrientationKinematics) -> bool:
+    """Whether the commanded rotation determines how the position axes turn the flange: then any tool is allowed."""
+    return position._follows() == TURN and not orientation.AXES
+
+
+def _tool_of(orientation: OrientationKinematics) -> tuple[Vector, Rotation]:
+    """Position and rotation of an orientation kinematics without axes."""
+    pose = orientation._forward(())
+    if isinstance(pose, Status):
+        raise _refused(f"{orientation.NAME} has no end point: {pose.meaning}")
+    position, rotation, _ = pose
+    return position, rotation
+
+
+def _a(role: str) -> str:
+    """A role with its article."""
+    return f"{'an' if role[0] in 'aeiou' else 'a'} {role}"
+
+
+def _of(part: Mechanism, refused: Diagnosis) -> Diagnosis:
+    """The reason with the name of the part that refuses."""
+    return refused._replace(reason=f"{part.NAME}: {refused.reason}")
+
+
+def _refused(message: str) -> KinematicsError:
+    return KinematicsError(Status.INVALID_COUPLING, f"Coupled: {message}")
+
+
+def _distinct(own: tuple[_Named, ...], others: tuple[_Named, ...]) -> tuple[_Named, ...]:
+    """The axes or bytes of the second part, with names that the first part does not have."""
+    taken = {other.name for other in others}
+    return tuple(replace(one, name=f"orientation {one.name}") if one.name in taken else one for one in own)

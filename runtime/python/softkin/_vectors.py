@@ -1,0 +1,43 @@
+"""Vectors and rotations of couplings, bases and tools, as plain numbers."""
+
+from __future__ import annotations
+
+from softkin._types import Reals, Rotation, Vector
+
+
+def plus(first: Vector, second: Vector, sign: float = 1.0) -> Vector:
+    """The sum of two vectors, or their difference for a sign of -1."""
+    return first[0] + sign * second[0], first[1] + sign * second[1], first[2] + sign * second[2]
+
+
+def turned(rotation: Rotation, vector: Reals) -> Vector:
+    """The product of a rotation and a vector."""
+    x, y, z = vector
+    a, b, c = rotation
+    return a[0] * x + a[1] * y + a[2] * z, b[0] * x + b[1] * y + b[2] * z, c[0] * x + c[1] * y + c[2] * z
+
+
+def product(first: Rotation, second: Rotation) -> Rotation:
+    """The product of two rotations."""
+    a, b, c = (turned(first, column) for column in zip(*second, strict=True))
+    return (a[0], b[0], c[0]), (a[1], b[1], c[1]), (a[2], b[2], c[2])
+
+
+def transposed(rotation: Rotation) -> Rotation:
+    """The inverse of a rotation: its rows are the columns."""
+    (a, b, c), (d, e, f), (g, h, i) = rotation
+    return (a, d, g), (b, e, h), (c, f, i)
+
+
+def seen_from(base: Rotation, rotation: Rotation) -> Rotation:
+    """A rotation expressed in the frame of another rotation."""
+    return product(transposed(base), rotation)
+
+
+def moved(twist: Reals, arm: Vector) -> Reals:
+    """The twist of a body, moved to the end of an arm that is fixed to the body."""
+    x, y, z, about_x, about_y, about_z = twist
+    x += about_y * arm[2] - about_z * arm[1]
+    y += about_z * arm[0] - about_x * arm[2]
+    z += about_x * arm[1] - about_y * arm[0]
+    return x, y, z, about_x, about_y, about_z
