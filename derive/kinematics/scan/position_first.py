@@ -12,6 +12,7 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, Task, Turning
+from derive.equations.closures.fixed_names import fixed_lets
 from derive.geometry.frames import Chain, Factor
 from derive.ir.passes import depending_on, needed_lets
 from derive.ir.program import Let, Statement, rewritten
@@ -57,9 +58,13 @@ def _placed(joint: Joint) -> Iterable[Let]:
 
 
 def _target(both: Scanned) -> tuple[Let, ...]:
-    """The point that the joints in front of the wrist bring to where the pose has it."""
+    """The point that the joints in front of the wrist bring to where the pose has it.
+
+    Cosines of fixed angles stand in it as such: the loops of the program bind their names for themselves.
+    """
     target = both.trial.closure.target
-    lets = {let.name: let.value for let in target.lets}
+    fixed = {let.name: let.value for let in fixed_lets(both.mechanism)}
+    lets = fixed | {let.name: let.value.xreplace(fixed) for let in target.lets}
     point = (sp.sympify(value).xreplace(lets) for value in target.point)
     named = (Let(real(f"{c}{_PLACED}_at"), value) for c, value in zip(COORDINATE_NAMES, point, strict=True))
     return tuple(s for s in with_goal(tuple(named)) if isinstance(s, Let))

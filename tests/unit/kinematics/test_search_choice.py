@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from sympy import cos, sin
+from sympy import cos, pi, sin
 
 from derive.description.mechanism import Mechanism, Parameter, Task, Turning, branch, distance, length
 from derive.description.validate import validate
@@ -147,3 +147,13 @@ def test_a_commanded_point_is_searched_without_a_step_of_two_roots(name: str) ->
     evidence = witness(kinematics, OF_DEGREE_FOUR[name])
     assert evidence.inverted is not None and evidence.inverted.missed is not None
     assert evidence.inverted.missed[0] == 0 and evidence.inverted.missed[1] > 50
+
+
+def test_fixed_angles_in_front_of_a_wrist_and_in_it_have_their_own_names_in_every_loop() -> None:
+    """Newton's method on the position stands in front of that on the closure, which binds their cosines, too."""
+    front = Rz(A1) * Ty(235) * Tx(216) * Rx(1.234) * Rz(A2) * Ty(294) * Tz(198) * Ry(pi / 3) * Rx(A3)
+    forearm = Ty(268) * Tx(376) * Tz(265) * Rx(pi / 3)
+    wrist = Rz(A4) * Rx(0.7) * Rz(A5) * Rx(0.9) * Rz(A6)
+    mechanism = arm(front * forearm * wrist * Tx(366) * Tz(232) * Ty(221) * Ry(pi / 7))
+    found = witness(build(mechanism), mechanism).inverted
+    assert found is not None and found.missed is not None and found.missed[0] == 0 < found.solutions
