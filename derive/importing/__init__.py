@@ -11,5 +11,7 @@ line: the command line of an import
 naming: names of axes, parameters and blocks, made of the names in the file
 report: the report of an import for its user
 robot: the content of a robot file, as data that are independent of the file format
+rod_texts: rods that meet in the tip as text, and their report
+rods: rods that meet in the tip: the places where they hang, in the axes, and their lengths
 writing: a description as text
 """

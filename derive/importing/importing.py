@@ -23,7 +23,9 @@ from derive.importing.formats.tables import read_table
 from derive.importing.formats.urdf import read_urdf
 from derive.importing.naming import axis_names
 from derive.importing.report import Bounds, bounds, closed_form, neighbours, redundant, snaps, weak_axes
-from derive.importing.robot import Robot, UnreadableRobot, about
+from derive.importing.robot import Robot, Rods, UnreadableRobot, about
+from derive.importing.rod_texts import rods_report, rods_written
+from derive.importing.rods import linkage
 from derive.importing.writing import FAR, Description, description_of, written
 
 UNITS = {"mm": 1000.0, "m": 1.0}
@@ -78,7 +80,7 @@ def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa:
         count = "no joint moves" if not robot.axes else f"{len(robot.axes)} joints move (at most {_MOST_AXES} can)"
         raise UnreadableRobot(f"{path}: {count} between {robot.base!r} and {robot.tip!r}")
     try:
-        return _imported(robot, options)
+        return _imported(robot, options) if robot.rods is None else _with_rods(robot, robot.rods, options)
     except UnreadableRobot as problem:
         raise UnreadableRobot(f"{path}: {problem}") from None
 
@@ -119,9 +121,25 @@ def _imported(robot: Robot, options: Options) -> Imported:
             *notes,
         ]
     )
-    report = "".join(c if c.isprintable() or c == "\n" else " " for c in report)
     text = written(robot, description, task, options.unit, notes)
-    return Imported(description.name, text, report, moved, found, robot, axes, task)
+    return Imported(description.name, text, _shown(report), moved, found, robot, axes, task)
+
+
+def _with_rods(robot: Robot, rods: Rods, options: Options) -> Imported:
+    if options.hold:
+        raise UnreadableRobot("every axis of its rods moves the tip: none can be held (--hold)")
+    found = linkage(robot, rods, options.snap)
+    moved = tuple(one for hanger in found.hangers for one in hanger.moved)
+    bound = Bounds(max(h.bounds.position for h in found.hangers), max(h.bounds.rotation for h in found.hangers))
+    changes = snaps(moved, (), bound, options.snap, options.unit, "The end of an arm")
+    report = _shown("\n".join([*rods_report(found, options.unit), *changes, *robot.notes]))
+    axes, task = found.description.axes, Followed(found.position, "NONE")
+    text = rods_written(found, options.unit)
+    return Imported(found.description.name, text, report, moved, bound, robot, axes, task)
+
+
+def _shown(report: str) -> str:
+    return "".join(c if c.isprintable() or c == "\n" else " " for c in report)
 
 
 def _faced(arm: Arm, task: Followed) -> tuple[Arm, tuple[str, ...]]:

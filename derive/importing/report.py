@@ -139,7 +139,14 @@ def _above(amount: float) -> str:
     return f"{np.ceil(amount / digits * (1 - 1e-12)) * digits:.2g}"
 
 
-def snaps(moved: Sequence[Snapped], missed: Sequence[float], found: Bounds, snap: float, unit: str) -> Iterator[str]:
+def snaps(
+    moved: Sequence[Snapped],
+    missed: Sequence[float],
+    found: Bounds,
+    snap: float,
+    unit: str,
+    what: str = "Forward kinematics",
+) -> Iterator[str]:
     """The changes that were made, and their largest effect on a pose."""
     if missed:
         yield (
@@ -152,7 +159,4 @@ def snaps(moved: Sequence[Snapped], missed: Sequence[float], found: Bounds, snap
     yield f"Snapped (what the file has rounded, and what is within --snap {snap:g} of the size, or of one radian):"
     for one in moved:
         yield f"  {one.what} by {one.amount:.2g} {'rad' if one.is_angle else unit}"
-    yield (
-        f"Forward kinematics differs from the file's by at most {found.position:.2g} {unit} and "
-        f"{found.rotation:.2g} rad."
-    )
+    yield (f"{what} differs from the file's by at most {found.position:.2g} {unit} and {found.rotation:.2g} rad.")

@@ -104,6 +104,26 @@ class Axis:
 
 
 @dataclass(frozen=True)
+class RodArm:
+    """An arm with one axis, from the base to where a rod hangs on it; that rod, and its length."""
+
+    steps: tuple[Step, ...]
+    rod: str
+    length: float
+
+
+@dataclass(frozen=True)
+class Rods:
+    """Rods that meet in the tip, one for each axis."""
+
+    arms: tuple[RodArm, ...]
+    plane: int | None
+    """The axis x, y or z (0, 1, 2) of the base about which all joints turn; None in space."""
+    drawn: Triple | None
+    """Where the file draws the tip; None where it draws the rods apart."""
+
+
+@dataclass(frozen=True)
 class Robot:
     """A chain from the base to the tip, and the axes that move it in the order of the chain."""
 
@@ -115,6 +135,8 @@ class Robot:
     axes: tuple[Axis, ...]
     notes: tuple[str, ...] = ()
     """Omissions and assumptions: sentences for the report."""
+    rods: Rods | None = None
+    """What moves the tip where no chain of steps does."""
 
 
 def reversed_step(step: Step, is_reversed: bool = True) -> tuple[Step, ...]:

@@ -21,7 +21,8 @@ from derive.importing.expressions import Dimension, amount_text, dimension_of, f
 from derive.importing.naming import axis_names, block_name
 from derive.importing.robot import Axis, Robot, UnreadableRobot
 
-_WIDTH = 118
+WIDTH = 120
+"""Of the lines of a description."""
 FAR = 1e6
 """A limit beyond this many degrees or units of length counts as no limit."""
 _FRAMES = ("Rx", "Ry", "Rz", "Tx", "Ty", "Tz", "flip_x")
@@ -42,7 +43,7 @@ def description_of(robot: Robot, arm: Arm, chain: Simple, task: Followed) -> Des
     """The names and texts of a chain."""
     axes = axis_names(robot)
     places = turns(chain.pieces, axes)
-    dimensions = _distinct([dimension_of(piece, places, arm.size) for piece in chain.pieces])
+    dimensions = distinct([dimension_of(piece, places, arm.size) for piece in chain.pieces])
     flips = task.turning == "ABOUT_Z"
     if flips:
         _refuse_leaning(chain, len(places))
@@ -65,7 +66,7 @@ def _refuse_leaning(chain: Simple, tip: int) -> None:
         )
 
 
-def _distinct(dimensions: Sequence[Dimension | None]) -> list[Dimension | None]:
+def distinct(dimensions: Sequence[Dimension | None]) -> list[Dimension | None]:
     """The dimensions with names that differ: two turns between the same axes may be about the same letter."""
     found: list[Dimension | None] = []
     for one in dimensions:
@@ -77,12 +78,12 @@ def _distinct(dimensions: Sequence[Dimension | None]) -> list[Dimension | None]:
 def written(robot: Robot, description: Description, task: Followed, unit: str, notes: Sequence[str]) -> str:
     """The text of the mechanism file."""
     body = [
-        _docstring(robot, description, unit, notes),
+        docstring(robot, description, unit, notes),
         "",
         *_imports(description, task, robot),
         "",
-        *(_dimension(d) for d in description.dimensions),
-        *(_axis(n, a) for n, a in zip(description.axes, robot.axes, strict=True)),
+        *(dimension_line(d) for d in description.dimensions),
+        *(axis_line(n, a) for n, a in zip(description.axes, robot.axes, strict=True)),
         "",
         *_mechanism(robot, description, task),
         "",
@@ -90,9 +91,10 @@ def written(robot: Robot, description: Description, task: Followed, unit: str, n
     return "\n".join(body)
 
 
-def _docstring(robot: Robot, description: Description, unit: str, notes: Sequence[str]) -> str:
+def docstring(robot: Robot, description: Description, unit: str, notes: Sequence[str]) -> str:
+    """What the description is of, and what was left out."""
     about = f"{description.name}: {robot.base} to {robot.tip} of {robot.source}. Lengths in {unit}, angles in degrees."
-    texts = [line for text in (about, *notes) for line in wrap(_plain(text), _WIDTH - 2)]
+    texts = [line for text in (about, *notes) for line in wrap(plain(text), WIDTH - 4)]
     return (
         '"""'
         + "\n".join([texts[0], "", *texts[1:]] if len(texts) > 1 else texts)
@@ -100,7 +102,7 @@ def _docstring(robot: Robot, description: Description, unit: str, notes: Sequenc
     )
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
     """Text of a file as a part of one line, without characters that would end a string."""
     return re.sub(r'["\\\s]+', " ", printable(text)).strip()
 
@@ -118,17 +120,19 @@ def _imports(description: Description, task: Followed, robot: Robot) -> list[str
     names |= {"linear" if a.kind is Kind.LINEAR else "rotary" for a in robot.axes}
     ordered = sorted(names, key=lambda n: (n[0].islower(), n))
     lines = [f"from sympy import {', '.join(sorted(functions))}", ""] if functions else []
-    return [*lines, f"from derive.frames import {', '.join(frames)}", *_import("derive.mechanism", ordered)]
+    return [*lines, f"from derive.frames import {', '.join(frames)}", *import_lines("derive.mechanism", ordered)]
 
 
-def _import(module: str, names: list[str]) -> list[str]:
+def import_lines(module: str, names: list[str]) -> list[str]:
+    """An import of names."""
     line = f"from {module} import {', '.join(names)}"
-    if len(line) <= _WIDTH + 2:
+    if len(line) <= WIDTH:
         return [line]
     return [f"from {module} import (", *(f"    {name}," for name in names), ")"]
 
 
-def _dimension(dimension: Dimension) -> str:
+def dimension_line(dimension: Dimension) -> str:
+    """A parameter of the description."""
     kind = "angle" if dimension.is_angle else "length"
     value = repr(float(dimension.value))
     return _call(
@@ -137,9 +141,10 @@ def _dimension(dimension: Dimension) -> str:
     )
 
 
-def _axis(name: str, axis: Axis) -> str:
+def axis_line(name: str, axis: Axis) -> str:
+    """A joint of the description."""
     kind = "linear" if axis.kind is Kind.LINEAR else "rotary"
-    arguments = [f'"{name}"', f'"{_plain(axis.name)}"']
+    arguments = [f'"{name}"', f'"{plain(axis.name)}"']
     if axis.limits is not None and limits_of(axis) != (-FAR, FAR):
         low, high = limits_of(axis)
         arguments.append(f"limits=({low!r}, {high!r})")
@@ -156,39 +161,47 @@ def limits_of(axis: Axis) -> tuple[float, float]:
 
 def _call(function: str, arguments: list[str]) -> str:
     line = f"{function}({', '.join(arguments)})"
-    if len(line) <= _WIDTH + 2:
+    if len(line) <= WIDTH:
         return line
     return f"{function}(\n    {', '.join(arguments)}\n)"
 
 
 def _mechanism(robot: Robot, description: Description, task: Followed) -> list[str]:
     chain = f"    chain={' * '.join(description.factors)},"
-    if len(chain) > _WIDTH + 2:
+    if len(chain) > WIDTH:
         chain = "    chain=" + "\n    * ".join(description.factors) + ","
     held = [description.axes[k] for k in task.held]
     turning = "" if task.turning == "NONE" else f", Turning.{task.turning}"
+    return [
+        *head_lines(robot, description),
+        chain,
+        f'    task=Task("{task.position}"{turning}),',
+        *_branches(description.branches),
+        *(tuple_lines("held", held) if held else ()),
+        "    offset_interface=False,",
+        ")",
+    ]
+
+
+def head_lines(robot: Robot, description: Description) -> list[str]:
+    """The mechanism, up to its joints."""
     count = len(description.axes)
     return [
         "MECHANISM = Mechanism(",
         f'    name="{description.name}",',
         "    vendor=Vendor.TEXTBOOK,",
         '    family="imported",',
-        f'    source="{_plain(robot.source)}",',
-        f'    summary="{_plain(robot.name)} with {count} ax{"i" if count == 1 else "e"}s.",',
-        *_tuple("parameters", [d.variable for d in description.dimensions]),
-        *_tuple("joints", list(description.axes)),
-        chain,
-        f'    task=Task("{task.position}"{turning}),',
-        *_branches(description.branches),
-        *(_tuple("held", held) if held else ()),
-        "    offset_interface=False,",
-        ")",
+        f'    source="{plain(robot.source)}",',
+        f'    summary="{plain(robot.name)} with {count} ax{"i" if count == 1 else "e"}s.",',
+        *tuple_lines("parameters", [d.variable for d in description.dimensions]),
+        *tuple_lines("joints", list(description.axes)),
     ]
 
 
-def _tuple(word: str, names: list[str]) -> list[str]:
+def tuple_lines(word: str, names: list[str]) -> list[str]:
+    """An argument that is a tuple of names."""
     line = f"    {word}=({', '.join(names)}{',' if len(names) == 1 else ''}),"
-    if len(line) <= _WIDTH + 2:
+    if len(line) <= WIDTH:
         return [line]
     return [f"    {word}=(", *(f"        {name}," for name in names), "    ),"]
 

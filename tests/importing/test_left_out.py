@@ -77,11 +77,12 @@ OPEN: Mapping[str, str] = {
 
 @pytest.mark.parametrize("name", BOUND)
 def test_a_loop_that_binds_the_arm_is_refused(name: str, tmp_path: Path) -> None:
+    """The rods meet beside the tip (`test_rods` has those that meet in it)."""
     closed, sentence = BOUND[name]
     path = tmp_path / "r.xml"
     path.write_text(LEGS.format("", closed, ACTUATORS), encoding="utf-8")
     with pytest.raises(UnreadableRobot) as refusal:
-        imported(path, tip="end1")
+        imported(path, tip="r1")
     said = str(refusal.value)
     assert sentence in said and "describe it with rods" in said
     assert ("'p1', 'p2' are passive" if "'r2'" in sentence else "passive") in said or "end" in sentence

@@ -2,7 +2,10 @@
 
 Like `importing`, it may import the folders from `ir` to `mechanisms`.
 
+bodies: the bodies and sites of an MJCF, the way between two of them, and their places
+connects: the loops of an MJCF
 documents: XML and the numbers in it; any fault is reported in one sentence
+legs: the legs of such a loop: motor, arm, and a rod to the point where all rods meet
 loops: closed loops of a file: an arm is not imported without one that binds its joints
 macros: what is left of xacro in a URDF: reported where the chain does not need it
 mimics: joints that follow others

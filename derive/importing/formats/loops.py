@@ -26,6 +26,8 @@ class Joints:
     used: Container[str]
     followers: Container[str | None]
     driven: Container[str | None]
+    no_rods: str = ""
+    """What keeps the loops that bind the chain from being rods that meet in the tip."""
 
 
 def loop_notes(path: Path, loops: Iterable[tuple[Loop, Sequence[str]]], joints: Joints) -> Iterator[str]:
@@ -35,13 +37,19 @@ def loop_notes(path: Path, loops: Iterable[tuple[Loop, Sequence[str]]], joints: 
     """
     for loop, inside in loops:
         closed = f"{loop.closed_by} closes a loop of the joints {', '.join(map(shown, inside))}"
-        following = [name for name in inside if name in joints.followers]
-        if following and len(following) >= len(inside) - 1:
+        if is_followed(inside, joints.followers):
             yield f"Not read, because its joints follow each other: {closed}."
         elif any(name in joints.used for name in inside):
-            raise UnreadableRobot(f"{path}: {closed}{_passive(inside, joints)}: {_REMEDY}")
+            why = f" (no rods that meet in the tip: {joints.no_rods})" if joints.no_rods else ""
+            raise UnreadableRobot(f"{path}: {closed}{_passive(inside, joints)}{why}: {_REMEDY}")
         elif inside:
             yield f"Not read, because no joint between base and tip is in it: {closed}."
+
+
+def is_followed(inside: Sequence[str], followers: Container[str | None]) -> bool:
+    """Whether the joints of a loop follow each other, so that one alone moves it."""
+    following = [name for name in inside if name in followers]
+    return bool(following) and len(following) >= len(inside) - 1
 
 
 _REMEDY = (

@@ -8,74 +8,102 @@ from __future__ import annotations
 
 import math
 from collections.abc import Container, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 from derive.description.joints import Kind
+from derive.importing.formats.bodies import WORLD, Frame, frames_of, own_joints, passed
+from derive.importing.formats.connects import Loops
 from derive.importing.formats.documents import between, limit, number, numbers, parsed, rounding, shown
+from derive.importing.formats.legs import Meeting, NoRods, meeting_of
 from derive.importing.formats.loops import Joints, Loop, loop_notes
 from derive.importing.formats.mimics import Follower, driven
 from derive.importing.formats.orientations import File, places_of
 from derive.importing.formats.trees import listed
 from derive.importing.formats.whole import whole
-from derive.importing.robot import Axis, Moving, Place, Robot, Shifted, Step, Triple, UnreadableRobot, reversed_step
+from derive.importing.robot import (
+    Axis,
+    Moving,
+    Robot,
+    RodArm,
+    Rods,
+    Shifted,
+    Step,
+    Triple,
+    UnreadableRobot,
+    reversed_step,
+)
 
 Element = ElementTree.Element
-WORLD = "world"
 _FREE = {"free": "moves freely in space", "ball": "turns freely about a point"}
 
 
-@dataclass(frozen=True)
-class Frame:
-    """A body or a site, below another body; a `<frame>` between them only shifts and turns."""
-
-    name: str
-    element: Element
-    parent: str | None
-    body_class: str | None
-    before: tuple[Place, ...] = ()
-
-
 def read_mjcf(path: Path, base: str | None, tip: str | None, scale: float) -> Robot:
-    """The chain between two bodies (or sites); without a name from the world to the one end there is."""
+    """The chain between two bodies (or sites), or the rods that meet in the tip; without a name from the world to the
+    one end there is, or to the point in which rods meet.
+    """
     file = _file(path, parsed(path), scale)
-    frames = {frame.name: frame for frame in _frames(file)}
+    frames = {frame.name: frame for frame in frames_of(file)}
     for word, name in (("base", base), ("tip", tip)):
         if name is not None and name not in frames:
             raise UnreadableRobot(
                 f"{path}: no body or site is called {name!r} (--{word}); there are {listed(list(frames))}"
             )
     base = base or WORLD
-    tip = tip or _only_end(path, file.root, frames)
-    passed = _passed(frames, base, tip)
-    if not passed:
-        raise UnreadableRobot(f"{path}: base and tip are the same body, {base!r}")
     joints = _joints(file, frames)
-    own = {name for frame, _ in passed for name, _ in _own_joints(frames[frame])}
+    why = ""
+    try:
+        if (meeting := meeting_of(Loops(file, frames, joints, base), tip)) is not None:
+            return _with_rods(file, frames, joints, base, tip, meeting)
+    except NoRods as problem:
+        why = str(problem)
+    return _open(file, frames, joints, base, tip or _only_end(path, file.root, frames, why), why)
+
+
+def _open(
+    file: File, frames: Mapping[str, Frame], joints: Mapping[str, dict[str, str]], base: str, tip: str, why: str
+) -> Robot:
+    """The chain from base to tip. why: what its loops lack, to be a machine of rods."""
+    way = passed(frames, base, tip)
+    if not way:
+        raise UnreadableRobot(f"{file.path}: base and tip are the same body, {base!r}")
+    own = {name for frame, _ in way for name, _ in own_joints(frames[frame])}
     followers = _followers(file, joints, own)
-    steps = tuple(s for name, is_up in passed for s in _steps(file, frames[name], joints, followers, is_up))
+    steps = tuple(s for name, is_up in way for s in _steps(file, frames[name], joints, followers, is_up))
     used = dict.fromkeys(name for s in steps if s.moving for name, _ in s.moving.drives)
     axes = tuple(_axis(file, name, joints[name]) for name in used)
-    title = file.root.get("model") or path.stem
     notes = _notes(file, joints, {*used, *(s.name for s in steps if s.moving)})
-    loops = _loop_notes(file, frames, joints, {*used, *own})
-    return Robot(title, f"{path.name} (MJCF)", base, tip, steps, axes, (*notes, *loops))
+    loops = _loop_notes(Loops(file, frames, joints, base), {*used, *own}, why)
+    return Robot(_title(file), _source(file), base, tip, steps, axes, (*notes, *loops))
 
 
-def _passed(frames: Mapping[str, Frame], base: str, tip: str) -> list[tuple[str, bool]]:
-    """The bodies from the base to the tip, each with whether it is passed from itself to its parent."""
-    up, down = _to_world(frames, base), _to_world(frames, tip)
-    while up and down and up[-1] == down[-1]:
-        up.pop()
-        down.pop()
-    return [*((name, True) for name in up), *((name, False) for name in reversed(down))]
+def _with_rods(
+    file: File,
+    frames: Mapping[str, Frame],
+    joints: Mapping[str, dict[str, str]],
+    base: str,
+    tip: str | None,
+    meeting: Meeting,
+) -> Robot:
+    """The arms from the base to the rods that meet in the tip."""
+    arms = []
+    for leg in meeting.legs:
+        steps = [s for n, is_up in passed(frames, base, leg.arm) for s in _steps(file, frames[n], joints, {}, is_up)]
+        arms.append(RodArm((*steps, Step(leg.rod, (Shifted(leg.elbow),))), leg.rod, leg.length))
+    axes = tuple(_axis(file, leg.motor, joints[leg.motor]) for leg in meeting.legs)
+    notes = [*_notes(file, joints, meeting.joints)]
+    if stops := [n for n in joints if n in meeting.joints - {a.name for a in axes} and joints[n].get("range")]:
+        notes.append(f"Not read: the limits of joints without a motor: {listed(stops)}.")
+    rods = Rods(tuple(arms), meeting.plane, meeting.drawn)
+    return Robot(_title(file), _source(file), base, tip or "the joint of the rods", (), axes, tuple(notes), rods)
 
 
-def _own_joints(frame: Frame) -> list[tuple[str, Element]]:
-    """The joints in a body, with their names."""
-    joints = frame.element.findall("joint")
-    return [(joint.get("name") or f"{frame.name}.{index}", joint) for index, joint in enumerate(joints)]
+def _title(file: File) -> str:
+    return file.root.get("model") or file.path.stem
+
+
+def _source(file: File) -> str:
+    return f"{file.path.name} (MJCF)"
 
 
 def _file(path: Path, root: Element, scale: float) -> File:
@@ -122,39 +150,7 @@ def _classes(root: Element, name: str | None) -> Sequence[Element]:
     return (below(top, ()) if name else None) or tuple(top)
 
 
-def _frames(file: File) -> Iterator[Frame]:
-    """The world, every body, and every site with a name."""
-    world = file.root.find("worldbody")
-    if world is None:
-        raise UnreadableRobot(f"{file.path}: has no worldbody")
-    names: set[str] = set()
-    for frame in (Frame(WORLD, world, None, None), *_below(file, world, Frame(WORLD, world, None, None), WORLD)):
-        if frame.name in names:
-            raise UnreadableRobot(f"{file.path}: two bodies or sites are called {frame.name!r}")
-        names.add(frame.name)
-        yield frame
-
-
-def _below(file: File, parent: Element, body: Frame, label: str) -> Iterator[Frame]:
-    """The bodies and sites in a body, or in a frame of it. label: the beginning of names for those without a name."""
-    for number_, element in enumerate(parent):
-        inner = element.get("childclass") or body.body_class
-        own = element.get("name") or f"{label}.{number_}"
-        if element.tag == "frame":
-            if element.find("joint") is not None or element.find("freejoint") is not None:
-                raise UnreadableRobot(
-                    f"{file.path}: a frame in body {body.name!r} holds a joint: write the joint into the body"
-                )
-            places = (*body.before, *places_of(file, element, f"frame {own!r}"))
-            yield from _below(file, element, replace(body, body_class=inner, before=places), own)
-        if element.tag == "site" and element.get("name"):
-            yield Frame(own, element, body.name, body.body_class, body.before)
-        if element.tag == "body":
-            yield (frame := Frame(own, element, body.name, inner, body.before))
-            yield from _below(file, element, replace(frame, before=()), own)
-
-
-def _only_end(path: Path, root: Element, frames: Mapping[str, Frame]) -> str:
+def _only_end(path: Path, root: Element, frames: Mapping[str, Frame], why: str) -> str:
     if root.find(".//replicate//body") is not None or root.find(".//attach") is not None:
         raise UnreadableRobot(
             f"{path}: replicates or attaches bodies: save the expanded model and import that, or choose with --tip"
@@ -165,15 +161,8 @@ def _only_end(path: Path, root: Element, frames: Mapping[str, Frame]) -> str:
         return ends[0]
     if not ends:
         raise UnreadableRobot(f"{path}: has no bodies")
-    raise UnreadableRobot(f"{path}: has {len(ends)} possible tips: choose with --tip: {listed(ends)}")
-
-
-def _to_world(frames: Mapping[str, Frame], name: str) -> list[str]:
-    found = []
-    while (parent := frames[name].parent) is not None:
-        found.append(name)
-        name = parent
-    return found
+    loops = f" (its loops are not rods that meet in one: {why})" if why else ""
+    raise UnreadableRobot(f"{path}: has {len(ends)} possible tips{loops}: choose with --tip: {listed(ends)}")
 
 
 def _steps(
@@ -184,7 +173,7 @@ def _steps(
     steps = [Step(frame.name, (*frame.before, *places))]
     if frame.element.find("freejoint") is not None:
         raise UnreadableRobot(f"{file.path}: body {frame.name!r} {_FREE['free']}: choose a base that it carries")
-    for name, _ in _own_joints(frame):
+    for name, _ in own_joints(frame):
         steps += _joint_steps(file, name, joints[name], followers)
     return [back for s in reversed(steps) for back in reversed_step(s)] if is_up else steps
 
@@ -229,7 +218,7 @@ def _joints(file: File, frames: Mapping[str, Frame]) -> dict[str, dict[str, str]
     """Every joint of the file, by its name, with its defaults."""
     found: dict[str, dict[str, str]] = {}
     for frame in frames.values():
-        for name, joint in _own_joints(frame):
+        for name, joint in own_joints(frame):
             if name in found:
                 raise UnreadableRobot(f"{file.path}: two joints are called {name!r}")
             found[name] = _defaults(file, joint, frame.body_class)
@@ -290,28 +279,7 @@ def _notes(file: File, joints: Mapping[str, object], passed: Container[str]) -> 
     return tuple(notes)
 
 
-def _loop_notes(
-    file: File, frames: Mapping[str, Frame], joints: Mapping[str, Mapping[str, str]], moving: Container[str]
-) -> Iterator[str]:
-    """The notes on the loops that equalities close. A body that moves freely, or that a program moves (mocap), is bound
-    by one, and closes none. moving: the joints that move the chain.
-    """
-    inside = []
-    for tag in ("connect", "weld"):
-        for equality in file.root.findall(f"equality/{tag}"):
-            first, second = (equality.get(f"body{k}") or equality.get(f"site{k}") or WORLD for k in (1, 2))
-            if equality.get("active") == "false" or first not in frames or second not in frames:
-                continue
-            passed = [frames[name] for name, _ in _passed(frames, first, second)]
-            if not any(_is_free(frame, joints) for frame in passed):
-                names = [name for frame in passed for name, _ in _own_joints(frame)]
-                inside.append((Loop(f"a {tag} of {first!r} and {second!r}", first, second), names))
-    driven = {e.get("joint") for e in file.root.findall("actuator/*")}
-    followers = [e.get("joint1") for e in file.root.findall("equality/joint") if e.get("active") != "false"]
-    yield from loop_notes(file.path, inside, Joints(moving, followers, driven))
-
-
-def _is_free(frame: Frame, joints: Mapping[str, Mapping[str, str]]) -> bool:
-    element = frame.element
-    is_free = element.find("freejoint") is not None or element.get("mocap") == "true"
-    return is_free or any(joints[name].get("type") == "free" for name, _ in _own_joints(frame))
+def _loop_notes(loops: Loops, moving: Container[str], why: str) -> Iterator[str]:
+    """The notes on the loops that equalities close. moving: the joints that move the chain."""
+    inside = [(Loop(f"a {c.tag} of {c.first!r} and {c.second!r}", c.first, c.second), c.joints) for c in loops.closed]
+    yield from loop_notes(loops.file.path, inside, Joints(moving, loops.followers, loops.driven, why))
