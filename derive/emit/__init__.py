@@ -8,6 +8,7 @@ What is the same for every mechanism stands in `runtime/`, in a folder for each 
 constants of the compiler from one file that the language writes. `runtime/native` has the extension module that joins
 the C of machines with Python.
 
+braced: how C and JavaScript spell expressions and parts of statements
 braces: indents, blocks with braces, and long statements broken into lines
 c/: C99
 conditions: the conditions of a refusal, one by one
@@ -24,8 +25,10 @@ page/: the derivation of a machine as HTML
 picture/: the drawing of a machine as PNG and SVG
 plcopen/: objects of a Structured Text project, and PLCopenXML
 python/: the Python package
+refusals: how a function of C or JavaScript refuses
 setup: the setup program of a machine, for Python, C and JavaScript
 shared_constants: the constants that the runtimes of Python, C and JavaScript read
 softmotion/: function blocks for SoftMotion
 st/: Structured Text
+walk: the walk over the statements of a program, and the statements of C and JavaScript
 """

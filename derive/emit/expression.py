@@ -7,8 +7,9 @@ functions do.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
+from typing import ClassVar
 
 import sympy as sp
 from sympy.core.relational import Relational
@@ -48,7 +49,14 @@ def is_larger(expression: sp.Basic) -> bool:
 
 
 class ExpressionPrinter(ABC):
-    """Writes an expression in a language. Subclasses spell names, numbers, calls and logical words."""
+    """Writes an expression in a language. Subclasses spell names, numbers, functions, choices and logical words."""
+
+    functions: ClassVar[Mapping[str, str]] = {}
+    """The functions of the language, by the values of `FUNCTION_KEYS`; any other one has its neutral name."""
+    square_root: ClassVar[str] = "sqrt"
+    """The root of what is never negative; empty if it is the same function as any root."""
+    radian: ClassVar[str] = "RADIAN"
+    """The degrees of a radian, by which the language multiplies; empty if it divides by `DEGREE` instead."""
 
     @abstractmethod
     def name(self, symbol: sp.Symbol) -> str:
@@ -59,8 +67,12 @@ class ExpressionPrinter(ABC):
         """A real literal."""
 
     @abstractmethod
+    def choice(self, condition: str, first: str, second: str) -> str:
+        """The first or the second of two printed values."""
+
     def call(self, key: str, arguments: Sequence[str]) -> str:
         """A primitive applied to printed arguments; `key` is a value of `FUNCTION_KEYS`."""
+        return self.choice(*arguments) if key == "select" else f"{self.functions.get(key, key)}({', '.join(arguments)})"
 
     def larger(self, first: str, second: str) -> str:
         """The larger of two printed numbers, the second where one is NaN; "" where it is written as a choice."""
@@ -103,6 +115,8 @@ class ExpressionPrinter(ABC):
             return self._number(node)
         if isinstance(node, sp.Add):
             return self._sum(node), _SUM
+        if self.radian and node.is_Mul and 1 / DEGREE in node.args:
+            return f"{self._text(node * DEGREE, PRODUCT)}*{self.radian}", PRODUCT
         if isinstance(node, sp.Mul | sp.Pow):
             return self._product(node)
         if isinstance(node, Relational):
@@ -124,6 +138,8 @@ class ExpressionPrinter(ABC):
             return self._joined(node, "or", _AND), _OR
         if is_larger(node) and (text := self.larger(*(self._text(a, _OR) for a in node.args[1:]))):
             return text, ATOM
+        if self.square_root and isinstance(node, Root) and is_never_negative(node.args[0]):
+            return f"{self.square_root}({self.print(node.args[0])})", ATOM
         key = FUNCTION_KEYS[type(node)]
         return self.call(key, [self._text(a, _OR) for a in node.args]), ATOM
 
@@ -180,6 +196,9 @@ class _Whole(ExpressionPrinter):
 
     def number(self, value: float) -> str:
         return str(int(value))
+
+    def choice(self, condition: str, first: str, second: str) -> str:
+        return self.language.choice(condition, first, second)
 
     def call(self, key: str, arguments: Sequence[str]) -> str:
         return self.language.call(key, arguments)

@@ -67,8 +67,18 @@ def names_in(program: Program) -> set[str]:
     values = [e for s in program.body for e in (*expressions(s), *reason_expressions(s))] + [
         o.value for o in program.outputs
     ]
-    given = {g.name for s in program.body if isinstance(s, FindRoot) for p in (s.trial, s.finish) for g in s.given(p)}
+    given = {g.name for s in searches(program) for p in (s.trial, s.finish) for g in s.given(p)}
     return {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
+
+
+def searches(program: Program) -> list[FindRoot]:
+    """The searches that a program makes."""
+    return [s for s in program.body if isinstance(s, FindRoot)]
+
+
+def search_of(kin: Kinematics) -> tuple[Program, FindRoot]:
+    """The first search of a machine, and the program that makes it."""
+    return next((program, search) for program in kin.shared for search in searches(program))
 
 
 def axes_of(kin: Kinematics) -> Arrays:

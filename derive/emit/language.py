@@ -7,7 +7,7 @@ runtime, source files that are the same for every machine.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
@@ -50,6 +50,24 @@ def short_name(mechanism: str) -> str:
     """The name without its prefix, unless the rest is no identifier: `Kin_5Axes`."""
     short = mechanism.removeprefix("Kin_").removeprefix("Softkin_")
     return short if short.isidentifier() else mechanism
+
+
+def module_name(mechanism: str, taken: Collection[str]) -> str:
+    """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`, as in Python. taken: the names of other files."""
+    module = short_name(mechanism).lower()
+    return f"{module}_machine" if module in taken else module
+
+
+def head_of(kin: Kinematics, notes: Iterable[str], further: Iterable[str] = ()) -> Iterator[str]:
+    """What is said at the top of a module about its machine: axes, branches, and notes behind empty lines."""
+    yield from (f"{kin.mechanism.name}: {kin.mechanism.summary}", "")
+    for joint in kin.mechanism.joints:
+        yield f"{joint.name} ({joint.kind.value}, {'deg' if joint.in_degrees else 'u'}): {joint.meaning}"
+    for branch in kin.branches:
+        yield f"{branch.name}: 1 = {branch.names[0]}, 2 = {branch.names[1]}, 0 = automatic, 3 = both meet"
+    yield from further
+    for note in notes:
+        yield from ("", note)
 
 
 def markdown(text: str) -> str:

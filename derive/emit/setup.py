@@ -6,18 +6,57 @@ range of each parameter, and one call for each axis computes its range of motion
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import replace
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, replace
 
 from derive.description.mechanism import Parameter
+from derive.emit.inputs import Inputs
 from derive.equations.windows import Window, windows
-from derive.ir.program import Program, Require, Statement, binds, reads
+from derive.ir.program import Call, FindRoot, Iterate, Let, Output, Program, Require, Solve, Statement, binds, reads
 from derive.ir.symbols import symbols_of
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import ranges
 
 
-def own_setup(kin: Kinematics, read: Collection[str]) -> Program:
+@dataclass(frozen=True)
+class Setup:
+    """What a language writes of the setup program."""
+
+    program: Program
+    windows: tuple[Window, ...]
+
+    def steps(self) -> Iterator[Window | Require | Let | Solve]:
+        """The statements in their order; in place of the refusal of the limits of an axis, its range of motion."""
+        by_refusal = {window.refusal: window for window in self.windows}
+        for statement in self.program.body:
+            if isinstance(statement, Iterate | Call | FindRoot):
+                raise TypeError("what depends on parameters alone is straight-line: it neither iterates nor calls")
+            window = None
+            if isinstance(statement, Require) and statement.reason is not None:
+                window = by_refusal.get(statement.reason)
+            yield statement if window is None else window
+
+    def outputs(self) -> list[Output]:
+        """The constants that are no ends of a range of motion."""
+        ends = {o.name for window in self.windows for o in window.outputs}
+        return [o for o in self.program.outputs if o.name not in ends]
+
+    def parameters(self, kin: Kinematics) -> list[Parameter]:
+        """The parameters that it reads, except the limits that it passes to the runtime."""
+        values = [o.value for o in self.program.outputs]
+        values += [e for window in self.windows for e in (window.turns, *(e for f in window.fallback for e in f))]
+        symbols = {s for value in values for s in symbols_of(value)}
+        symbols |= {s for step in self.steps() if not isinstance(step, Window) for s in reads(step)}
+        names = {s.name for s in symbols}
+        return [p for p in kin.parameters if p.name in names]
+
+
+def setup_of(kin: Kinematics, read: Collection[str]) -> Setup:
+    """The setup program for a machine whose other functions read these constants."""
+    return Setup(_own_setup(kin, read), tuple(windows(kin.mechanism)))
+
+
+def _own_setup(kin: Kinematics, read: Collection[str]) -> Program:
     """The setup program without the steps of the runtime, and without values that no program reads."""
     tested = ranges(kin.parameters)
     elsewhere = {let.name for window in windows(kin.mechanism) for let in (*window.limits, *window.ends)}
@@ -32,14 +71,8 @@ def own_setup(kin: Kinematics, read: Collection[str]) -> Program:
     return replace(kin.setup, body=tuple(reversed(body)), outputs=outputs)
 
 
-def parameters_read(kin: Kinematics, program: Program, found: Collection[Window]) -> list[Parameter]:
-    """The parameters that the setup program reads, except the limits that it passes to the runtime."""
-    refusals = {window.refusal for window in found}
-    values = [o.value for o in program.outputs] + [e for window in found for f in window.fallback for e in f]
-    symbols = {s for value in values for s in symbols_of(value)}
-    symbols |= {s for window in found for s in symbols_of(window.turns)}
-    for statement in program.body:
-        if not (isinstance(statement, Require) and statement.reason in refusals):
-            symbols |= reads(statement)
-    names = {s.name for s in symbols}
-    return [p for p in kin.parameters if p.name in names]
+def refused_inputs(require: Require, inputs: Inputs) -> tuple[str, list[str]]:
+    """The sentence that refuses parameters, and their names in the language."""
+    assert require.reason is not None
+    read = {s.name for s in require.condition.free_symbols}
+    return inputs.told(require.reason.subject.name), [name for inner, name in inputs.names.items() if inner in read]

@@ -65,17 +65,18 @@ def every_branch_lines(kin: Kinematics, machine: str, stored: Mapping[str, str],
         return []
     places, opened = _given(kin), open_joints(kin, found)
     members = {name: text for name, text in stored.items() if name not in places}
-    body = _Body(C(members), reasons, slots=2 ** len(kin.branches))
+    printer = C(members)
+    body = Body(_OfAll(reasons, printer, 2 ** len(kin.branches)))
     types = {s.name: type_of(s) for s in found.program.inputs}
     turned = {joint.reference.name: "double" for joint in opened}
     read = read_by(found.program) | turned.keys()
     inner = [
         f"const {machine} *k = machine;",
         *taken([(n, place) for n, place in places.items() if n in read], turned | types),
-        *(line for part in found.parts for line in body.let(part)),
+        *body.lines(found.parts),
         *body.lines(structured(found.program)),
-        *(_near(joint, body.printer) for joint in opened),
-        *_slots(kin, found, opened, body.printer),
+        *(_near(joint, printer) for joint in opened),
+        *_slots(kin, found, opened, printer),
         "return true;",
     ]
     if not any("k->" in line for line in inner):
@@ -83,19 +84,10 @@ def every_branch_lines(kin: Kinematics, machine: str, stored: Mapping[str, str],
     return function_of(_SUMMARY, f"static bool {NAME}({_HEAD})", inner)
 
 
-@dataclass
-class _Body(Body):
-    """The statements of a function in which a refusal refuses all slots."""
-
-    slots: int = 1
-
-    @property
-    def refusals(self) -> Refusals:
-        return _OfAll(self.reasons, self.printer, self.slots)
-
-
 @dataclass(frozen=True)
 class _OfAll(Refusals):
+    """The refusals of a function in which each refuses all slots."""
+
     slots: int
 
     def lines(self, requires: Sequence[Require]) -> list[str]:
@@ -105,7 +97,7 @@ class _OfAll(Refusals):
         answer = f"return softkin_refuse_all({status(require.otherwise)}, statuses, {self.slots});"
         if require.otherwise is Status.OK:
             answer = "return false;"
-        return block(f"if (!({self.condition([require.condition])}))", [answer])
+        return block(f"if (!({self.printer.conjunction([require.condition])}))", [answer])
 
 
 def _given(kin: Kinematics) -> dict[str, str]:

@@ -16,11 +16,10 @@ from derive.emit.braces import block
 from derive.emit.c.every_branch import straight_line
 from derive.emit.c.layout import comment, commented
 from derive.emit.c.printer import C, member, spelled, type_of
-from derive.emit.c.program import function_of, without_brackets
+from derive.emit.c.program import function_of
 from derive.emit.every_branch import constants, known_constants, read_of, signs
 from derive.emit.interface import read_by
 from derive.equations.rotation_repair import surely_exact
-from derive.ir.primitives import Root
 from derive.ir.program import Let, Program, Require
 from derive.ir.symbols import COORDINATE_NAMES, REFUSAL, ROTATION_ENTRIES, branch_sign, choices, suffixed, symbols_of
 from derive.kept import kept_by_identity
@@ -32,7 +31,6 @@ from derive.optimize.without_periods import specialised, without_chosen_turns
 
 ONE, EVERY = "regular", "regular_all"
 """The ends of the names of the functions: for the branch that the signs choose, and for all branches."""
-_FUNCTIONS = {"root": "softkin_lane_root", "atan2": "softkin_lane_angle", "nearest_period": "softkin_lane_turn"}
 _SUMMARIES = {
     ONE: "The axes of each lane on its branch; where it misses anything, they mean nothing.",
     EVERY: "The status and the axes of every slot of each lane; where it misses anything, they mean nothing.",
@@ -194,7 +192,7 @@ def _missing(condition: sp.Basic, printer: C) -> str:
 
 
 def _let(let: Let, printer: C) -> Sequence[str]:
-    value = without_brackets(let.value, printer.value(let.name, let.value))
+    value = printer.whole_value(let.name, let.value)
     kind = "bool" if type_of(let.name) == "bool" else "double"
     return commented(f"const {kind} {spelled(let.name.name)} = {value};", let.comment)
 
@@ -216,12 +214,8 @@ def _results(kin: Kinematics, found: InLanes, printer: C) -> Iterator[str]:
 class _Lanes(C):
     """Expressions without a branch: choices are computed, not decided by calls."""
 
-    def _spell(self, node: sp.Basic) -> tuple[str, int]:
-        if isinstance(node, Root):
-            return super(C, self)._spell(node)
-        return super()._spell(node)
-
-    def call(self, key: str, arguments: Sequence[str]) -> str:
-        if key in _FUNCTIONS:
-            return f"{_FUNCTIONS[key]}({', '.join(arguments)})"
-        return super().call(key, arguments)
+    functions = {
+        **C.functions,
+        "root": "softkin_lane_root", "atan2": "softkin_lane_angle", "nearest_period": "softkin_lane_turn",
+    }  # fmt: skip
+    square_root = ""

@@ -9,6 +9,7 @@ from typing import Any
 
 from jinja2 import Environment
 
+from derive.emit import language
 from derive.emit.braces import harmless
 from derive.emit.c.description import counts, in_words, inputs, tables
 from derive.emit.c.every_branch import MOST_SLOTS, constants_of_branches, every_branch_lines
@@ -24,12 +25,12 @@ from derive.emit.c.program import (
     function_lines,
     function_of,
     of_search,
-    searches,
     taken,
 )
+from derive.emit.c.refusal import Refusals
 from derive.emit.c.setup import constants_read, setup
-from derive.emit.interface import arguments_of, read_by
-from derive.emit.language import GENERATED, Part, environment, runtime, short_name
+from derive.emit.interface import arguments_of, read_by, search_of, searches
+from derive.emit.language import GENERATED, Part, environment, head_of, runtime
 from derive.emit.shared_constants import CONSTANTS, STATUSES
 from derive.ir.symbols import symbols_of
 from derive.kept import kept_by_identity
@@ -81,9 +82,8 @@ def shared() -> Mapping[str, str]:
 
 
 def module_name(mechanism: str) -> str:
-    """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`, as in the Python package."""
-    module = short_name(mechanism).lower()
-    return f"{module}_machine" if module in _TAKEN else module
+    """The name of the files of a mechanism, without their ends."""
+    return language.module_name(mechanism, _TAKEN)
 
 
 def _fits(kin: Kinematics) -> bool:
@@ -181,19 +181,11 @@ def _members(constants: dict[str, str] | Any) -> list[str]:
 
 def _head(kin: Kinematics) -> list[str]:
     """The lines at the top of a header."""
-    mechanism = kin.mechanism
-    lines = [*comment(f"{mechanism.name}: {mechanism.summary}"), ""]
-    for joint in mechanism.joints:
-        lines += comment(f"{joint.name} ({joint.kind.value}, {'deg' if joint.in_degrees else 'u'}): {joint.meaning}")
-    for branch in kin.branches:
-        lines += comment(f"{branch.name}: 1 = {branch.names[0]}, 2 = {branch.names[1]}, 0 = automatic, 3 = both meet")
-    if kin.configuration_size:
-        order = [b.name for b in kin.branches] + [f"turn of {j.name}" for j in kin.period_joints]
-        lines += comment(f"configuration: {', '.join(order)}")
-    lines += comment(f"rows of the Jacobian: {', '.join(kin.rows) or 'none'}")
-    for note in map(inputs(kin).told, mechanism.all_notes):
-        lines += ["", *comment(note)]
-    return lines
+    order = [b.name for b in kin.branches] + [f"turn of {j.name}" for j in kin.period_joints]
+    further = [f"configuration: {', '.join(order)}"] if order else []
+    further.append(f"rows of the Jacobian: {', '.join(kin.rows) or 'none'}")
+    texts = head_of(kin, map(inputs(kin).told, kin.mechanism.all_notes), further)
+    return [line for text in texts for line in comment(text) or [""]]
 
 
 def _needed(kin: Kinematics) -> str:
@@ -242,22 +234,17 @@ def _starts(machine: str, stored: dict[str, str]) -> dict[str, tuple[str, list[s
 
 def _every_root(kin: Kinematics, module: str, stored: dict[str, str]) -> list[str]:
     """The function that finds all roots of a scan; its arguments are those of the scan itself."""
-    for program in kin.shared:
-        for search in searches(program):
-            names = arguments_of(program, kin)
-            body = Body(C(stored), reasons_of(kin))
-            types = {s.name: type_of(s) for s in program.inputs}
-            begin = body.sought(search)
-            read = {*arguments_read(search), *symbols_of(search.start), *symbols_of(search.wanted)}
-            wanted = {s.name for s in read}
-            own = [(name, f"given[{i}]") for i, name in enumerate(names) if name in wanted]
-            inner = [
-                f"const {module}_machine *k = machine;",
-                *taken(own, types),
-                *body.search(search),
-                f"softkin_every_root(&search, {begin}, take, context);",
-            ]
-            head = "const void *machine, const double *given, softkin_take take, void *context"
-            summary = "The joints at every root of the search, the nearest to the reference first."
-            return function_of(summary, f"static void find_every_root({head})", inner)
-    raise TypeError(f"{kin.mechanism.name}: the inverse has no search")
+    program, search = search_of(kin)
+    body = Body(Refusals(reasons_of(kin), C(stored)))
+    read = {*arguments_read(search), *symbols_of(search.start), *symbols_of(search.wanted)}
+    wanted = {s.name for s in read}
+    own = [(name, f"given[{i}]") for i, name in enumerate(arguments_of(program, kin)) if name in wanted]
+    inner = [
+        f"const {module}_machine *k = machine;",
+        *taken(own, {s.name: type_of(s) for s in program.inputs}),
+        *body.searched(search),
+        f"softkin_every_root(&search, {body.sought(search)}, take, context);",
+    ]
+    head = "const void *machine, const double *given, softkin_take take, void *context"
+    summary = "The joints at every root of the search, the nearest to the reference first."
+    return function_of(summary, f"static void find_every_root({head})", inner)

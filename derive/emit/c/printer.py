@@ -13,16 +13,13 @@ from textwrap import wrap
 
 import sympy as sp
 
-from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter, is_never_negative
+from derive.emit.braced import Braced
+from derive.emit.braces import block
+from derive.emit.c import layout
 from derive.ir.constants import DEGREE
-from derive.ir.primitives import Root
 from derive.ir.program import Status
 from derive.ir.symbols import is_condition, is_count
 
-_FUNCTIONS = {
-    "sin": "sin", "cos": "cos", "abs": "fabs", "root": "softkin_root", "atan2": "softkin_angle_of",
-    "nearest_period": "softkin_on_turn", "nearest_on_arc": "softkin_nearest_on_arc",
-}  # fmt: skip
 WORDS = frozenset(
     "auto break case char const continue default do double else enum extern float for goto if inline int long "
     "register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while "
@@ -66,11 +63,6 @@ def member(name: str) -> str:
     return f"{name}_" if name in ("softkin", "ends") else _outside(name)
 
 
-def names_of(symbols: Iterable[sp.Symbol]) -> list[str]:
-    """The names of several variables."""
-    return [spelled(symbol.name) for symbol in symbols]
-
-
 def type_of(name: sp.Basic) -> str:
     """The type of a name or a value."""
     return "bool" if is_condition(name) else "int" if is_count(name) else "double"
@@ -102,34 +94,39 @@ def number(value: float) -> str:
     return f"{mantissa}e{int(exponent)}" if letter else mantissa
 
 
-@dataclass
-class C(ExpressionPrinter):
-    """Writes expressions: a choice evaluates only one side. members: the spelling of values in a struct."""
+def declarations(names: Sequence[sp.Symbol]) -> list[str]:
+    """Variables without a value, of one type a line."""
+    lines = []
+    for kind in ("double", "int", "bool"):
+        own = [spelled(name.name) for name in names if type_of(name) == kind]
+        lines += [f"{kind} {', '.join(own)};"] if own else []
+    return lines
 
+
+@dataclass
+class C(Braced):
+    """Writes expressions and the parts of statements. members: the spelling of values in a struct."""
+
+    functions = {
+        "abs": "fabs", "root": "softkin_root", "atan2": "softkin_angle_of", "nearest_period": "softkin_on_turn",
+        "nearest_on_arc": "softkin_nearest_on_arc",
+    }  # fmt: skip
+    radian = "SOFTKIN_RADIAN"
     members: Mapping[str, str] = field(default_factory=dict)
 
-    def _spell(self, node: sp.Basic) -> tuple[str, int]:
-        if isinstance(node, sp.Not):
-            return f"!{self._text(node.args[0], ATOM)}", ATOM
-        if node.is_Mul and 1 / DEGREE in node.args:
-            return f"{self._text(node * DEGREE, PRODUCT)}*SOFTKIN_RADIAN", PRODUCT
-        if isinstance(node, Root) and is_never_negative(node.args[0]):
-            return f"sqrt({self.print(node.args[0])})", ATOM
-        return super()._spell(node)
+    spelled = staticmethod(spelled)
+    declared = staticmethod(declarations)
+    number = staticmethod(number)
+    comment = staticmethod(layout.comment)
+    commented = staticmethod(layout.commented)
 
     def name(self, symbol: sp.Symbol) -> str:
         if symbol == DEGREE:
             return "SOFTKIN_DEGREE"
         return self.members.get(symbol.name) or spelled(symbol.name)
 
-    def number(self, value: float) -> str:
-        return number(value)
+    def constant(self, name: sp.Symbol) -> str:
+        return f"const {type_of(name)} "
 
-    def call(self, key: str, arguments: Sequence[str]) -> str:
-        if key == "select":
-            condition, first, second = arguments
-            return f"({condition} ? {first} : {second})"
-        return f"{_FUNCTIONS[key]}({', '.join(arguments)})"
-
-    def logic(self, word: str) -> str:
-        return {"and": "&&", "or": "||", "not": "!"}.get(word, word)
+    def when(self, condition: str, statement: str) -> list[str]:
+        return block(f"if ({condition})", [statement])

@@ -12,14 +12,14 @@ import sympy as sp
 
 from derive.description.mechanism import Role
 from derive.emit.braces import block
-from derive.emit.c.layout import comment
-from derive.emit.c.printer import C, member, number, text, type_of
+from derive.emit.c.printer import C, member, number, type_of
 from derive.emit.c.program import Body, function_of
+from derive.emit.c.refusal import Refusals
 from derive.emit.inputs import Inputs
-from derive.emit.setup import own_setup
-from derive.equations.windows import Window, windows
+from derive.emit.setup import setup_of
+from derive.equations.windows import Window
 from derive.ir.constants import TIE
-from derive.ir.program import Let, Require, Solve
+from derive.ir.program import Require
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import CHECK_LIMITS, TIE_OF_LENGTHS, WARNING_DISTANCE, chooses_by_lengths
 from derive.report.reasons import Reasons
@@ -45,28 +45,19 @@ def constants_read(kin: Kinematics) -> set[str]:
 
 def setup(kin: Kinematics, prefix: str, read: Collection[str], inputs: Inputs) -> Setup:
     """The function. read: the constants that other functions read; inputs: what the parameters are called."""
-    by_refusal = {window.refusal: (i, window) for i, window in enumerate(windows(kin.mechanism))}
-    program = own_setup(kin, read)
-    body = Body(C(_members(kin, inputs)), Reasons({}))
+    found, printer = setup_of(kin, read), C(_members(kin, inputs))
+    body = Body(Refusals(Reasons({}), printer))
     lines: list[str] = []
     values: dict[str, tuple[str, str]] = {}
-    for statement in program.body:
-        found = by_refusal.get(statement.reason) if isinstance(statement, Require) and statement.reason else None
-        if found is not None:
-            lines += _window(*found, inputs, body.printer)
-            values |= _window_values(found[1], read)
-        elif isinstance(statement, Require):
-            lines += _refusal(statement, inputs, body)
-        elif isinstance(statement, Let):
-            lines += body.let(statement)
-        elif isinstance(statement, Solve):
-            lines += body.solve(statement)
+    for step in found.steps():
+        if isinstance(step, Window):
+            lines += _window(found.windows.index(step), step, inputs, printer)
+            values |= _window_values(step, read)
+        elif isinstance(step, Require):
+            lines += body.refusals.of_parameters(step, inputs)
         else:
-            raise TypeError("what depends on parameters alone is straight-line: it neither iterates nor calls")
-    ends = {o.name for _, window in by_refusal.values() for o in window.outputs}
-    values |= {
-        o.name: (type_of(o.value), body.printer.value(o.value, o.value)) for o in program.outputs if o.name not in ends
-    }
+            lines += body.lines([step])
+    values |= {o.name: (type_of(o.value), printer.value(o.value, o.value)) for o in found.outputs()}
     head = [f"const {prefix}_parameters *p = parameters;", f"{prefix}_machine made;"]
     writes = [f"made.{member(name)} = {value};" for name, (_, value) in values.items()]
     tail = [f"made.softkin = (softkin_base){{{', '.join(_base(kin, values, inputs))}}};"]
@@ -122,14 +113,3 @@ def _window_values(window: Window, read: Collection[str]) -> dict[str, tuple[str
         for word, output in zip(words, window.outputs, strict=False)
         if output.name in read
     }
-
-
-def _refusal(statement: Require, inputs: Inputs, body: Body) -> list[str]:
-    """A condition on several parameters, with its sentence and their names."""
-    assert statement.reason is not None
-    read = {s.name for s in statement.condition.free_symbols}
-    given = ", ".join(name for inner, name in inputs.names.items() if inner in read)
-    sentence = inputs.told(statement.reason.subject.name)
-    refused = f"return softkin_refuse_parameters(why, {text(sentence)}, {text(given)});"
-    condition = body.refusals.condition([statement.condition])
-    return [*comment(statement.note), *block(f"if (!({condition}))", [refused])]

@@ -12,18 +12,18 @@ from jinja2 import Environment
 
 from derive.drawing.parts import Parts, parts_of
 from derive.drawing.pose import drawn_pose, nominal_machine
+from derive.emit import language
 from derive.emit.braces import block
-from derive.emit.interface import arguments_of, read_by
+from derive.emit.interface import arguments_of, read_by, search_of
 from derive.emit.javascript.description import description, inputs
 from derive.emit.javascript.functions import functions, rotation_function
 from derive.emit.javascript.layout import comment, laid_out
 from derive.emit.javascript.printer import PRINTER, RUNTIME, list_of, spelled, text
 from derive.emit.javascript.program import function_lines, looked_for
-from derive.emit.javascript.refusal import Refusals
+from derive.emit.javascript.refusal import refusals_of
 from derive.emit.javascript.setup import setup_lines
-from derive.emit.language import GENERATED, Part, environment, runtime, short_name
+from derive.emit.language import GENERATED, Part, environment, head_of, runtime
 from derive.emit.shared_constants import CONSTANTS, STATUSES
-from derive.ir.program import FindRoot
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 from derive.report.reasons import reasons_of, reasons_of_rotation
@@ -62,9 +62,8 @@ def files(parts: Sequence[Part]) -> dict[str, str]:
 
 
 def module_name(mechanism: str) -> str:
-    """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`, as in the Python package."""
-    module = short_name(mechanism).lower()
-    return f"{module}_machine" if f"{module}.js" in _AROUND else module
+    """The name of the module of a mechanism; that of the index is taken."""
+    return language.module_name(mechanism, ("index",))
 
 
 @cache
@@ -75,7 +74,7 @@ def _templates() -> Environment:
         "generated": GENERATED,
         "version": _VERSION,
         "statuses": STATUSES,
-        "rotation": laid_out(function_lines(rotation_function(), Refusals(reasons_of_rotation()))),
+        "rotation": laid_out(function_lines(rotation_function(), refusals_of(reasons_of_rotation()))),
         "constants": {name: _literal(value) for name, value in CONSTANTS.items()},
     }
     return templates
@@ -87,7 +86,7 @@ def _literal(value: float | tuple[float, ...]) -> str:
 
 def _module(kin: Kinematics, module: str) -> str:
     parts = _parts(kin)
-    found, refusals = functions(kin, parts), Refusals(reasons_of(kin))
+    found, refusals = functions(kin, parts), refusals_of(reasons_of(kin))
     further, entries = _further(kin)
     read = {name for f in found for name in read_by(f.program) - f.entry.given}
     read |= set(re.findall(r"k\.(\w+)", " ".join(entries)))
@@ -123,15 +122,8 @@ def _drawn(kin: Kinematics) -> list[float] | None:
 
 def _head(kin: Kinematics) -> list[str]:
     """The lines at the top of a module."""
-    mechanism = kin.mechanism
-    lines = [*comment(f"{mechanism.name}: {mechanism.summary}"), ""]
-    for joint in mechanism.joints:
-        lines += comment(f"{joint.name} ({joint.kind.value}, {'deg' if joint.in_degrees else 'u'}): {joint.meaning}")
-    for branch in kin.branches:
-        lines += comment(f"{branch.name}: 1 = {branch.names[0]}, 2 = {branch.names[1]}, 0 = automatic, 3 = both meet")
-    for note in map(inputs(kin).told, mechanism.all_notes):
-        lines += ["", *comment(note)]
-    return lines
+    texts = head_of(kin, map(inputs(kin).told, kin.mechanism.all_notes))
+    return [line for text in texts for line in comment(text) or [""]]
 
 
 def _parameter(p: Mapping[str, Any]) -> list[str]:
@@ -159,13 +151,10 @@ def _further(kin: Kinematics) -> tuple[list[list[str]], list[str]]:
 
 def _all_joints(kin: Kinematics) -> list[str]:
     """The function that finds all roots of a scan; its arguments are those of the scan itself."""
-    for program in kin.shared:
-        for search in (s for s in program.body if isinstance(s, FindRoot)):
-            given = map(spelled, arguments_of(program, kin))
-            taken = f"const {list_of(given)} = given;"
-            body = block("function findAllJoints(k, given)", [taken, f"return {looked_for(search, 'everyRoot')};"])
-            return ["/** The joints at every root of the search, the nearest to the reference first. */", *body]
-    raise TypeError(f"{kin.mechanism.name}: the inverse has no search")
+    program, search = search_of(kin)
+    taken = f"const {list_of(map(spelled, arguments_of(program, kin)))} = given;"
+    body = block("function findAllJoints(k, given)", [taken, f"return {looked_for(search, 'everyRoot')};"])
+    return ["/** The joints at every root of the search, the nearest to the reference first. */", *body]
 
 
 def _imports(lines: Sequence[str]) -> list[str]:

@@ -10,15 +10,11 @@ from collections.abc import Iterable, Sequence
 
 import sympy as sp
 
-from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter, is_never_negative
+from derive.emit.braced import Braced
+from derive.emit.javascript import layout
 from derive.ir.constants import DEGREE
-from derive.ir.primitives import Root
 from derive.ir.program import Status
 
-_FUNCTIONS = {
-    "sin": "Math.sin", "cos": "Math.cos", "abs": "Math.abs", "root": "squareRoot", "atan2": "angleOf",
-    "nearest_period": "nearestPeriod", "nearest_on_arc": "nearestOnArc",
-}  # fmt: skip
 RUNTIME = (
     "DEGREE", "RADIAN", "Machine", "Refusal", "Status", "angleOf", "everyRoot", "isReasonable", "nearestOnArc",
     "nearestPeriod", "nearestRoot", "refuse", "solveLinear", "squareRoot", "turnInside",
@@ -38,11 +34,6 @@ TAKEN = frozenset({"axes", "found", "given", "k", "p", "pass", "point", "offset"
 def spelled(name: str) -> str:
     """The spelling of a name: unchanged, unless it is a word of JavaScript, or the printed function uses it already."""
     return f"{name}_" if name in _WORDS or name in TAKEN else name
-
-
-def names_of(symbols: Iterable[sp.Symbol]) -> list[str]:
-    """The spelling of several names."""
-    return [spelled(symbol.name) for symbol in symbols]
 
 
 def text(value: object) -> str:
@@ -65,17 +56,18 @@ def function_name(program: str) -> str:
     return "find" + "".join(word[:1].upper() + word[1:] for word in program.split("_"))
 
 
-class JavaScript(ExpressionPrinter):
-    """Writes expressions: a choice evaluates only one side."""
+class JavaScript(Braced):
+    """Writes expressions and the parts of statements."""
 
-    def _spell(self, node: sp.Basic) -> tuple[str, int]:
-        if isinstance(node, sp.Not):
-            return f"!{self._text(node.args[0], ATOM)}", ATOM
-        if node.is_Mul and 1 / DEGREE in node.args:
-            return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT
-        if isinstance(node, Root) and is_never_negative(node.args[0]):
-            return f"Math.sqrt({self.print(node.args[0])})", ATOM
-        return super()._spell(node)
+    functions = {
+        "sin": "Math.sin", "cos": "Math.cos", "abs": "Math.abs", "root": "squareRoot", "atan2": "angleOf",
+        "nearest_period": "nearestPeriod", "nearest_on_arc": "nearestOnArc",
+    }  # fmt: skip
+    square_root = "Math.sqrt"
+
+    spelled = staticmethod(spelled)
+    comment = staticmethod(layout.comment)
+    commented = staticmethod(layout.commented)
 
     def name(self, symbol: sp.Symbol) -> str:
         return symbol.name if symbol == DEGREE else spelled(symbol.name)
@@ -84,20 +76,20 @@ class JavaScript(ExpressionPrinter):
         mantissa, letter, exponent = repr(value).removesuffix(".0").partition("e")
         return f"{mantissa}e{int(exponent)}" if letter else mantissa
 
-    def call(self, key: str, arguments: Sequence[str]) -> str:
-        if key == "select":
-            condition, first, second = arguments
-            return f"({condition} ? {first} : {second})"
-        return f"{_FUNCTIONS[key]}({', '.join(arguments)})"
-
     def larger(self, first: str, second: str) -> str:
         return f"Math.max({second}, {first})"
 
-    def logic(self, word: str) -> str:
-        return {"and": "&&", "or": "||", "not": "!"}.get(word, word)
-
     def comparison(self, operator: str) -> str:
         return {"==": "===", "!=": "!=="}.get(operator, operator)
+
+    def constant(self, name: sp.Symbol) -> str:
+        return "const "
+
+    def declared(self, names: Sequence[sp.Symbol]) -> list[str]:
+        return [f"let {', '.join(self.names(names))};"] if names else []
+
+    def when(self, condition: str, statement: str) -> list[str]:
+        return [f"if ({condition}) {statement}"]
 
 
 PRINTER = JavaScript()

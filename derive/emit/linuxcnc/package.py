@@ -15,7 +15,7 @@ from derive.emit.c import package as c
 from derive.emit.c.description import inputs
 from derive.emit.c.layout import page
 from derive.emit.c.printer import C, list_of, member, number, text
-from derive.emit.c.program import searches
+from derive.emit.interface import searches
 from derive.emit.language import GENERATED, Part, environment
 from derive.emit.linuxcnc.head import head_of
 from derive.emit.linuxcnc.words import LETTERS, Orientation, Words, flange_of, turn_row, words_of

@@ -9,7 +9,7 @@ from keyword import iskeyword
 import sympy as sp
 
 from derive.emit.conditions import sized
-from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, PRODUCT, ExpressionPrinter, is_never_negative
+from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, ExpressionPrinter
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Atan2, Root, Select
 from derive.optimize.guards import PositiveRoot
@@ -25,8 +25,6 @@ TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "range", "tuple", "max", "min", "super", "zip", "len",
 }  # fmt: skip
 """Names that a generated method needs for its own variables."""
-_ARRAY_NAMES = {"abs": "absolute"}
-"""Primitives with another name on arrays."""
 
 
 def spelled(name: str) -> str:
@@ -75,8 +73,6 @@ class ScalarPrinter(ExpressionPrinter):
             return f"sqrt({self.print(node.args[0])})", ATOM
         if isinstance(node, Grouped):
             return self._spell(node.args[0])
-        if node.is_Mul and 1 / DEGREE in node.args:
-            return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT
         if (
             isinstance(node, sp.LessThan)
             and isinstance(node.lhs, sp.Abs)
@@ -92,13 +88,9 @@ class ScalarPrinter(ExpressionPrinter):
         ):
             condition, (radicand,), otherwise = node.args[0], node.args[1].args, node.args[2]
             return f"(sqrt({self.print(radicand)}) if {self.print(condition)} else {self.print(otherwise)})", ATOM
-        if isinstance(node, Root):
-            (radicand,) = node.args
-            text = self.print(radicand)
-            if is_never_negative(radicand):
-                return f"sqrt({text})", ATOM
-            if radicand.is_Symbol:
-                return f"(sqrt({text}) if {text} > 0.0 else 0.0)", ATOM
+        if isinstance(node, Root) and node.args[0].is_Symbol:
+            text = self.print(node.args[0])
+            return f"(sqrt({text}) if {text} > 0.0 else 0.0)", ATOM
         return super()._spell(node)
 
     def name(self, symbol: sp.Symbol) -> str:
@@ -107,16 +99,16 @@ class ScalarPrinter(ExpressionPrinter):
     def number(self, value: float) -> str:
         return literal(value)
 
+    def choice(self, condition: str, first: str, second: str) -> str:
+        return f"({first} if {condition} else {second})"
+
     def call(self, key: str, arguments: Sequence[str]) -> str:
-        if key == "select":
-            condition, first, second = arguments
-            return f"({first} if {condition} else {second})"
         if key == "atan2":
             sine, cosine = arguments
             return (
                 f"arctan2({sine}{'' if self.modulo_turns else ' + 0.0'}, {cosine}{'' if self.is_trusted else ' + 0.0'})"
             )
-        return f"{key}({', '.join(arguments)})"
+        return super().call(key, arguments)
 
     def larger(self, first: str, second: str) -> str:
         return f"max({second}, {first})"
@@ -129,6 +121,9 @@ class ArrayPrinter(ScalarPrinter):
     """Writes expressions on arrays: a choice evaluates both sides, and conditions are masks. Constants are attributes:
     `k.arm_length`.
     """
+
+    functions = {"abs": "absolute"}
+    radian = ""
 
     def __init__(self, constants: Collection[str] = (), *, modulo_turns: bool = False) -> None:
         """constants: the names of the constants; modulo_turns: as in `ScalarPrinter`."""
@@ -146,16 +141,17 @@ class ArrayPrinter(ScalarPrinter):
             return f"opposite({self.print(node.args[0])})", ATOM
         if checked := sized([node], 1):
             return f"reasonable({', '.join(map(self.print, checked))})", ATOM
-        if isinstance(node, Root) and is_never_negative(node.args[0]):
-            return f"sqrt({self.print(node.args[0])})", ATOM
         if self.modulo_turns and node.is_Mul and len(node.args) == 2 and 1 / DEGREE in node.args:
             (angle,) = (factor for factor in node.args if factor != 1 / DEGREE)
             if isinstance(angle, Atan2):
                 return f"degrees({', '.join(map(self.print, angle.args))})", ATOM
         return ExpressionPrinter._spell(self, node)
 
+    def choice(self, condition: str, first: str, second: str) -> str:
+        return f"select({condition}, {first}, {second})"
+
     def call(self, key: str, arguments: Sequence[str]) -> str:
-        return f"{_ARRAY_NAMES.get(key, key)}({', '.join(arguments)})"
+        return ExpressionPrinter.call(self, key, arguments)
 
     def logic(self, word: str) -> str:
         return {"and": "&", "or": "|", "true": "True", "false": "False"}[word]

@@ -13,9 +13,9 @@ from derive.emit.python.layout import assigned, quoted
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.emit.python.program import binding_lines
 from derive.emit.python.refusal import conjunction
-from derive.emit.setup import own_setup, parameters_read
-from derive.equations.windows import Window, windows
-from derive.ir.program import Call, FindRoot, Iterate, Require
+from derive.emit.setup import refused_inputs, setup_of
+from derive.equations.windows import Window
+from derive.ir.program import Require
 from derive.kinematics.kinematics import Kinematics
 
 _PRINTER = ScalarPrinter()
@@ -38,26 +38,18 @@ def attributes(kin: Kinematics) -> list[str]:
 
 def setup_body(kin: Kinematics, read: Collection[str]) -> list[str]:
     """The lines that raise errors for parameters that cannot be, then compute the constants that programs read."""
-    by_refusal = {window.refusal: window for window in windows(kin.mechanism)}
-    program = own_setup(kin, read)
+    found, given = setup_of(kin, read), inputs(kin)
     lines: list[str] = []
-    for statement in program.body:
-        if isinstance(statement, Iterate | Call | FindRoot):
-            raise TypeError(
-                "what depends on parameters alone is straight-line: a setup program neither iterates nor calls"
-            )
-        window = by_refusal.get(statement.reason) if isinstance(statement, Require) and statement.reason else None
-        if window:
-            lines += _window(window, read)
-        elif isinstance(statement, Require):
-            lines += _refusal(statement, inputs(kin))
+    for step in found.steps():
+        if isinstance(step, Window):
+            lines += _window(step, read)
+        elif isinstance(step, Require):
+            lines += _refusal(step, given)
         else:
-            lines += binding_lines(statement, _PRINTER)
-    ends = {o.name for window in by_refusal.values() for o in window.outputs}
-    values = {f"self.{spelled(o.name)}": _PRINTER.print(o.value) for o in program.outputs if o.name not in ends}
-    names = inputs(kin).names
-    given = {spelled(p.name): _value(p, names[p.name]) for p in parameters_read(kin, program, by_refusal.values())}
-    return [*assigned(given), *lines, *assigned(values)]
+            lines += binding_lines(step, _PRINTER)
+    values = {f"self.{spelled(o.name)}": _PRINTER.print(o.value) for o in found.outputs()}
+    taken = {spelled(p.name): _value(p, given.names[p.name]) for p in found.parameters(kin)}
+    return [*assigned(taken), *lines, *assigned(values)]
 
 
 def _value(parameter: Parameter, name: str) -> str:
@@ -91,11 +83,9 @@ def _gear(window: Window) -> str:
 
 
 def _refusal(statement: Require, given: Inputs) -> list[str]:
-    read = {s.name for s in statement.condition.free_symbols}
-    names = "".join(f', "{name}"' for inner, name in given.names.items() if inner in read)
-    assert statement.reason is not None
-    message = given.told(statement.reason.subject.name)
-    return [f"if not ({conjunction([statement.condition])}):", f"    raise machine._refusal({quoted(message)}{names})"]
+    message, names = refused_inputs(statement, given)
+    refused = ", ".join([quoted(message), *(f'"{name}"' for name in names)])
+    return [f"if not ({conjunction([statement.condition])}):", f"    raise machine._refusal({refused})"]
 
 
 def _default(parameter: Parameter) -> str:

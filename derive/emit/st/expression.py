@@ -2,25 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import sympy as sp
 from sympy.core.relational import Relational
 
 from derive.emit.conditions import is_size_test
-from derive.emit.expression import ATOM, PRODUCT, ExpressionPrinter, is_never_negative
-from derive.ir.constants import DEGREE, LARGEST
-from derive.ir.primitives import Root, Select
-
-_FUNCTIONS = {
-    "sin": "SIN",
-    "cos": "COS",
-    "abs": "ABS",
-    "root": "Softkin_Root",
-    "atan2": "Softkin_Atan2",
-    "nearest_period": "Softkin_NearestPeriod",
-    "nearest_on_arc": "Softkin_NearestOnArc",
-}
+from derive.emit.expression import ExpressionPrinter
+from derive.ir.constants import LARGEST
+from derive.ir.primitives import Select
 
 
 def literal(value: float) -> str:
@@ -51,6 +41,12 @@ def _is_comparison(condition: sp.Basic, kind: type[Relational], left: sp.Expr, r
 class StructuredText(ExpressionPrinter):
     """Writes an expression, given the spelling of every name in it."""
 
+    functions = {
+        "sin": "SIN", "cos": "COS", "abs": "ABS", "root": "Softkin_Root", "atan2": "Softkin_Atan2",
+        "nearest_period": "Softkin_NearestPeriod", "nearest_on_arc": "Softkin_NearestOnArc",
+    }  # fmt: skip
+    square_root = "SQRT"
+
     def __init__(self, names: Mapping[str, str]) -> None:
         self.names = names
 
@@ -61,13 +57,6 @@ class StructuredText(ExpressionPrinter):
         if (limits := limits_of(expression)) is not None:
             return f"LIMIT({', '.join(map(self.print, limits))})"
         return super().print(expression)
-
-    def _spell(self, node: sp.Basic) -> tuple[str, int]:
-        if isinstance(node, Root) and is_never_negative(node.args[0]):
-            return f"SQRT({self.print(node.args[0])})", ATOM
-        if node.is_Mul and 1 / DEGREE in node.args:
-            return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT
-        return super()._spell(node)
 
     def parts(self, condition: sp.Basic) -> list[str]:
         """A condition as conditions that all hold: the size of an input is tested by two comparisons."""
@@ -84,12 +73,9 @@ class StructuredText(ExpressionPrinter):
         """A LREAL literal."""
         return literal(value)
 
-    def call(self, key: str, arguments: Sequence[str]) -> str:
-        """A primitive applied to printed arguments."""
-        if key == "select":
-            condition, if_true, if_false = arguments
-            return f"SEL({condition}, {if_false}, {if_true})"
-        return f"{_FUNCTIONS[key]}({', '.join(arguments)})"
+    def choice(self, condition: str, first: str, second: str) -> str:
+        """The first or the second of two printed values."""
+        return f"SEL({condition}, {second}, {first})"
 
     def larger(self, first: str, second: str) -> str:
         """The larger of two printed numbers."""
