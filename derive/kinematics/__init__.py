@@ -21,4 +21,5 @@ refusals/: why a machine is refused
 sampling: samples of machines and axis values, for numerical decisions of the build
 scan/: a mechanism with a root scan along one joint
 shared_names: where an input has the name of a derived value, the mechanism is derived again with another name
+solution: what is solved of a machine before programs are made, in the one order of the preparations
 """

@@ -16,11 +16,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from derive.description.mechanism import Branch, Joint, Limited, Mechanism, Parameter
 from derive.ir.program import Program, shared
 from derive.kinematics.reference_cases import SelfTest
-from derive.kinematics.solution import Solution
+
+if TYPE_CHECKING:  # the witness reads programs alone, and nothing of how they were derived is loaded with it
+    from derive.kinematics.solution import Solution
 
 
 class Freedom(Enum):
