@@ -10,7 +10,7 @@ import pytest
 import derive.description.catalogue as reading
 from derive.faults import failure
 from derive.ir.verify import BrokenProgram
-from derive.kinematics import build as building
+from derive.kinematics import solution
 from tests.command.files import RAIL, Folder
 
 OF_THE_COMPILER = (
@@ -35,7 +35,7 @@ def torn(*_: object) -> object:
 @pytest.fixture(params=[undefined, broken, torn], ids=lambda f: f.__name__)
 def mistake(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Break:
     """A mistake inside the derivation; of the kinds that a description, too, may lead to, with remedies for it."""
-    monkeypatch.setattr(building, "solve_pose", request.param)
+    monkeypatch.setattr(solution, "solve_pose", request.param)
     return request.param
 
 
@@ -67,7 +67,7 @@ def test_a_catalogue_with_a_mistake(folder: Folder, monkeypatch: pytest.MonkeyPa
     """From the process in which the machine is derived comes the message, and the traceback; the worst gives the
     status.
     """
-    monkeypatch.setattr(building, "solve_pose", undefined)
+    monkeypatch.setattr(solution, "solve_pose", undefined)
     folder.write("machines/rail.py", RAIL)
     folder.write("machines/wrong.py", RAIL.replace('"Rail"', '"Other"').replace("Ty(A2)", "Ty(A9)"))
     options = ("--mechanisms", "machines", "--output", "out", "--fresh", "--keep-going")
@@ -79,8 +79,8 @@ def test_a_catalogue_with_a_mistake(folder: Folder, monkeypatch: pytest.MonkeyPa
 
 def test_one_mistake_stops_no_other_machine(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     """A description that is wrong has status 2, the mistake 3: the worst is that of the run."""
-    solve = building.solve_pose
-    monkeypatch.setattr(building, "solve_pose", lambda m: undefined() if m.name == "Other" else solve(m))
+    solve = solution.solve_pose
+    monkeypatch.setattr(solution, "solve_pose", lambda m: undefined() if m.name == "Other" else solve(m))
     folder.write("machines/a.py", RAIL.replace("Ty(A2)", "Ty(A9)"))
     folder.write("machines/b.py", RAIL.replace('"Rail"', '"Other"'))
     folder.write("machines/c.py", RAIL)

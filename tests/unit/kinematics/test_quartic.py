@@ -13,11 +13,12 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select, ToReal
 from derive.ir.program import FindRoot, Let, Output, Program, shared
 from derive.ir.symbols import SIDE, TRIED, real
-from derive.kinematics.build import build, prepared
+from derive.kinematics.build import build
 from derive.kinematics.scan.choice import with_search
 from derive.kinematics.scan.derivations import solve_both, trial_on_branch
 from derive.kinematics.scan.quartic import Quartic, quartic_of
 from derive.kinematics.scan.waves import wave_at
+from derive.kinematics.solution import prepared
 from tests.machines.chain_machines import ANGLES_AS_NUMBERS, OF_DEGREE_FOUR
 from tests.machines.searched_machines import POINTS, SEARCHED
 

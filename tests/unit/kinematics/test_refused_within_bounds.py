@@ -15,9 +15,10 @@ from derive.description.mechanism import Mechanism, Parameter, Task, Turning, le
 from derive.description.validate import validate
 from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
 from derive.kinematics import shared_names
-from derive.kinematics.build import build, prepared
+from derive.kinematics.build import build
 from derive.kinematics.scan import choice
 from derive.kinematics.scan.choice import with_search
+from derive.kinematics.solution import prepared
 from derive.solver import solve
 from derive.solver.solve import MOST_TERMS
 from derive.solver.unsolved import Exhausted, Unsolved

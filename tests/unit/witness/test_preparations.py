@@ -17,7 +17,7 @@ from derive.description.validate import validate
 from derive.form import machine as form
 from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
 from derive.geometry.frames import Motion
-from derive.kinematics import build as stages
+from derive.kinematics import solution as stages
 from derive.kinematics.build import build
 from derive.mechanism import Turning
 from derive.witness import Disagreement, witness
