@@ -137,7 +137,7 @@ def dimension_line(dimension: Dimension) -> str:
     value = repr(float(dimension.value))
     return _call(
         f"{dimension.variable} = {kind}",
-        [f'"{dimension.name}"', f'"{dimension.meaning}"', f"nominal={value}", f"default={value}"],
+        [f'"{dimension.name}"', f'"{plain(dimension.meaning)}"', f"nominal={value}", f"default={value}"],
     )
 
 

@@ -44,6 +44,21 @@ def mjcf(name: str) -> str:
     return f"<mujoco model={quoteattr(name)}><compiler angle='radian'/><worldbody>{whole}</worldbody></mujoco>"
 
 
+def loop(name: str) -> str:
+    """Arms and rods of a five-bar."""
+
+    def half(k: int, x: float, inner: str) -> str:
+        motor, hinge, arm, rod = (quoteattr(f"{name} {word} {k}") for word in ("motor", "hinge", "arm", "rod"))
+        below = f"<body name={rod} pos='0 0.12 0'><joint name={hinge} axis='0 0 1'/>{inner}</body>"
+        return f"<body name={arm} pos='{x} 0 0'><joint name={motor} axis='0 0 1'/>{below}</body>"
+
+    halves = half(1, -0.05, "<site name='tip' pos='0.05 0.15 0'/>") + half(2, 0.05, "")
+    bodies = " ".join(f"body{k}={quoteattr(f'{name} rod {k}')}" for k in (1, 2))
+    motors = "".join(f"<position joint={quoteattr(f'{name} motor {k}')}/>" for k in (1, 2))
+    closed = f"<equality><connect {bodies} anchor='0.05 0.15 0'/></equality><actuator>{motors}</actuator>"
+    return f"<mujoco model={quoteattr(name)}><worldbody>{halves}</worldbody>{closed}</mujoco>"
+
+
 def toml(name: str) -> str:
     """The same as a table."""
     rows = (("revolute", 0.3), ("revolute", 0.2), ("prismatic", 0))
@@ -54,7 +69,7 @@ def toml(name: str) -> str:
     return f'convention = "standard"\nangles = "radians"\nlengths = "m"\n{told}'
 
 
-FORMATS = {"urdf": (urdf, ".urdf"), "mjcf": (mjcf, ".xml"), "table": (toml, ".toml")}
+FORMATS = {"urdf": (urdf, ".urdf"), "mjcf": (mjcf, ".xml"), "loop": (loop, ".xml"), "table": (toml, ".toml")}
 
 
 @pytest.mark.parametrize("kind", FORMATS)
@@ -65,7 +80,7 @@ def test_names_of_a_file(kind: str, tmp_path: Path) -> None:
     def shape(name: str, file: str) -> str:
         path = tmp_path / f"{file}{ending}"
         path.write_text(write(name), encoding="utf-8")
-        found = imported(path)
+        found = imported(path, tip="tip" if kind == "loop" else None)
         mechanism = validate(described(found, tmp_path))
         assert mechanism.summary.isprintable() and mechanism.source.isprintable()
         tree = ast.parse(found.text)
