@@ -21,7 +21,6 @@ from tests.mechanisms import catalogue
 from tests.unit.form.chains import A1, A2, A3, CHAINS, LINK, P1, SIX
 from tests.unit.form.rewording import reworded
 
-pytestmark = pytest.mark.quick
 MACHINES = {**CHAINS, **{m.name: m for _, m in catalogue() if m.chain is not None}}
 
 

@@ -33,7 +33,7 @@ from tests.unit.form.test_chain import frame, in_words
 
 MACHINES = {**CHAINS, **{m.name: m for _, m in catalogue() if m.chain is not None}}
 WORDINGS, SHARE = 20, 4
-"""The wordings of a machine, and how many of them the quick tests ask."""
+"""The wordings of a machine, and how many of them are asked where slow tests are left out."""
 WAYS: tuple[Callable[[Mechanism, int], Chain], ...] = (reworded, in_link_frames, by_table)
 DERIVED = ("six axes by a table with angles as numbers", "SCARA that is turned where it stands")
 
@@ -57,7 +57,6 @@ def check(name: str, numbers: range) -> None:
         assert replace(found, drawn=None) == replace(form, drawn=None), f"wording {number}"
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("name", MACHINES)
 def test_other_words_have_the_same_form(name: str) -> None:
     check(name, range(SHARE))

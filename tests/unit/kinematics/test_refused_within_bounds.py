@@ -54,6 +54,7 @@ def random_arm(seed: int, axes: int, *, has_parameters: bool) -> Mechanism:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("has_parameters", [False, True])
 @pytest.mark.parametrize(("axes", "seed"), [(5, 1), (6, 2), (7, 3), (8, 4)])
 def test_random_arms(axes: int, seed: int, has_parameters: bool) -> None:

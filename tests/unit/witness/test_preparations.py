@@ -154,6 +154,7 @@ PLANTED: Mapping[str, Planted] = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", PLANTED)
 def test_a_fault_of_a_preparation_is_noticed(what: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """What is derived from the spoiled mechanism agrees with itself, and contradicts the description."""

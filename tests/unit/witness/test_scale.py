@@ -73,6 +73,7 @@ def six_legs(unit: float) -> Mechanism:
 KINDS: dict[str, tuple[Callable[[float], Mechanism], int]] = {"flat": (flat_platform, 1), "six": (six_legs, 1)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unit", UNITS)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_machine_is_accepted_in_every_unit(kind: str, unit: float) -> None:
