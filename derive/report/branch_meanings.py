@@ -4,18 +4,20 @@ machine, or at one set of axis values.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.reference_cases import Reals
-from derive.report.reference_calls import Machine, branches, forward, machine_with
+from derive.report.reference_calls import Machine, branches_at, forward, forward_at, machine_with
 
 _ANGLES = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0, -30.0)
-_AROUND, _TRIED = 60.0, 200
+_AROUND, _TRIED, _FEW = 60.0, 200, 4
+"""The range of the axis values that are drawn, in degrees, their number, and that of those which are tried before."""
 _APART = 1e-3
 """Axis values closer than this are the same."""
 _REGULAR = (1, 2)
@@ -89,18 +91,29 @@ def pair_at_one_frame(kinematics: Kinematics, index: int) -> tuple[Reals, Reals]
     None where no such pair was found.
     """
     machine = machine_with(kinematics, kinematics.unlimited_values)
-    count = len(kinematics.branches)
-    for axes in _candidates(machine):
-        status, frame, configuration = forward(machine, axes)
-        if status is not Status.OK or configuration[index] not in _REGULAR:
-            continue
-        other = [3 - b if k == index else b for k, b in enumerate(configuration[:count])]
-        periods = (0,) * (len(configuration) - count)
-        if not all(byte in _REGULAR for byte in other):
-            continue
-        _, found, statuses = branches(machine, frame, (*other, *periods), axes)
-        if statuses[0] is Status.OK and max(abs(a - b) for a, b in zip(axes, found[0], strict=True)) > _APART:
-            return (axes, found[0]) if configuration[index] == 1 else (found[0], axes)
+    candidates = _candidates(machine)
+    few = list(islice(candidates, _FEW))
+    return _first_pair(machine, index, few) or _first_pair(machine, index, list(candidates))
+
+
+def _first_pair(machine: Machine, index: int, candidates: Sequence[Reals]) -> tuple[Reals, Reals] | None:
+    """The pair of the first candidate that has one. All are solved in one run: a root scan takes as many passes for one
+    row as for all.
+    """
+    count = len(machine.kinematics.branches)
+    regular = [
+        (axes, frame, own[:count])
+        for axes, (status, frame, own) in zip(candidates, forward_at(machine, candidates), strict=True)
+        if status is Status.OK and all(byte in _REGULAR for byte in own[:count])
+    ]
+    if not regular:
+        return None
+    every, frames, configurations = zip(*regular, strict=True)
+    others = [(*own[:index], 3 - own[index], *own[index + 1 :]) for own in configurations]
+    solutions = branches_at(machine, frames, others, every)
+    for axes, own, found, status in zip(every, configurations, *solutions, strict=True):
+        if status is Status.OK and max(abs(a - b) for a, b in zip(axes, found, strict=True)) > _APART:
+            return (axes, found) if own[index] == 1 else (found, axes)
     return None
 
 

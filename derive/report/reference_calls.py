@@ -90,17 +90,25 @@ def forward_counted(machine: Machine, axes: Reals) -> tuple[tuple[Status, Reals,
 
 
 def _forward(machine: Machine, axes: Reals) -> tuple[Status, Reals, Bytes]:
+    return forward_at(machine, [axes])[0]
+
+
+def forward_at(machine: Machine, poses: Sequence[Reals]) -> list[tuple[Status, Reals, Bytes]]:
+    """`forward` at several axis values, in one run."""
     kinematics = machine.kinematics
-    found, status = _run(kinematics.forward, machine, _axes(machine, [axes]))
-    if status[0] is not Status.OK:
-        return status[0], (0.0,) * len(FRAME), (0,) * kinematics.configuration_size
-    position, rotation = [float(found[n][0]) for n in FRAME[:3]], [float(found[n][0]) for n in FRAME[3:]]
-    branches = (_branch_byte(float(found[f"branch_{b.name}"][0])) for b in kinematics.branches)
+    found, status = _run(kinematics.forward, machine, _axes(machine, poses))
     order = {joint.name: index for index, joint in enumerate(kinematics.mechanism.joints)}
-    periods = (
-        _period(axes[order[j.name]] * float(evaluate(j.turns, machine.values))) for j in kinematics.period_joints
-    )
-    return Status.OK, (*machine.rounded(position), *_rounded(rotation, _ROTATION_DECIMALS)), (*branches, *periods)
+    periods = [(order[j.name], float(evaluate(j.turns, machine.values))) for j in kinematics.period_joints]
+
+    def at(k: int) -> tuple[Status, Reals, Bytes]:
+        if status[k] is not Status.OK:
+            return status[k], (0.0,) * len(FRAME), (0,) * kinematics.configuration_size
+        position, rotation = [float(found[n][k]) for n in FRAME[:3]], [float(found[n][k]) for n in FRAME[3:]]
+        branches = (_branch_byte(float(found[f"branch_{b.name}"][k])) for b in kinematics.branches)
+        turns = (_period(poses[k][i] * each) for i, each in periods)
+        return Status.OK, (*machine.rounded(position), *_rounded(rotation, _ROTATION_DECIMALS)), (*branches, *turns)
+
+    return [at(k) for k in range(len(poses))]
 
 
 def inverse(machine: Machine, frame: Reals, configuration: Bytes, reference: Reals) -> tuple[Status, Reals]:
@@ -135,33 +143,38 @@ def branches(
     machine: Machine, frame: Reals, configuration: Bytes, reference: Reals
 ) -> tuple[list[Bytes], list[Reals], list[Status]]:
     """Every branch that the configuration admits: its bytes, its axis values and its status, limits not tested."""
-    kinematics = machine.kinematics
-    count = len(kinematics.branches)
+    count = len(machine.kinematics.branches)
     choices = [(1, 2) if byte in (0, 3) else (byte,) for byte in configuration[:count]]
     slots = sorted(product(*choices), key=lambda slot: slot[::-1])  # the first branch counts fastest
-    values = dict(zip(FRAME, map(np.asarray, frame), strict=True))
-    axes = [j.axis.name for j in kinematics.mechanism.joints]
-    nothing = (0.0,) * len(axes)
+    given = [np.asarray(value) for value in (*frame, *reference, *map(float, configuration[count:]))]
+    return slots, *_solved(machine, slots, given)
+
+
+def branches_at(
+    machine: Machine, frames: Sequence[Reals], slots: Sequence[Bytes], references: Sequence[Reals]
+) -> tuple[list[Reals], list[Status]]:
+    """The axis values and the status of one branch at each of several frames, in one run, without turns."""
+    turns = [np.zeros(len(slots))] * len(machine.kinematics.period_joints)
+    return _solved(machine, slots, [*np.array(frames).T, *np.array(references).T, *turns])
+
+
+def _solved(machine: Machine, slots: Sequence[Bytes], given: Sequence[Array]) -> tuple[list[Reals], list[Status]]:
+    """Axis values and status of every row. given: frame, references and turns, of all rows or of each."""
+    kinematics, joints = machine.kinematics, machine.kinematics.mechanism.joints
+    names = (*FRAME, *(j.reference.name for j in joints), *(j.turn.name for j in kinematics.period_joints))
+    values, refused = dict(zip(names, given, strict=True)), np.full(len(slots), Status.OK, dtype=object)
     if kinematics.reads_rotation:
-        made, outcome = run(rotation_program(), {n: values[n] for n in FRAME[3:]})
-        refused = Status(outcome[()])
-        if refused is not Status.OK:
-            return slots, [nothing] * len(slots), [refused] * len(slots)
+        made, refused[:] = run(rotation_program(), {n: values[n] for n in FRAME[3:]})
         values |= made
-    values |= {j.reference.name: np.asarray(r) for j, r in zip(kinematics.mechanism.joints, reference, strict=True)}
-    values |= {
-        branch_sign(b.name).name: np.array([3.0 - 2.0 * slot[k] for slot in slots])
-        for k, b in enumerate(kinematics.branches)
-    }
-    values |= {
-        j.turn.name: np.asarray(float(n)) for j, n in zip(kinematics.period_joints, configuration[count:], strict=True)
-    }
+    signs = 3.0 - 2.0 * np.array(slots).reshape(len(slots), -1)
+    values |= {branch_sign(b.name).name: signs[:, k] for k, b in enumerate(kinematics.branches)}
+    nothing = (0.0,) * len(joints)
+    if not np.any(refused == Status.OK):
+        return [nothing] * len(slots), list(refused)
     found, status = _run(kinematics.branch, machine, values | {"": np.zeros(len(slots))})
-    solved = [
-        machine.rounded([float(found[n][k]) for n in axes]) if status[k] is Status.OK else nothing
-        for k in range(len(slots))
-    ]
-    return slots, solved, list(status)
+    status = np.where(refused == Status.OK, status, refused)
+    rows = [[float(found[j.axis.name][k]) for j in joints] for k in range(len(slots))]
+    return [machine.rounded(r) if s is Status.OK else nothing for r, s in zip(rows, status, strict=True)], list(status)
 
 
 def are_inside(machine: Machine, axes: Mapping[str, Array]) -> NDArray[np.bool_]:

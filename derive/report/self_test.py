@@ -25,8 +25,8 @@ from derive.report.reference_calls import Machine, branches, forward, inverse, m
 
 _CANDIDATES, _LOOP_CANDIDATES = 300, 3000
 """The number of axis values that are drawn: few of them close a loop."""
-_TRIED = 8
-"""Regular poses, among which the one with the most solutions is tested on every branch."""
+_TRIED, _SHOWN = 8, 3
+"""Regular poses, among which the one with the most solutions is tested on every branch; and how many are tested."""
 _NEAR = 0.1
 """The share of the ranges in which poses are sought where none was found in the whole ranges."""
 _REGULAR = 0.05
@@ -132,10 +132,10 @@ class _Vectors:
         """
         if not self._regular:
             raise DescriptionError("no sampled pose is regular: check the nominal values of parameters and joints")
-        poses = self._regular[: 1 if self._mechanism.search else _TRIED]
+        poses = self._regular[: 1 if self._mechanism.search else _TRIED]  # to compare poses, a root scan takes long
         solutions = [sum(status is Status.OK for status in self._statuses(axes)) for axes in poses]
         best = poses[int(np.argmax(solutions))]
-        return (best, *[axes for axes in self._regular if axes != best][:2])
+        return (best, *[axes for axes in self._regular if axes != best][: _SHOWN - 1])
 
     @cached_property
     def frames(self) -> tuple[Reals, ...]:
@@ -178,7 +178,7 @@ class _Vectors:
             status, back = inverse(self.machine, frame, own, axes)
             if status is Status.OK and np.allclose(back, axes, rtol=0, atol=1e-3):
                 found.append(axes)
-            if len(found) == _TRIED:
+            if len(found) == (_SHOWN if self._mechanism.search else _TRIED):
                 break
         return found
 

@@ -43,18 +43,28 @@ def refused_when_planted(kin: Kinematics, closure: Closure, samples: Samples) ->
     outputs, _ = run(kin.forward, values)
     values |= {name: outputs[name] for name in POSE}
     for i, joint in enumerate(kin.mechanism.joints):
-        values[joint.reference.name] = rng.uniform(-180.0, 180.0, len(axes)) if joint.is_angle else axes[:, i]
+        keeps = joint in kin.mechanism.held_joints or not joint.is_angle
+        values[joint.reference.name] = axes[:, i] if keeps else rng.uniform(-180.0, 180.0, len(axes))
     values |= {joint.turn.name: np.zeros(len(axes)) for joint in kin.period_joints}
-    answered = np.zeros(len(axes), dtype=bool)
-    for side in (1.0, -1.0):  # where branches coincide, on either
-        margins = [outputs[f"branch_{b.name}"] for b in kin.branches]
-        signs = {
-            branch_sign(b.name).name: np.where(np.abs(m) < _FREE, side, np.where(m > 0, 1.0, -1.0))
-            for b, m in zip(kin.branches, margins, strict=True)
-        }
-        answered |= run(kin.branch, values | signs)[1] == Status.OK
-    several = np.sum([np.abs(outputs[f"branch_{b.name}"]) < _FREE for b in kin.branches], axis=0) > 1
-    return int(np.sum(~answered & ~several)), int(np.sum(~several))
+    margins = np.stack([outputs[f"branch_{b.name}"] for b in kin.branches])
+    return _refused(kin, values, margins)
+
+
+def _refused(kin: Kinematics, values: dict[str, Array], margins: Array) -> tuple[int, int]:
+    """The number of rows that no side answers, and of all. margins: of every branch by rows. Where one branch meets
+    the next one, either side may answer; where several do, no row is asked.
+
+    Both sides stand in one run: a root scan takes as many passes for one row as for all.
+    """
+    meets = np.abs(margins) < _FREE
+    asked = np.flatnonzero(meets.sum(axis=0) < 2)
+    rows = np.concatenate([asked, asked[meets[:, asked].any(axis=0)]])
+    side = np.where(np.arange(len(rows)) < len(asked), 1.0, -1.0)
+    signs = np.where(meets[:, rows], side, np.where(margins[:, rows] > 0, 1.0, -1.0))
+    chosen = {branch_sign(b.name).name: own for b, own in zip(kin.branches, signs, strict=True)}
+    status = run(kin.branch, {name: column[rows] for name, column in values.items()} | chosen)[1]
+    answered = np.unique(rows[status == Status.OK])
+    return len(asked) - len(answered), len(asked)
 
 
 def _near(
