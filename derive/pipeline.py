@@ -27,6 +27,7 @@ from derive.emit.python import package as python
 from derive.emit.softmotion.library import StructuredTextFiles, most_axes
 from derive.faults import Failure, GenerationError, failure, one_line
 from derive.kinematics.kinematics import Evidence, Kinematics
+from derive.work import STEPS, TooMuchWork, at_most
 
 PROCESSES = 2
 WRITTEN = (python.name, StructuredTextFiles.name)
@@ -42,6 +43,8 @@ _BOUNDS = {
     linuxcnc.name: f"no module for LinuxCNC: it has {{axes}} axes, a pose there 1 to {linuxcnc.MOST_AXES}, or no C",
 }
 """Why a language does not hold a machine."""
+_MOST_STEPS = 1_200_000
+"""The work of the measurement of one machine, of all its stages (`derive.work`): some ten seconds."""
 Told = Callable[[str, str], None]
 """What is told about a stage: its name, and its result, which is empty at its begin."""
 
@@ -172,19 +175,23 @@ def derive_and_measure(mechanism: Mechanism, told: Told = _nobody) -> Kinematics
     from derive.kinematics.refusals.no_pose import why_no_pose
     from derive.report.branch_meanings import with_meanings
     from derive.report.self_test import self_test
+    from derive.solver.unsolved import Exhausted
     from derive.witness import Disagreement, NoPose, witness
 
     told("derive", "")
-    derived = with_meanings(build(mechanism))
-    told("derive", _derived(derived).removeprefix(mechanism.name).strip())
-    told("measure", "")
+    derived = build(mechanism)
     try:
-        evidence = witness(derived, mechanism)
+        with at_most(_MOST_STEPS, unit=STEPS):
+            derived = with_meanings(derived)
+            told("derive", _derived(derived).removeprefix(mechanism.name).strip())
+            told("measure", "")
+            whole = replace(derived, evidence=witness(derived, mechanism))
+            told("measure", _measured(whole))
+            return replace(whole, self_test=self_test(derived))
     except NoPose:
         raise Disagreement(f"{mechanism.name}: {why_no_pose(derived.mechanism)}") from None
-    whole = replace(derived, evidence=evidence)
-    told("measure", _measured(whole))
-    return replace(whole, self_test=self_test(derived))
+    except TooMuchWork as problem:
+        raise Exhausted(f"{mechanism.name}: {problem}") from None
 
 
 def _pictures(kinematics: Kinematics) -> tuple[Mapping[str, bytes], str]:

@@ -65,6 +65,10 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"a machine has no regular pose", "one joint repeats what another does: change the chain, or the task"),
     (r"do not multiply to the determinant", "state the joints and lengths separately, not their sums"),
     (
+        r"was given up after [\d,]+ steps",
+        "name another joint in search=, hold another one (held=), or let axes meet or be parallel",
+    ),
+    (
         r"the search (misses|refuses) ",
         "leave search= out, or name another joint in it; where it is not stated, hold a joint: held=(…)",
     ),

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, fields, replace
 import sympy as sp
 
 from derive.algebra.normal_form import cancelled, reduce_units
-from derive.algebra.work import spend
 from derive.geometry.frames import Factor
 from derive.ir.constants import DEGREE
 from derive.ir.program import Let, Statement
 from derive.ir.symbols import cosine, names_in, real, sine
+from derive.work import spend
 
 _NUMBER = 1e-9
 """A sum of numbers counts as zero where it is at most this share of its terms."""

@@ -1,6 +1,7 @@
 """A program as data: symbols, statements and values, and how a program is checked, executed and rearranged.
 
-It may import `kept`, and no other folder. `cells` and `roots` are also the text of two modules of the Python package.
+It may import `kept` and `work`, and no folder. `cells` and `roots` are also the text of two modules of the Python
+package.
 
 cells: the cells of a root scan, on arrays: how many roots a cell may hold, and where it is cut
 constants: the numerical constants of the product, except those of the root scan

@@ -20,6 +20,7 @@ from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, So
 from derive.ir.roots import nearest, nearest_listed
 from derive.ir.symbols import PLACE, Flag, is_condition, is_count, is_decided
 from derive.kept import kept_by_identity
+from derive.work import spend_steps
 
 Array = NDArray[np.float64]
 _PIVOT, _SOLVABLE = float(PIVOT), float(SOLVABLE)
@@ -53,8 +54,7 @@ def repeats_counted() -> Iterator[Repeats]:
         _REPEATS.reset(token)
 
 
-_Values = Mapping[str, Array]
-_Evaluator = Callable[[_Values], Array]
+_Evaluator = Callable[[Mapping[str, Array]], Array]
 
 
 def evaluate(expression: sp.Basic, values: Mapping[str, Array]) -> Array:
@@ -72,19 +72,18 @@ def _evaluator(expression: sp.Basic) -> _Evaluator:
     if expression == DEGREE or isinstance(expression, sp.Number | sp.NumberSymbol):
         return _constant(np.pi / 180.0 if expression == DEGREE else float(expression))
     function, first, *others = VALUES[type(expression)], *map(_evaluator, expression.args)
-    if others and isinstance(expression, sp.Add | sp.Mul | sp.And | sp.Or):
-        return _chained(function, first, others)
     if not others:
         return lambda values: function(first(values))
-    return _of_two(function, first, others[0]) if len(others) == 1 else _of_more(function, first, others)
+    if len(others) == 1:
+        return _of_two(function, first, others[0])
+    is_chain = isinstance(expression, sp.Add | sp.Mul | sp.And | sp.Or)
+    return _chained(function, first, others) if is_chain else _of_more(function, first, others)
 
 
 def _chained(function: Callable[..., Array], first: _Evaluator, others: Sequence[_Evaluator]) -> _Evaluator:
     """An operation from left to right."""
-    if len(others) == 1:
-        return _of_two(function, first, others[0])
 
-    def chained(values: _Values) -> Array:
+    def chained(values: Mapping[str, Array]) -> Array:
         result = first(values)
         for other in others:
             result = function(result, other(values))
@@ -145,6 +144,7 @@ _Step = Callable[[_State, _Statuses], None]
 
 
 def _execute(statements: Sequence[Statement], known: _State, status: _Statuses) -> None:
+    spend_steps(len(statements), status.size)
     for step in _steps(statements):
         step(known, status)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from derive.algebra.work import stage
 from derive.description.mechanism import Mechanism, Parameter, Turning
 from derive.equations.choices import with_choices
 from derive.equations.windows import windows
@@ -29,6 +28,7 @@ from derive.kinematics.parameters import constants_of, machine_parameters, setup
 from derive.kinematics.shared_names import refuse_names
 from derive.kinematics.solution import Solution
 from derive.lowering.lower import lowered
+from derive.work import stage
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from derive.algebra.work import stage
 from derive.description.mechanism import DescriptionError, Mechanism, Turning
 from derive.equations.chain_splits import is_spatial
 from derive.equations.closures.fixed_names import with_fixed_names
@@ -23,6 +22,7 @@ from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.plate.jacobian import platform_jacobian
+from derive.work import stage
 
 _ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
 """The rows of a twist: along and about the axes of the base, and about the x and y axes of the tool, which tilt its z

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.algebra.work import counted
 from derive.description.mechanism import Mechanism, Turning
 from derive.equations.axes import finite, frozen_lets, joint_lets
 from derive.equations.chain_splits import is_spatial
@@ -39,6 +38,7 @@ from derive.plate.legs import about_z
 from derive.plate.passive import at_the_pose
 from derive.plate.turning import forward_from_start
 from derive.solver.solve import Derivation, solve
+from derive.work import counted
 
 
 def pose_at_axes(mechanism: Mechanism) -> Forward:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.algebra.normal_form import polynomial
-from derive.algebra.work import counted
 from derive.description.mechanism import COORDINATE_NAMES_OF_A_PLANE, DescriptionError, Joint, Mechanism, Turning
 from derive.equations.axes import axis_lets, finite, frozen_lets, plain_angle, reference_lets, reference_value
 from derive.equations.closures.closure import FLANGE, Closure
@@ -37,6 +36,7 @@ from derive.kinematics.scan.machine_checks import MachineCheck, apart
 from derive.optimize.simplify import shorter
 from derive.plate.passive import commanded, passive_statements, spelled
 from derive.solver.solve import Derivation, solve
+from derive.work import counted
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ from typing import TypeVar
 
 import sympy as sp
 
-from derive.algebra.work import TooMuchWork, Work, at_most
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.form.inner_names import in_given_names, inputs_named, joined, suspects, with_inner_names
 from derive.ir.program import Call, Program, Statement, shared
@@ -19,6 +18,7 @@ from derive.ir.symbols import cosine, sine
 from derive.ir.verify import BrokenProgram, RepeatedName
 from derive.solver.solve import MOST_TERMS
 from derive.solver.unsolved import Exhausted, Unsolved
+from derive.work import TooMuchWork, Work, at_most
 
 Found = TypeVar("Found")
 _ATTEMPTS = 4

@@ -14,6 +14,7 @@ from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.reference_cases import Reals
 from derive.report.reference_calls import Machine, branches_at, forward, forward_at, machine_with
+from derive.work import stage
 
 _ANGLES = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0, -30.0)
 _AROUND, _TRIED, _FEW = 60.0, 200, 4
@@ -23,6 +24,7 @@ _APART = 1e-3
 _REGULAR = (1, 2)
 
 
+@stage("the search for an example of its branches")
 def with_meanings(kinematics: Kinematics) -> Kinematics:
     """The kinematics with a note for every branch that its description does not name, and for its assembly choice."""
     notes = tuple(

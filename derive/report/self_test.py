@@ -22,6 +22,7 @@ from derive.kinematics.reference_cases import Bytes, Called, Case, Reals, SelfTe
 from derive.kinematics.sampling import sample_axes
 from derive.report.effort import with_operations
 from derive.report.reference_calls import Machine, branches, forward, inverse, machine_with, margins
+from derive.work import stage
 
 _CANDIDATES, _LOOP_CANDIDATES = 300, 3000
 """The number of axis values that are drawn: few of them close a loop."""
@@ -45,6 +46,7 @@ _NO_ROTATION = 1.1
 """A rotation multiplied by this is no rotation."""
 
 
+@stage("the self-test of the machine")
 def self_test(kinematics: Kinematics) -> SelfTest:
     """The test vectors of a mechanism: a refused machine, the nominal one, and the nominal one with limits around a
     pose.

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.algebra.work import TooMuchWork, at_most, spend
 from derive.equations.positions import positions, positions_and_distance, positions_from_flange
 from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
 from derive.equations.rotations import rotations
@@ -44,6 +43,7 @@ from derive.solver.subproblems.polar import polar
 from derive.solver.subproblems.quadratic import quadratic
 from derive.solver.subproblems.spheres import spheres
 from derive.solver.unsolved import Exhausted, Undetermined, Unsolved, undetermined, unsolved
+from derive.work import TooMuchWork, at_most, spend
 
 Rule = Callable[[Problem, tuple[Equation, ...]], Iterator[Binding]]
 RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quadratic, spheres)

@@ -37,12 +37,14 @@ from derive.witness.inverse import all_slots, check_inverse, check_offset, check
 from derive.witness.jointless import check_jointless
 from derive.witness.orientation import check_orientation
 from derive.witness.samples import regular_samples
+from derive.work import stage
 
 __all__ = ["Disagreement", "NoPose", "witness"]
 
 _FLOOR = 1e-12
 
 
+@stage("the measurement against its equations")
 def witness(kin: Kinematics, described: Mechanism) -> Evidence:
     """Measure every program of a mechanism against the closure of its description, as it is written; raises
     `Disagreement` where one contradicts it.

@@ -10,9 +10,12 @@ import numpy as np
 
 from derive.ir.interpret import Array
 from derive.witness.terms import Term
+from derive.work import STEPS, spend
 
 _TOGETHER = 64
 """Rows that a CasADi function takes at a time."""
+_AS_LONG = 20
+"""So many instructions of it, for these rows, take about as long as one step of a program."""
 
 
 class Rows:
@@ -21,6 +24,7 @@ class Rows:
     def __init__(self, name: str, arguments: tuple[Term, ...], result: Term) -> None:
         self._shape = result.shape
         self._function = ca.Function(name, arguments, [ca.densify(result)])
+        self._steps = 1 + self._function.n_instructions() // _AS_LONG
         self._buffer: Any = None
 
     def __call__(self, *columns: Array) -> Array:
@@ -28,6 +32,7 @@ class Rows:
         result = np.empty((len(columns[0]), width, rows))  # CasADi stores by columns
         if result.size:
             given = [np.ascontiguousarray(c, dtype=float) for c in columns]
+            spend(-(-len(result) // _TOGETHER) * self._steps, STEPS)
             whole = len(result) - len(result) % _TOGETHER
             for first in range(0, whole, _TOGETHER):
                 self._run([c[first : first + _TOGETHER] for c in given], result[first : first + _TOGETHER])

@@ -15,7 +15,6 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from derive.algebra.normal_form import polynomial
-from derive.algebra.work import stage
 from derive.description.branches import assembly
 from derive.description.mechanism import Assembly, Bound, DescriptionError, Mechanism, Rod
 from derive.equations.closures.fixed_names import all_angles, signs_of, with_fixed_names
@@ -43,6 +42,7 @@ from derive.kinematics.refusals.no_pose import why_no_pose
 from derive.kinematics.sampling import Samples, machine_at, possible_axes, sample_axes, sample_machine
 from derive.plate.legs import MARGIN, is_driven
 from derive.plate.plate import platform_checks
+from derive.work import stage
 
 _SAMPLES = 256
 _NAME = "assembly"

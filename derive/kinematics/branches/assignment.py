@@ -9,7 +9,6 @@ import numpy as np
 import sympy as sp
 
 from derive.algebra.normal_form import cancelled, reduce_units
-from derive.algebra.work import stage
 from derive.description.mechanism import Branch, DescriptionError, Mechanism
 from derive.equations.closures.fixed_names import all_angles, with_fixed_names
 from derive.equations.pose_at_axes import Forward
@@ -25,6 +24,7 @@ from derive.kinematics.inverse import Inverse
 from derive.kinematics.refusals.no_pose import near_home, why_no_pose
 from derive.kinematics.sampling import possible_axes, sample_machine
 from derive.plate.turning import given_pose
+from derive.work import stage
 
 _SAMPLES = 64
 _SAME = 1e-9

@@ -14,7 +14,6 @@ import numpy as np
 import sympy as sp
 
 from derive.algebra.normal_form import factored, polynomial
-from derive.algebra.work import stage
 from derive.description.mechanism import ROTATION, Branch, Mechanism, Role, Turning, branch
 from derive.equations.closures.fixed_names import all_angles, fixed_lets, signs_of
 from derive.equations.pose_at_axes import Forward
@@ -27,6 +26,7 @@ from derive.kinematics.branches.assignment import steps_and_rest, steps_without_
 from derive.kinematics.forward import derivation_at_axes
 from derive.kinematics.inverse import Inverse
 from derive.plate.turning import given_pose
+from derive.work import stage
 
 _PARALLEL = 0.999999
 

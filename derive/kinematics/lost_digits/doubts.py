@@ -12,7 +12,6 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.algebra.work import stage
 from derive.ir.constants import BOUNDARY, DOUBTFUL
 from derive.ir.passes import depending_on, normalise
 from derive.ir.primitives import Select
@@ -27,6 +26,7 @@ from derive.kinematics.lost_digits.closure_steps import (
     varying,
 )
 from derive.kinematics.lost_digits.starts import GOAL, LOST
+from derive.work import stage
 
 _EXACTLY = {1 + BOUNDARY / 2: sp.Integer(1), BOUNDARY / 2: sp.Integer(0)}
 """A bound without what it allows for rounding."""

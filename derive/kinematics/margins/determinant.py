@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.algebra.work import stage
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
@@ -17,6 +16,7 @@ from derive.kinematics.differential import jacobian_rows
 from derive.kinematics.kinematics import Margin
 from derive.kinematics.margins.candidates import Factor
 from derive.kinematics.sampling import ENOUGH, possible_axes, sample_machine, size_of
+from derive.work import stage
 
 _EXACT = 1e-6
 """The largest difference between the logarithms of equal products."""

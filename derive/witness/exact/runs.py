@@ -22,6 +22,7 @@ from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Solve, Stat
 from derive.ir.symbols import Flag, is_condition
 from derive.witness.exact.field import PRIME, element, inverse, root, root_of_whole
 from derive.witness.exact.values import MINUS_ONE, ONE, ZERO, Angles, NotAlgebraic, Value, fraction
+from derive.work import STEPS, spend
 
 Known = dict[str, Value | bool]
 """The values of names, those of flags among them."""
@@ -95,6 +96,7 @@ class Run:
                 waiting.append(str(missing))
 
     def _run(self, statement: Statement) -> None:
+        spend(1, STEPS)
         if isinstance(statement, Let):
             for name in _read(statement.value):  # first, as every root that is begun twice takes two signs
                 if name in self._sources and name not in self.known:
