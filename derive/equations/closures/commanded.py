@@ -20,6 +20,7 @@ from derive.geometry.frames import Chain, Factor, Motion, Txyz
 from derive.geometry.pose import pose_of
 from derive.ir.program import Let
 from derive.ir.symbols import COORDINATE_NAMES, OFFSET, ROTATION_ENTRIES, cosine, real, sine
+from derive.work import counted
 
 
 def flange_flips(chain: Chain) -> tuple[Chain, tuple[Factor, ...]]:
@@ -64,6 +65,7 @@ def _with_heading(mechanism: Mechanism, closure: Closure, argument: sp.Expr | No
     return Closure(closure.equations + turns, arguments, closure.lets, closure.planes)
 
 
+@counted
 def closure_at(mechanism: Mechanism, known: Joint) -> Closure:
     """The closure of a commanded pose with one joint known."""
     assert mechanism.chain is not None
