@@ -44,6 +44,7 @@ def test_bytes_say_branch_and_turn(machines: tuple[Machine, ...]) -> None:
             assert configurations[:, column].tolist() == [turn_of(v) for v in axes[:, axis]]
 
 
+@pytest.mark.long("P2C", "Scara4")
 def test_turns_are_counted_at_their_edges(machines: tuple[Machine, ...]) -> None:
     """An edge belongs to the turn above it, in spite of rounding: so does what is 1e-10 below."""
     for one in machines:

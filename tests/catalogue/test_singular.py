@@ -52,6 +52,7 @@ def test_every_margin_vanishes_somewhere(machines: tuple[Machine, ...]) -> None:
         assert vanishing == set(machine.robot.MARGINS)
 
 
+@pytest.mark.long("Pos_RRR")
 @pytest.mark.parametrize("around", ["axes", "zero", "anywhere"])
 def test_a_singular_pose_is_an_answer(machines: tuple[Machine, ...], around: str) -> None:
     """At a singular pose the inverse answers, and reaches the frame."""
@@ -173,6 +174,7 @@ def test_a_free_axis_stays_at_the_reference(machines: tuple[Machine, ...]) -> No
     assert count == on_the_axis * len(machines) + machines[0].robot.BRANCHES
 
 
+@pytest.mark.long("Pos_RRR")
 def test_the_reference_decides_where_something_is_free_in_space(machines: tuple[Machine, ...]) -> None:
     """At a self-motion some axis stays at its reference, or as near to it as the rest can be reached; else nothing
     moves.

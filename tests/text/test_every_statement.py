@@ -7,6 +7,7 @@ from functools import cache, partial
 from itertools import product
 
 import numpy as np
+import pytest
 import softkin
 
 from derive.description.mechanism import Mechanism
@@ -33,6 +34,8 @@ from tests.text.selftest import test_self_test
 from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pair, serial_pairs_of
 from tests.text.statements import Statements
 from tests.text.units import compiled, compiled_shared, file_of, shared_texts, text_of
+
+pytestmark = pytest.mark.slow
 
 MACHINES = ("plain", "equal", "limited", "limited to a turn")
 OF_THE_BASE = ("Kin_Scara4_ZCcoupled_Type1", "Softkin_Pos_RRR")

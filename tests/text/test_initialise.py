@@ -40,6 +40,7 @@ def wrong_values(parameter: Parameter) -> Iterator[float]:
         yield 0.0
 
 
+@pytest.mark.long("Hexapod", "P2C", "Pos_RRR")
 def test_every_parameter_is_checked(pairs: tuple[Pair, ...]) -> None:
     """Alone, in a machine that is otherwise right; Python refuses the same."""
     for one in pairs[-3:]:
@@ -54,6 +55,7 @@ def test_every_parameter_is_checked(pairs: tuple[Pair, ...]) -> None:
                 assert asked(partial(type(one.robot), **wrong))[0] == NOT_INITIALIZED
 
 
+@pytest.mark.long("Hexapod")
 def test_the_ends_of_a_range_belong_to_it(pairs: tuple[Pair, ...]) -> None:
     """As far as the other parameters allow: Python knows."""
     accepted = 0
@@ -110,6 +112,7 @@ def test_a_matrix_of_another_size_is_refused(mechanism: Mechanism, size: int) ->
     assert controller.block.call("IsInitialized") is False
 
 
+@pytest.mark.long
 def test_a_configuration_that_is_too_small_is_refused(mechanism: Mechanism) -> None:
     """By a compiler that looks at indices, and by Initialize where the compiler does not."""
     size = len(softkin.catalogue()[mechanism.name].CONFIGURATION)

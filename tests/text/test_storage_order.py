@@ -12,6 +12,7 @@ FEW = 10
 MACHINES = ("nominal", "random 2", "limited")
 
 
+@pytest.mark.long("Scara4")
 def test_every_method_answers_the_same_by_columns(mechanism: Mechanism) -> None:
     """Every method gives the same answers for matrices that are stored by columns."""
     for by_rows, by_columns in zip(serial_pairs_of(mechanism), serial_pairs_of(mechanism, "columns"), strict=True):

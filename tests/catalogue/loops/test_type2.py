@@ -76,6 +76,7 @@ def test_the_closure_itself_is_lost_there(crossings: list[Crossing]) -> None:
         assert np.sign(values[0]) == np.sign(values[1]) == -np.sign(values[2])
 
 
+@pytest.mark.long
 def test_a_path_is_stopped_before_the_crossing(crossings: list[Crossing]) -> None:
     """Small steps with the last answer as reference: answers without a jump, then refusals alone, in both languages."""
     for line in crossings:
@@ -162,6 +163,7 @@ def test_the_other_assembly_mode_is_refused(machines: tuple[LoopMachine, ...]) -
         assert (other.robot.inverse_batch(positions, rotations, configurations, axes)[1] == Status.OK).all()
 
 
+@pytest.mark.long
 def test_forward_has_one_solution_a_side(machines: tuple[LoopMachine, ...]) -> None:
     """Newton's method from many places finds two poses at regular axis values, and each assembly
     mode is one of them.

@@ -26,6 +26,7 @@ def controller(mechanism: Mechanism, **given: float) -> tuple[Controller, str]:
     return block, block.initialise({**nominal, **given})
 
 
+@pytest.mark.long("Pos_RRR")
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
 def test_the_lengths_that_are_named_are_refused_at_0(mechanism: Mechanism) -> None:
     """And no others, but where conditions between several parameters forbid it; where none is named, all may be 0."""

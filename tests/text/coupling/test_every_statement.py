@@ -15,6 +15,8 @@ from tests.text.samples import Sample
 from tests.text.statements import Statements
 from tests.text.units import compiled, file_of, text_of
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_every_statement_runs(mechanism: Mechanism) -> None:

@@ -48,6 +48,7 @@ def compare_some(machine: Machine, block: Controller, count: int = 12) -> None:
         compare(machine, block, position, turn)
 
 
+@pytest.mark.long("lopsided", "hanging", "sideways")
 @pytest.mark.parametrize("name", NAMES)
 def test_every_method_answers_as_python_does(name: str) -> None:
     """Every method of the block gives the answers of the Python package."""
@@ -125,6 +126,7 @@ def ending_where_nothing_holds() -> Library:
     return compiled_text(file_of(MECHANISM), text.replace(written, "\ndeterminant := 0.0;" + written[1:]))
 
 
+@pytest.mark.long
 def test_without_control_there_is_no_jacobian() -> None:
     """Where the legs do not control the platform there is no Jacobian, and the pose is singular."""
     block, axes = made(machines()["nominal"], ending_where_nothing_holds()), (650.0,) * 6
@@ -132,6 +134,7 @@ def test_without_control_there_is_no_jacobian() -> None:
     assert block.is_singular(axes)
 
 
+@pytest.mark.long
 def test_every_statement_runs() -> None:
     """The tests of this file execute every statement of the block."""
     small = compiled(MECHANISM, matrix_size=36)

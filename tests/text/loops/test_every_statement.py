@@ -32,6 +32,8 @@ from tests.text.statements import Statements
 from tests.text.test_every_statement import few, left_out, libraries
 from tests.text.units import file_of
 
+pytestmark = pytest.mark.slow
+
 FEW, FAR = 6, (0.3, 1.0, 3.0)
 """The number of samples, and how far beyond a pose a place is asked for: a watched call takes its time."""
 

@@ -14,6 +14,8 @@ from tests.text.loops.answers import COMPARISONS
 from tests.text.loops.machines import Loop
 from tests.text.units import compiled
 
+pytestmark = pytest.mark.slow
+
 
 def test_limits_are_in_order(loops: tuple[Loop, ...]) -> None:
     """Initialize refuses a lower limit that is not below the upper one."""

@@ -62,6 +62,7 @@ def test_an_exact_rotation_is_used_bit_for_bit(seed: int) -> None:
     assert (in_the_reference(matrices)[0] == matrices).all()
 
 
+@pytest.mark.long
 @settings(max_examples=20)
 @given(seed=SEEDS)
 def test_what_is_nearly_a_rotation_is_made_one(seed: int) -> None:

@@ -60,6 +60,7 @@ def rails(rod_length: float, apart: float = 300.0) -> Mechanism:
     )
 
 
+@pytest.mark.long
 def test_branches_are_told_apart_where_few_of_the_drawn_poses_close() -> None:
     """Rods much shorter than the rails are apart: enough poses are found, and each indicator agrees with one step."""
     mechanism = rails(40.0)
