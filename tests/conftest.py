@@ -36,7 +36,7 @@ IS_NATIVE = os.environ.setdefault("SOFTKIN_CORE", "python") == "native"
 collect_ignore = [] if IS_NATIVE else ["native"]
 
 ROOT = Path(__file__).parent
-FOLDERS_OF_QUICK = ("unit", "harness", "catalogue", "text")
+FOLDERS_OF_QUICK = ("unit", "harness", "catalogue", "text", "languages")
 """Where `make quick` looks for tests."""
 LEFT_OUT_AS_A_WHOLE = re.compile(r"^pytestmark = pytest\.mark\.(slow|long)$", re.MULTILINE)
 """What says of a file that none of its tests is quick."""
@@ -61,7 +61,7 @@ LONG_OF_THE_SEARCH = (
     "unit/kinematics/test_conic.py::test_all_roots_of_random_conics",
     "unit/kinematics/test_flags.py::test_a_search_and_its_loop_count_and_ask",
     "unit/description/test_refusals.py::test_a_root_scan_needs_names",
-    "unit/kinematics/test_quartic.py",
+    "unit/kinematics/test_quartic.py::test_the_residual",
     "unit/kinematics/test_refusals.py::test_a_trial_that_is_out_of_reach_elsewhere",
     "unit/witness/test_exact.py::test_what_cannot_be_asked_is_said",
 )
@@ -196,7 +196,7 @@ def mechanisms_of(item: pytest.Item, folders: tuple[str, ...]) -> list[str]:
 
 def machines_of(item: pytest.Item, folders: tuple[str, ...]) -> list[str]:
     """The names of the machines in no catalogue that a test's parameters name, or that its text does."""
-    if folders[:1] != ("machines",):
+    if folders[:1] not in (("machines",), ("languages",)):
         return []
     callspec = getattr(item, "callspec", None)
     words = list(callspec.params.values()) if callspec is not None else []
