@@ -92,7 +92,7 @@ def test_round_trip_with_the_reference_at_the_same_axes(machines: tuple[Machine,
             assert np.abs(np.subtract(found, values)).max() < ROUND_TRIP
 
 
-@pytest.mark.long("P2C", "Pos_RRR")
+@pytest.mark.long
 def test_every_branch_brings_the_point_there(machines: tuple[Machine, ...]) -> None:
     """With any reference; joints that the position does not determine stay where the reference is."""
     for machine in offered(machines):

@@ -53,7 +53,7 @@ def chosen(machines: tuple[Machine, ...], label: str) -> Machine:
     return found
 
 
-@pytest.mark.long("Scara4")
+@pytest.mark.long
 def test_many_turns(machines: tuple[Machine, ...]) -> None:
     """Across every ±180 degrees, forward and back, turns counted; with branches named."""
     machine = chosen(machines, "random 1")

@@ -103,6 +103,7 @@ def test_the_example_of_a_scara() -> None:
     assert moved(block, robot, axes, reference) == (OK, pytest.approx((200.0, 60.0, 10.0)))
 
 
+@pytest.mark.long("Ac6")
 @EVERY
 def test_the_drive_decides_the_turn(mechanism: Mechanism) -> None:
     """Of every axis with turns, both ways round; what the machine with these limits answers in

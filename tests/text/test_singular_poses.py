@@ -82,7 +82,7 @@ def offered(one: SerialPair, methods: tuple[str, ...]) -> list[str]:
     return [method for method in methods if method.lower() in one.controller.methods]
 
 
-@pytest.mark.long("Pos_RRR")
+@pytest.mark.long
 def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs: tuple[SerialPair, ...]) -> None:
     """The effective link of the offset interface is then too short to have a direction."""
     for one in serial_pairs:

@@ -48,6 +48,7 @@ def test_a_line_is_straight_and_continuous(name: str) -> None:
             assert jumps or refused.status is line.stop.refusal.status
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize("name", NAMES)
 def test_velocities_are_those_of_the_jacobian(name: str) -> None:
     """The Jacobian times the speeds of the axes is the speed of the frame, on a short line without a stop."""

@@ -36,7 +36,7 @@ def spoiled(values: Array, *wrong: float) -> Array:
     return values
 
 
-@pytest.mark.long("inch", "asymmetric", "lopsided")
+@pytest.mark.long
 def test_forward(machine: Machine) -> None:
     """Batch forward kinematics gives the frames and statuses of single calls."""
     far = machine.axes(*machine.poses(150, turn=150.0))

@@ -50,6 +50,7 @@ def test_type_1_margins_are_those_of_b_and_type_2_of_a(machines: tuple[LoopMachi
             assert is_constant(b[:, k, k] / found[branch.margin])
 
 
+@pytest.mark.long
 def test_margins_have_no_unit(machines: tuple[LoopMachine, ...]) -> None:
     """Of the order of one in size, and the same for a machine drawn in other units."""
     for machine in machines:

@@ -60,6 +60,7 @@ def determinant(machine: LoopMachine, axes: Array, position: Array) -> float:
     return float(np.linalg.det(machine.closure.by_position(joints, position[None]))[0])
 
 
+@pytest.mark.long
 def test_the_closure_itself_is_lost_there(crossings: list[Crossing]) -> None:
     """Just before and just behind, det A of the closure is next to nothing and has opposite signs; the legs move on."""
     for line in crossings:
@@ -106,6 +107,7 @@ def test_a_path_is_stopped_before_the_crossing(crossings: list[Crossing]) -> Non
         assert margin(machine, last) < 0.5  # the way goes far enough to be about this singularity
 
 
+@pytest.mark.long
 def test_nearer_than_the_threshold_it_is_flagged(crossings: list[Crossing]) -> None:
     """With the refusal switched off the inverse answers up to the crossing, and `IsSingularity` warns before it."""
     for line in crossings:
@@ -124,6 +126,7 @@ def test_nearer_than_the_threshold_it_is_flagged(crossings: list[Crossing]) -> N
             assert asked(machine.robot, position, line.configuration, line.axes) is None
 
 
+@pytest.mark.long
 def test_the_least_margin_is_sharp(machines: tuple[LoopMachine, ...]) -> None:
     """A hair below the margin of a pose answers, a hair above refuses: every call that solves, in both languages."""
     for machine in machines:

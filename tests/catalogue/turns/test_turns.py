@@ -68,7 +68,7 @@ def test_references_anywhere(mechanism: Mechanism, make: Make) -> None:
             check_anywhere(axis, limits, make)
 
 
-@pytest.mark.long("Ac6", "P2C", "Pos_RRR", "Wrist2")
+@pytest.mark.long
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=named)
 def test_references_anywhere_in_short(mechanism: Mechanism) -> None:
     """With references anywhere an axis takes the turn that its range and the reference decide."""

@@ -95,6 +95,7 @@ def in_the_other_mode() -> tuple[float, ...]:
     return tuple(axes[np.flatnonzero(refused & (anywhere == Outcome.OK))[0]])
 
 
+@pytest.mark.long
 def test_the_other_assembly_mode_is_refused() -> None:
     """The search finds a pose with these lengths, on the other side; the machine is not there."""
     machine, axes = machines()["asymmetric"], in_the_other_mode()

@@ -68,6 +68,7 @@ def test_nominal_joints_that_fit_no_pose() -> None:
     assert np.min(np.abs(margins(machine, [pose.axes]))) > 0.05
 
 
+@pytest.mark.long
 def test_no_pose_can_be_drawn() -> None:
     """Where no sampled pose is possible either, the nominal values are named."""
     kinematics = build(validate(FAR))

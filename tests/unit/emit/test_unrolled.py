@@ -167,6 +167,7 @@ def test_a_batch_of_all_branches_is_its_rows(description: Description) -> None:
                 assert axes[row, slot] == pytest.approx(solution.axes, rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.long("Hexapod")
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
 def test_all_branches_of_a_row_are_the_same_in_any_company(
     description: Description, monkeypatch: pytest.MonkeyPatch
@@ -213,6 +214,7 @@ def test_rows_in_chunks_are_the_rows_alone(name: str) -> None:
         np.testing.assert_allclose(axes[row], alone[0], rtol=1e-12, atol=1e-12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["Kin_ArticulatedRobot_6DOF", "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"])
 def test_trusted_calls_can_be_sent_to_another_process(name: str) -> None:
     """The fast functions of a machine can be pickled and give the same axes."""

@@ -51,6 +51,7 @@ def test_every_rounding_of_a_right_angle_is_one(quarters: int, decimals: int) ->
     assert sp.simplify(as_right_angles(written) - quarters * pi / 2) == 0
 
 
+@pytest.mark.long
 @given(st.integers(-360_000, 360_000), st.integers(10, 15))
 def test_every_long_decimal_of_thousandths_of_a_degree_is_exact(thousandths: int, decimals: int) -> None:
     """The form names such an angle by its degrees, and what was written must not differ from that."""

@@ -31,6 +31,7 @@ def _all(kin: Kinematics) -> Iterator[tuple[Program, Statement]]:
             yield from ((program, s) for s in (statement.step if isinstance(statement, Iterate) else ()))
 
 
+@pytest.mark.long("Hexapod")
 def test_no_real_is_one_or_zero_by_a_condition(kinematics: Kinematics) -> None:
     """No program stores a truth value in a real number."""
     flags = {(sp.Integer(1), sp.Integer(0)), (sp.Integer(0), sp.Integer(1))}

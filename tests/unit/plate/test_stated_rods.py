@@ -56,6 +56,7 @@ def test_the_programs_are_those_of_the_rods() -> None:
     assert one.margins == other.margins
 
 
+@pytest.mark.long
 def test_an_equation_that_is_multiplied_out_is_read_too() -> None:
     """With two entries of the rotation, as heading's cosine and sine, and every square expanded."""
     mechanism = named("Softkin_Planar_3RRR")

@@ -60,6 +60,7 @@ def test_a_search_that_misses_solutions(arm: Kinematics, monkeypatch: pytest.Mon
     assert "the search misses 24 of 48 solutions; leave search= out" in said_of(one_elbow)
 
 
+@pytest.mark.long
 def test_a_search_that_refuses_poses_where_branches_meet(arm: Kinematics, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(inverse, "refused_when_planted", lambda *_: (2, 100))
     said = said_of(arm)
