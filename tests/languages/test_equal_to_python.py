@@ -11,7 +11,7 @@ from tests.javascript import comparison
 from tests.languages.language import JAVASCRIPT, LANGUAGES, Language
 
 
-@pytest.mark.long("Hexapod", "P2C_Type1", "Pos_RRR", "Wrist2", "Ac6_RZ")
+@pytest.mark.long("Hexapod", "P2C_Type1", "Pos_RRR", "Wrist2", "Ac6_RZ", "-C")
 @pytest.mark.parametrize("language", LANGUAGES, ids=str)
 @pytest.mark.parametrize("name", DIMENSIONS)
 def test_answers_are_those_of_python(language: Language, name: str) -> None:

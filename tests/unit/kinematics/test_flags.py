@@ -15,6 +15,8 @@ from derive.ir.symbols import PLACE, Flag, flag, is_condition, is_count, real
 from derive.kinematics.kinematics import Kinematics
 from tests.mechanisms import kinematics_of, named
 
+pytestmark = pytest.mark.long("Hexapod")
+
 CHOSEN = ("Kin_Scara4_CCZC_ZCcoupled", "Kin_GantryCutter2", "Kin_Hexapod")
 
 
@@ -31,7 +33,6 @@ def _all(kin: Kinematics) -> Iterator[tuple[Program, Statement]]:
             yield from ((program, s) for s in (statement.step if isinstance(statement, Iterate) else ()))
 
 
-@pytest.mark.long("Hexapod")
 def test_no_real_is_one_or_zero_by_a_condition(kinematics: Kinematics) -> None:
     """No program stores a truth value in a real number."""
     flags = {(sp.Integer(1), sp.Integer(0)), (sp.Integer(0), sp.Integer(1))}
