@@ -1,8 +1,8 @@
 """One profile for all property tests: the same examples on every machine, and no time limit on a shared one.
 
 Every test is given its mechanism, where it has one. Tests of one mechanism run in one process, so that what they share
-is made once, and so do those of one machine that is in no catalogue. `make quick` runs all units, and of the catalogue
-one mechanism for each path through the compiler.
+is made once, and so do those of one machine that is in no catalogue. `make quick` runs units, and of the catalogue one
+mechanism for each path through the compiler; tests that are marked `slow` or `long` it leaves out.
 
 The process that only hands the tests out reads this file, too: the compiler is imported where it is needed.
 """
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from tests.fresh import Generation
 
 settings.register_profile("softkin", deadline=None, derandomize=True)
+# Every property is tried in `make quick`; `make test` tries a hundred examples of it.
+settings.register_profile("quick", settings.get_profile("softkin"), max_examples=10)
 settings.load_profile("softkin")
 # What is derived and compiled for a mechanism lives as long as its process: looking for garbage among it after every
 # 700 new objects took a fifth of the time, and looking through all of it once more at each hundredth pass is enough.
@@ -34,58 +36,36 @@ IS_NATIVE = os.environ.setdefault("SOFTKIN_CORE", "python") == "native"
 collect_ignore = [] if IS_NATIVE else ["native"]
 
 ROOT = Path(__file__).parent
-FOLDERS_OF_QUICK = ("unit", "harness", "catalogue", "text")
+FOLDERS_OF_QUICK = ("unit", "harness", "catalogue", "text", "languages")
 """Where `make quick` looks for tests."""
+LEFT_OUT_AS_A_WHOLE = re.compile(r"^pytestmark = pytest\.mark\.(slow|long)$", re.MULTILINE)
+"""What says of a file that none of its tests is quick."""
 ALL_OF_THEM_QUICK = (("unit",), ("harness",))
-"""The folders whose tests are quick where they are about no mechanism of the catalogue, but for those that are slow."""
+"""The folders whose tests are quick where they are about no mechanism of the catalogue, and neither slow nor long."""
 ASKED_WHOLE = (("native",), ("corpus",))
 """The folders that are asked about all mechanisms with the native core, where the catalogue is about the quick ones."""
 OF_ONE_MECHANISM = {"hexapod": "Kin_Hexapod", "search": "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"}
 """Folders of tests about one mechanism, which their parameters do not name."""
-SWEEPS = (
+OF_THE_SEARCH = (
     "catalogue/search/test_both_ways.py::test_every_solution",
     "catalogue/search/test_both_ways.py::test_right_angles",
     "catalogue/search/test_planted.py",
-    "catalogue/test_pairs_of_singularities.py",
-    "catalogue/test_coinciding_singularities.py",
-    "catalogue/test_precision.py",
-    "catalogue/hexapod/test_any_machine.py",
-    "catalogue/hexapod/test_planted_faults.py",
-    "harness/test_harness_sample.py::test_blark",
-    "unit/emit/test_hash_seeds.py",
-    "unit/kinematics/test_derived_branches.py",
-    "unit/kinematics/test_turning_inventions.py",
-    "unit/lowering/test_unrolling.py",
-    "unit/witness/test_conditioning.py",
-    "text/contract",
-    "text/coupling/test_every_statement.py",
-    "text/test_flat.py",
-    "text/loops/test_branches.py",
-    "text/loops/test_every_statement.py",
-    "text/loops/test_refusals.py",
-    "text/loops/test_wrong_text.py",
-    "text/selftest",
-    "text/test_cost.py",
-    "text/test_every_statement.py",
-    "text/test_pairs_of_singularities.py",
-    "text/test_second_grammar.py",
-    "text/test_singular_poses.py::test_quarter_turns",
-    "unit/description/test_naive.py::test_the_fault_is_told[six axes",
-    "unit/description/test_numbers.py",
-    "unit/description/test_refusals.py::test_any_identifier",
-    "unit/drawing/test_more_of_a_scene.py",
-    "unit/emit/test_room_for_branches.py",
-    "unit/kinematics/test_derived_assembly.py",
-    "unit/kinematics/test_descriptions.py",
     "unit/kinematics/test_quartic.py::test_an_arm_whose_residual",
     "unit/kinematics/test_search_choice.py",
-    "unit/lowering/test_lower.py::test_values_stay_the_same",
-    "unit/optimize/test_unroll.py::test_every_slot",
-    "unit/solver/test_fast_refusals.py",
-    "unit/solver/test_solve.py::test_all_solutions",
-    "unit/solver/test_solve.py::test_the_same_text",
 )
-"""Tests that cost more than all others of their path together: `make test` runs them."""
+"""Tests of the search along a joint that are slow; all others have a marker where they stand."""
+LONG_OF_THE_SEARCH = (
+    "catalogue/search/test_both_ways.py::test_a_path_in_one_configuration_is_followed",
+    "catalogue/search/test_both_ways.py::test_batches_are_scalar_calls",
+    "catalogue/search/test_single_precision.py::test_beyond_that_it_is_refused",
+    "unit/kinematics/test_conic.py::test_all_roots_of_random_conics",
+    "unit/kinematics/test_flags.py::test_a_search_and_its_loop_count_and_ask",
+    "unit/description/test_refusals.py::test_a_root_scan_needs_names",
+    "unit/kinematics/test_quartic.py::test_the_residual",
+    "unit/kinematics/test_refusals.py::test_a_trial_that_is_out_of_reach_elsewhere",
+    "unit/witness/test_exact.py::test_what_cannot_be_asked_is_said",
+)
+"""Those that are long."""
 SHARED_BY_A_FILE = (
     "codesys/",
     "text/selftest/",
@@ -115,17 +95,21 @@ PATHS = {
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Forget which browser showed the viewer in an earlier run."""
+    """Take fewer examples where only the quick tests are asked for, and forget which browser an earlier run had."""
+    if _is_quick(config):
+        settings.load_profile("quick")
     if not hasattr(config, "workerinput"):
         BROWSER.unlink(missing_ok=True)
 
 
 @pytest.hookimpl(trylast=True)
-def pytest_sessionfinish() -> None:
+def pytest_sessionfinish(session: pytest.Session) -> None:
     """Look for garbage once more, so that a file that nobody closed is told, and not again: pytest and Python would go
     through all that is derived five times, and take it apart object by object, in a fifteenth of the time of a run.
+    `make quick` leaves that one look to `make test`.
     """
-    gc.collect()
+    if not _is_quick(session.config):
+        gc.collect()
     gc.freeze()
 
 
@@ -145,11 +129,12 @@ def generation(tmp_path_factory: pytest.TempPathFactory) -> Generation:
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Where only the quick tests are asked for, leave out the files that have none: they are not even imported."""
-    if IS_NATIVE or config.option.markexpr != "quick" or not collection_path.is_relative_to(ROOT):
+    if not _is_quick(config) or not collection_path.is_relative_to(ROOT) or collection_path == ROOT:
         return None
-    folders, place = _place_of(collection_path)
-    is_elsewhere = bool(place) and (*folders, collection_path.name)[0] not in FOLDERS_OF_QUICK
-    return True if is_elsewhere or place in SWEEPS else None
+    if collection_path.relative_to(ROOT).parts[0] not in FOLDERS_OF_QUICK:
+        return True
+    is_test = collection_path.match("test_*.py")
+    return True if is_test and LEFT_OUT_AS_A_WHOLE.search(collection_path.read_text(encoding="utf-8")) else None
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -161,11 +146,26 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         names = mechanisms_of(item, folders)
         place = f"{file}::{item.name}"
         is_quick = set(names) <= PATHS.keys() if names else folders[:1] in ALL_OF_THEM_QUICK
-        is_long = item.get_closest_marker("slow") is not None or place.startswith(SWEEPS)
-        if (is_quick and not is_long) or (IS_NATIVE and folders[:1] in ASKED_WHOLE):
+        if (is_quick and not _is_left_out(item, place)) or (IS_NATIVE and folders[:1] in ASKED_WHOLE):
             item.add_marker("quick")
         if is_shared_out:
             item.add_marker(pytest.mark.xdist_group(_group_of(item, place, folders, names)))
+
+
+def _is_quick(config: pytest.Config) -> bool:
+    """Whether this is `make quick`: the native core is asked all that is quick, and what is long as well."""
+    return config.option.markexpr == "quick" and not IS_NATIVE
+
+
+def _is_left_out(item: pytest.Item, place: str) -> bool:
+    """Whether a test is slow or long: in all of its cases, or in those that a word of its marker stands in."""
+    callspec = getattr(item, "callspec", None)
+    case = callspec.id if callspec is not None else ""
+    names, of_the_search = ("slow", "long"), OF_THE_SEARCH + LONG_OF_THE_SEARCH
+    if IS_NATIVE:
+        names, of_the_search = ("slow",), OF_THE_SEARCH
+    marks = [mark for name in names for mark in item.iter_markers(name)]
+    return place.startswith(of_the_search) or any(not m.args or any(word in case for word in m.args) for m in marks)
 
 
 def _group_of(item: pytest.Item, place: str, folders: tuple[str, ...], names: list[str]) -> str:
@@ -198,7 +198,7 @@ def mechanisms_of(item: pytest.Item, folders: tuple[str, ...]) -> list[str]:
 
 def machines_of(item: pytest.Item, folders: tuple[str, ...]) -> list[str]:
     """The names of the machines in no catalogue that a test's parameters name, or that its text does."""
-    if folders[:1] != ("machines",):
+    if folders[:1] not in (("machines",), ("languages",)):
         return []
     callspec = getattr(item, "callspec", None)
     words = list(callspec.params.values()) if callspec is not None else []

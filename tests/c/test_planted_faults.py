@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from tests.c.programs import SANITIZED, compiled_with_a_fault, part_of
-from tests.c.test_equal_to_python import compared
 from tests.corpus.recording import read
 from tests.javascript.comparison import differences
+from tests.languages.language import C
 
 ARM = "Kin_Scara4_ZCcoupled_Type1"
 ELBOW = "Kin_ArticulatedRobot_6DOF"
@@ -61,7 +61,7 @@ def test_a_planted_fault_is_found(fault: str) -> None:
     first, *others = read(name)
     few = [first | {"asked": first["asked"][:65:2]}] if name == SEARCHED else [first, *others[-8:]]
     try:
-        assert differences(compared(program, few)), f"{fault} is not found"
+        assert differences(C.compared(program, few)), f"{fault} is not found"
     except AssertionError as stopped:
         if STOPPED.get(fault, "never") not in str(stopped):
             raise

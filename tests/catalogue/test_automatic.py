@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 
 import numpy as np
+import pytest
 from softkin import Status
 
 from derive.description.mechanism import Role
@@ -81,6 +82,7 @@ def test_an_open_branch_is_the_nearest(machines: tuple[Machine, ...]) -> None:
             assert nearest_slots == set(range(len(answers)))
 
 
+@pytest.mark.long("Pos_RRR")
 def test_a_tie_goes_to_the_lowest_slot(machines: tuple[Machine, ...]) -> None:
     """Half-way between two slots, and less than the tie's width off it, slot 0 answers; beyond it the nearer one."""
     for machine in machines:

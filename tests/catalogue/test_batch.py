@@ -114,6 +114,7 @@ def test_one_row_may_stand_for_all(machines: tuple[Machine, ...]) -> None:
         assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(one, lists, strict=True))
 
 
+@pytest.mark.long("P2C", "Pos_RRR")
 def test_one_configuration_may_leave_branches_open_in_many_rows(
     machines: tuple[Machine, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:

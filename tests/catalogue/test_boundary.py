@@ -68,6 +68,7 @@ def squared_sine(machine: Machine, position: Array, rotation: Array) -> Fraction
     return 1 - cosine * cosine
 
 
+@pytest.mark.long("Scara4")
 @pytest.mark.serial
 def test_reach_and_hole(machines: tuple[Machine, ...]) -> None:
     """Stretched and folded, exactly and beside: refused where the squared sine is below -1e-12, and only there."""
@@ -101,6 +102,7 @@ def test_reach_and_hole(machines: tuple[Machine, ...]) -> None:
         assert all(locus.branch is None for machine in machines for locus in loci(machine))
 
 
+@pytest.mark.long("Pos_RRR")
 @pytest.mark.serial
 def test_where_two_branches_meet_in_space(machines: tuple[Machine, ...]) -> None:
     """On the one side of a fold both answer, however near; on the other none does, but for rounding."""

@@ -21,6 +21,7 @@ def climbing(machine: Machine) -> float:
     return parameters.get("pitch_zc", 0.0) or parameters.get("gear_coupling", 0.0)
 
 
+@pytest.mark.long
 def test_an_axis_that_carries_another_is_always_limited(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     """To two turns either way where no limit is given; without a pitch it turns without end, as any other axis."""
     helical = [i for i, j in enumerate(mechanism.joints) if j.kind is Kind.HELICAL]

@@ -24,6 +24,8 @@ from tests.catalogue.self_motion import is_free
 from tests.catalogue.shares import share
 from tests.catalogue.test_boundary import alone
 
+pytestmark = pytest.mark.slow
+
 RIGHT_ANGLES = (-90.0, 0.0, 90.0, 180.0)
 REGULAR, NEAR = 1e-12, 1e-10
 WELL_REGULAR = 0.2

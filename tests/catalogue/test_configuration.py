@@ -44,6 +44,7 @@ def test_bytes_say_branch_and_turn(machines: tuple[Machine, ...]) -> None:
             assert configurations[:, column].tolist() == [turn_of(v) for v in axes[:, axis]]
 
 
+@pytest.mark.long
 def test_turns_are_counted_at_their_edges(machines: tuple[Machine, ...]) -> None:
     """An edge belongs to the turn above it, in spite of rounding: so does what is 1e-10 below."""
     for one in machines:
@@ -65,6 +66,7 @@ def test_turns_are_counted_at_their_edges(machines: tuple[Machine, ...]) -> None
                 assert (again == configurations)[regular].all()
 
 
+@pytest.mark.long("P2C")
 def test_a_named_turn_is_where_the_axis_is_put(machines: tuple[Machine, ...]) -> None:
     """Far turns too, positive and negative, up to what a byte can hold; beyond it the byte is 0."""
     for one in machines:
@@ -96,6 +98,7 @@ def test_negative_bytes_may_be_given_unsigned(machines: tuple[Machine, ...]) -> 
         assert np.abs(found - axes).max() < 1e-9
 
 
+@pytest.mark.long("Pos_RRR")
 @pytest.mark.serial
 def test_where_branches_coincide_the_byte_is_3(machines: tuple[Machine, ...]) -> None:
     """Stretched and folded exactly; 1e-9 away the branch has a sign."""

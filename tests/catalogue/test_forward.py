@@ -25,6 +25,7 @@ def test_forward_satisfies_the_closure(machines: tuple[Machine, ...]) -> None:
         assert machine.error(axes, positions, rotations).max() < ROUNDING
 
 
+@pytest.mark.long("Pos_RRR", "Scara4")
 def test_scalar_and_batch_agree(machines: tuple[Machine, ...]) -> None:
     """Single calls and batches of forward kinematics agree."""
     for machine in machines:

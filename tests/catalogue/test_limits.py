@@ -79,6 +79,7 @@ def check_both_ends(machine: Machine, axes: Array, key: str, value: float) -> No
             assert outcome(machine.changed(**limits, check_limits=False), machine, axes) is Status.OK
 
 
+@pytest.mark.long
 def test_every_axis_has_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     """Both limits of every axis refuse poses beyond them."""
     for machine in fitting(machines):
@@ -126,6 +127,7 @@ def test_both_zero_is_no_limit(machines: tuple[Machine, ...]) -> None:
                 assert outcome(one_sided, machine, axes) is expected
 
 
+@pytest.mark.long("Pos_RRR")
 def test_a_range_of_less_than_a_turn_takes_its_value_inside(machines: tuple[Machine, ...]) -> None:
     """Up to 350 degrees, wherever the reference is; a named period still rules, and is refused where it is outside."""
     for machine in fitting(machines):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+import pytest
 from softkin import KinematicsError, Status
 
 from derive.description.mechanism import Mechanism, Role, Turning
@@ -80,6 +81,7 @@ def test_who_offers_it(mechanism: Mechanism, machines: tuple[Machine, ...]) -> N
         assert hasattr(machine.robot, "configuration_offset") == expected
 
 
+@pytest.mark.long("P2C")
 def test_round_trip_with_the_reference_at_the_same_axes(machines: tuple[Machine, ...]) -> None:
     """The inverse of a point beside the flange leads back to the axes."""
     for machine in offered(machines):
@@ -90,6 +92,7 @@ def test_round_trip_with_the_reference_at_the_same_axes(machines: tuple[Machine,
             assert np.abs(np.subtract(found, values)).max() < ROUND_TRIP
 
 
+@pytest.mark.long
 def test_every_branch_brings_the_point_there(machines: tuple[Machine, ...]) -> None:
     """With any reference; joints that the position does not determine stay where the reference is."""
     for machine in offered(machines):

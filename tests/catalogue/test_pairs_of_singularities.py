@@ -14,6 +14,8 @@ from tests.catalogue.references import held_at
 from tests.catalogue.robots import UR5
 from tests.catalogue.shares import share
 
+pytestmark = pytest.mark.slow
+
 UR5_IN_METRES = {"d1": 0.089159, "a2": -0.425, "a3": -0.39225, "d4": 0.10915, "d5": 0.09465, "d6": 0.0823}
 BOUND = 3e-11
 """Of what is missed: two free angles at their thresholds of 1e-11, either of them a chord of 2."""

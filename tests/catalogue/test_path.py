@@ -53,6 +53,7 @@ def chosen(machines: tuple[Machine, ...], label: str) -> Machine:
     return found
 
 
+@pytest.mark.long
 def test_many_turns(machines: tuple[Machine, ...]) -> None:
     """Across every ±180 degrees, forward and back, turns counted; with branches named."""
     machine = chosen(machines, "random 1")
@@ -66,6 +67,7 @@ def test_many_turns(machines: tuple[Machine, ...]) -> None:
     assert (np.ptp(periods, axis=0) >= 1).sum() >= len(turning) - machine.robot.BRANCHES
 
 
+@pytest.mark.long
 def test_an_automatic_branch_stays_on_a_regular_way(machines: tuple[Machine, ...]) -> None:
     """On a regular path an automatic choice stays on its branch."""
     for machine in machines:

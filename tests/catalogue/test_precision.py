@@ -25,6 +25,8 @@ from tests.mechanisms import catalogue, kinematics_of, named
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled
 
+pytestmark = pytest.mark.slow
+
 NAMES = ("MC_KIN_TYPE_12_XY", "Kin_Tripod_Rotary", "Kin_ArticulatedRobot_6DOF", "Kin_P2X_Type1", "Kin_P2C_Type1")
 OTHERS = tuple(
     m.name for _, m in catalogue() if m.joints and not m.is_platform and m.search is None and m.name not in NAMES
@@ -109,7 +111,7 @@ class Exact:
         return truth, {n: float(max(abs(other[n] - v) for other, _ in runs)) for n, v in truth.items()}
 
 
-@pytest.mark.parametrize("name", [*NAMES, *(pytest.param(n, marks=pytest.mark.slow) for n in OTHERS)])
+@pytest.mark.parametrize("name", [*NAMES, *OTHERS])
 def test_no_digit_is_lost_but_those_of_the_inputs(name: str) -> None:
     """Forward, and inverse on the branch of the pose: in Python, scalar and batch, and of some in Structured Text."""
     with mpmath.workdps(DIGITS):

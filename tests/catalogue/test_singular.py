@@ -52,6 +52,7 @@ def test_every_margin_vanishes_somewhere(machines: tuple[Machine, ...]) -> None:
         assert vanishing == set(machine.robot.MARGINS)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("around", ["axes", "zero", "anywhere"])
 def test_a_singular_pose_is_an_answer(machines: tuple[Machine, ...], around: str) -> None:
     """At a singular pose the inverse answers, and reaches the frame."""
@@ -148,6 +149,7 @@ def free_axes(locus: Locus) -> list[int]:
     return np.flatnonzero(np.abs(jacobian).max(axis=0) < 1e-9 * machine.reach).tolist()
 
 
+@pytest.mark.long("Scara4")
 def test_a_free_axis_stays_at_the_reference(machines: tuple[Machine, ...]) -> None:
     """Its value comes from the reference, turns and all; whichever configuration asks."""
     count = 0
@@ -173,6 +175,7 @@ def test_a_free_axis_stays_at_the_reference(machines: tuple[Machine, ...]) -> No
     assert count == on_the_axis * len(machines) + machines[0].robot.BRANCHES
 
 
+@pytest.mark.long("Pos_RRR")
 def test_the_reference_decides_where_something_is_free_in_space(machines: tuple[Machine, ...]) -> None:
     """At a self-motion some axis stays at its reference, or as near to it as the rest can be reached; else nothing
     moves.

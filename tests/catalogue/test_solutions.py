@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from softkin import Status
 
 from tests.catalogue.closure import Array
@@ -28,6 +29,7 @@ def compare(machine: Machine, position: Array, rotation: Array, axes: Array) -> 
     return len(roots)
 
 
+@pytest.mark.long("Pos_RRR", "Scara4")
 def test_the_slots_are_the_roots_of_the_closure(machines: tuple[Machine, ...]) -> None:
     """The slots hold exactly the roots of the closure that root finding from many starts finds."""
     counts = set()
@@ -41,6 +43,7 @@ def test_the_slots_are_the_roots_of_the_closure(machines: tuple[Machine, ...]) -
     assert counts == {most} or not machines[0].branches_meet_together
 
 
+@pytest.mark.long("Pos_RRR")
 def test_where_the_closure_has_no_root_no_slot_answers(machines: tuple[Machine, ...]) -> None:
     """Positions from the middle of the machine to twice its reach: two branches of a serial one answer together, or
     none.

@@ -67,6 +67,7 @@ def axes_of(mechanism: Mechanism, robot: softkin.Mechanism, scale: float) -> Arr
     return drawn[np.flatnonzero(statuses == Status.OK)[:POSES]]
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize(("described", "unit"), CASES)
 def test_only_lengths_change_with_the_unit(described: Mechanism, unit: float) -> None:
     """Margins, configurations, statuses and slots are the same; positions, slides and the Jacobian change as they

@@ -24,6 +24,7 @@ def initialised(lib: Library) -> Any:
     return kin
 
 
+@pytest.mark.slow
 def test_blark_parses_every_piece() -> None:
     """The independent grammar reads every part of the sample."""
     trees = parse_text_with_blark(TEXT, FILE.name)
@@ -31,6 +32,7 @@ def test_blark_parses_every_piece() -> None:
     assert "PROPERTY PUBLIC NumAxes : UDINT" in trees
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import sympy as sp
-import yourdfpy
 from numpy.typing import NDArray
 
 from derive.description.catalogue import load
@@ -70,6 +69,8 @@ def elementary(motion: Motion, axis: int, amount: float) -> Array:
 
 def by_yourdfpy(path: Path, base: str, tip: str) -> Pose:
     """The file by a reader that shares nothing with ours."""
+    import yourdfpy  # it brings a library of meshes, and most who import this module read no robot with it
+
     robot = yourdfpy.URDF.load(str(path), load_meshes=False, load_collision_meshes=False)
 
     def pose(values: Mapping[str, float]) -> Array:

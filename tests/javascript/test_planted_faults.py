@@ -10,7 +10,7 @@ import pytest
 from tests.corpus.recording import read
 from tests.javascript.comparison import differences
 from tests.javascript.modules import part_of, written
-from tests.javascript.test_equal_to_python import compared
+from tests.languages.language import JAVASCRIPT
 
 ARM = "Kin_Scara4_ZCcoupled_Type1"
 ELBOW = "Kin_ArticulatedRobot_6DOF"
@@ -66,4 +66,4 @@ def test_a_planted_fault_is_found(fault: str) -> None:
     if name == SEARCHED:
         asked = recording[0]["asked"]  # a search takes long: regular poses, and some next to a fold
         few = [recording[0] | {"asked": [*asked[8:16], *asked[64:72]]}]
-    assert differences(compared(module, few)), f"{fault} is not found"
+    assert differences(JAVASCRIPT.compared(module, few)), f"{fault} is not found"

@@ -34,14 +34,14 @@ class SerialPair(Both):
 
 
 @cache
-def serial_pairs_of(mechanism: Mechanism, order: str = "rows") -> tuple[SerialPair, ...]:
+def serial_pairs_of(mechanism: Mechanism) -> tuple[SerialPair, ...]:
     """A pair for every machine of a mechanism, with limits and without."""
     machines = (*machines_of(mechanism), *limited_machines(mechanism))
-    return tuple(serial_pair(one, order) for one in machines)
+    return tuple(map(serial_pair, machines))
 
 
-def serial_pair(one: Machine, order: str = "rows") -> SerialPair:
+def serial_pair(one: Machine) -> SerialPair:
     """The pair for one machine."""
-    controller = Controller(compiled(one.mechanism, order), one.mechanism)
+    controller = Controller(compiled(one.mechanism), one.mechanism)
     assert controller.initialise(one.robot.parameters) == OK
     return SerialPair(one, controller)

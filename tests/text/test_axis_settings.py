@@ -103,6 +103,7 @@ def test_the_example_of_a_scara() -> None:
     assert moved(block, robot, axes, reference) == (OK, pytest.approx((200.0, 60.0, 10.0)))
 
 
+@pytest.mark.long("Ac6")
 @EVERY
 def test_the_drive_decides_the_turn(mechanism: Mechanism) -> None:
     """Of every axis with turns, both ways round; what the machine with these limits answers in
@@ -228,6 +229,7 @@ def test_without_limits_in_the_block_those_of_the_drives_are_all(mechanism: Mech
     assert [block.axis_properties(axis) for axis in range(6)] == own
 
 
+@pytest.mark.long("Ac6")
 @EVERY
 def test_every_axis_is_tested_against_both(mechanism: Mechanism) -> None:
     """The pose itself, just inside and just outside what the drive allows; xCheckLimits leaves the
@@ -288,6 +290,7 @@ CHANGES: tuple[Range, ...] = (
 )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["Kin_Scara2_Z", "Kin_Scara4_ZCcoupled_Type1", "Kin_Wrist3", "Kin_SCCC"])
 def test_a_call_while_the_settings_change(name: str) -> None:
     """Behind every one of its assignments: the answer before, the answer from then on, or a refusal."""

@@ -112,6 +112,7 @@ def test_the_projected_orientation_is_the_one_that_the_axes_reach(serial_pairs: 
                 assert row[followed] == pytest.approx(wanted[followed], abs=1e-12)
 
 
+@pytest.mark.long
 def test_a_point_off_the_flange_comes_to_its_place(serial_pairs: tuple[SerialPair, ...]) -> None:
     """Round trip of the offset interface, with the configuration that it gives itself."""
     for one in unlimited(serial_pairs):

@@ -26,6 +26,7 @@ def one(request: pytest.FixtureRequest) -> Pair:
     return pairs_of(request.param)[1]
 
 
+@pytest.mark.long("Hexapod")
 def test_who_has_them(pairs: tuple[Pair, ...]) -> None:
     """A machine with one solution has no configuration, and no such blocks."""
     has_blocks = f"{pairs[0].mechanism.block_name}_Config" in pairs[0].library.objects

@@ -31,6 +31,8 @@ from tests.text.samples import NO_TURN
 from tests.text.units import text_of
 from tests.text.values import Numbers
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[2]
 PYTHON = ROOT / "generated" / "python" / "softkin"
 X, Y, Z = map(real, "xyz")

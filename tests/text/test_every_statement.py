@@ -7,6 +7,7 @@ from functools import cache, partial
 from itertools import product
 
 import numpy as np
+import pytest
 import softkin
 
 from derive.description.mechanism import Mechanism
@@ -33,6 +34,8 @@ from tests.text.selftest import test_self_test
 from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pair, serial_pairs_of
 from tests.text.statements import Statements
 from tests.text.units import compiled, compiled_shared, file_of, shared_texts, text_of
+
+pytestmark = pytest.mark.slow
 
 MACHINES = ("plain", "equal", "limited", "limited to a turn")
 OF_THE_BASE = ("Kin_Scara4_ZCcoupled_Type1", "Softkin_Pos_RRR")
@@ -114,9 +117,9 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
             pairs = serial_pairs_of(mechanism)
             test_axis_settings.test_initialize_refuses_what_the_drives_exclude(mechanism)
             test_axis_settings.test_what_is_refused_changes_nothing(mechanism)
-            test_initialise.test_limits_are_in_order(mechanism, 10.0, 10.0)
-            test_initialise.test_a_matrix_of_another_size_is_refused(mechanism, 36)
-            test_initialise.test_a_configuration_that_is_too_small_is_refused(mechanism)
+            test_initialise.test_limits_are_in_order(pairs, 10.0, 10.0)
+            test_initialise.test_a_matrix_of_another_size_is_refused(pairs, 36)
+            test_initialise.test_a_configuration_that_is_too_small_is_refused(pairs)
             test_garbage.test_garbage_in_one_number(pairs)
             test_garbage.test_what_is_no_rotation(pairs)
             test_not_initialised.test_no_method_works(pairs, test_not_initialised.fresh)
@@ -191,9 +194,9 @@ def the_tests(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) -> Ite
     yield partial(test_blocks_alone.test_the_number_of_axes, serial_pairs)
     yield partial(test_blocks_alone.test_calling_the_block_itself_does_nothing, serial_pairs)
     yield partial(test_not_initialised.test_no_method_works, serial_pairs, test_not_initialised.fresh)
-    yield partial(test_initialise.test_limits_are_in_order, mechanism, 10.0, 10.0)
-    yield partial(test_initialise.test_a_matrix_of_another_size_is_refused, mechanism, 36)
-    yield partial(test_initialise.test_a_configuration_that_is_too_small_is_refused, mechanism)
+    yield partial(test_initialise.test_limits_are_in_order, serial_pairs, 10.0, 10.0)
+    yield partial(test_initialise.test_a_matrix_of_another_size_is_refused, serial_pairs, 36)
+    yield partial(test_initialise.test_a_configuration_that_is_too_small_is_refused, serial_pairs)
     yield partial(test_garbage.test_a_pose_that_cannot_be_assembled, serial_pairs)
     yield partial(test_garbage.test_what_is_no_rotation, serial_pairs)
     if mechanism.constraints:

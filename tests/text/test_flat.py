@@ -30,6 +30,8 @@ from tests.text.test_portable import lint
 from tests.text.test_profiles import BLOCK, rendered
 from tests.text.units import compiled, public_methods, text_of
 
+pytestmark = pytest.mark.slow
+
 MECHANISMS = {m.name: m for _, m in catalogue()}
 KINDS = {
     "Kin_Scara4_ZCcoupled_Type1": "a serial arm with turns, drives with limits, and a coupled axis",
@@ -220,7 +222,6 @@ def test_every_method_answers_exactly_the_same(name: str) -> None:
         assert len({status for method, status in statuses if method == "Diagnose"}) > 2
 
 
-@pytest.mark.slow
 def test_the_second_grammar_reads_a_flat_block() -> None:
     """A block as it is written, with all its members."""
     trees = parse_text_with_blark(flat_text(MECHANISMS["Kin_Gantry2"]), "Softkin_Gantry2")

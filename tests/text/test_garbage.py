@@ -10,6 +10,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+import pytest
 
 from tests.text import values
 from tests.text.any_method import Call, call_of, methods_of
@@ -62,6 +63,7 @@ def check(call: Call, clean: tuple[Any, dict[str, Any]], what: object) -> None:
         assert (result, after) == clean, f"{call.method} answers {what}: {result} {after}"
 
 
+@pytest.mark.long("Hexapod", "P2C", "Pos_RRR")
 def test_garbage_in_one_number(pairs: tuple[Pair, ...]) -> None:
     """NaN, an infinite or a huge number in one argument is refused without a fault, and outputs stay as they are."""
     for one in (pairs[1], pairs[-3]):
@@ -173,6 +175,7 @@ def test_a_pose_that_cannot_be_assembled(serial_pairs: tuple[SerialPair, ...]) -
                     COMPARISONS[method](one, replace(sample, axes=axes))
 
 
+@pytest.mark.long("Pos_RRR")
 def test_the_largest_numbers(pairs: tuple[Pair, ...]) -> None:
     """1e9 in size is a number; nothing overflows, and the pairs agree on what it means."""
     for one in (pairs[0], pairs[1], pairs[-1]):

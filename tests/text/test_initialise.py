@@ -40,6 +40,7 @@ def wrong_values(parameter: Parameter) -> Iterator[float]:
         yield 0.0
 
 
+@pytest.mark.long("Hexapod", "P2C", "Pos_RRR")
 def test_every_parameter_is_checked(pairs: tuple[Pair, ...]) -> None:
     """Alone, in a machine that is otherwise right; Python refuses the same."""
     for one in pairs[-3:]:
@@ -54,6 +55,7 @@ def test_every_parameter_is_checked(pairs: tuple[Pair, ...]) -> None:
                 assert asked(partial(type(one.robot), **wrong))[0] == NOT_INITIALIZED
 
 
+@pytest.mark.long("Hexapod")
 def test_the_ends_of_a_range_belong_to_it(pairs: tuple[Pair, ...]) -> None:
     """As far as the other parameters allow: Python knows."""
     accepted = 0
@@ -75,9 +77,9 @@ def as_integers(parameter: Parameter, given: dict[str, float]) -> dict[str, floa
 
 
 @pytest.mark.parametrize(("lower", "upper"), [(10.0, 10.0), (10.0, -10.0), (0.0, -10.0), (10.0, 0.0), (0.2, 0.2)])
-def test_limits_are_in_order(mechanism: Mechanism, lower: float, upper: float) -> None:
+def test_limits_are_in_order(pairs: tuple[Pair, ...], lower: float, upper: float) -> None:
     """Initialize refuses a lower limit that is not below the upper one."""
-    one = serial_pairs_of(mechanism)[0]
+    one, mechanism = pairs[0], pairs[0].mechanism
     for key in (*(j.key for j in mechanism.joints), *(q.name for q in mechanism.limited)):
         wrong = {f"lower_{key}": lower, f"upper_{key}": upper}
         assert Controller(one.library, mechanism).initialise({**one.robot.parameters, **wrong}) == NOT_INITIALIZED
@@ -94,26 +96,29 @@ def test_the_coupling_is_given_once() -> None:
     assert Controller(machine.library, mechanism).initialise(given | {"gear_coupling": 1e-9}) == NOT_INITIALIZED
 
 
-def test_a_length_has_no_default(mechanism: Mechanism) -> None:
+def test_a_length_has_no_default(pairs: tuple[Pair, ...]) -> None:
     """Without any input, a machine with lengths is refused."""
-    has_length = any(p.role in LENGTHS for p in mechanism.parameters)
+    mechanism = pairs[0].mechanism
+    has_length = any(p.role in LENGTHS or p.default is None for p in mechanism.parameters)
     controller = Controller(compiled(mechanism), mechanism)
     assert controller.block.call("Initialize") == (NOT_INITIALIZED if has_length else OK)
     assert controller.block.call("IsInitialized") is not has_length
 
 
 @pytest.mark.parametrize("size", [36, 80])
-def test_a_matrix_of_another_size_is_refused(mechanism: Mechanism, size: int) -> None:
+def test_a_matrix_of_another_size_is_refused(pairs: tuple[Pair, ...], size: int) -> None:
     """Initialize refuses a library whose matrix has another size."""
+    mechanism = pairs[0].mechanism
     controller = Controller(compiled(mechanism, matrix_size=size), mechanism)
-    assert controller.initialise(serial_pairs_of(mechanism)[0].robot.parameters) == NOT_INITIALIZED
+    assert controller.initialise(pairs[0].robot.parameters) == NOT_INITIALIZED
     assert controller.block.call("IsInitialized") is False
 
 
-def test_a_configuration_that_is_too_small_is_refused(mechanism: Mechanism) -> None:
+@pytest.mark.long
+def test_a_configuration_that_is_too_small_is_refused(pairs: tuple[Pair, ...]) -> None:
     """By a compiler that looks at indices, and by Initialize where the compiler does not."""
-    size = len(softkin.catalogue()[mechanism.name].CONFIGURATION)
-    given = serial_pairs_of(mechanism)[0].robot.parameters
+    mechanism, given = pairs[0].mechanism, pairs[0].robot.parameters
+    size = len(pairs[0].robot.CONFIGURATION)
     if size > 0:
         just_enough = Controller(compiled(mechanism, max_config_data=size - 1), mechanism)
         assert just_enough.initialise(given) == OK

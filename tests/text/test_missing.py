@@ -54,6 +54,7 @@ def said(robot: softkin.Mechanism, position: tuple[float, ...], rotation: object
     return found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mechanism", LEGS, ids=lambda m: m.name)
 def test_a_rod_would_have_to_be_so_much_longer_or_shorter(mechanism: Mechanism) -> None:
     """A rod with a length changed by the missing amount reaches the pose."""

@@ -14,6 +14,8 @@ from tests.catalogue.references import held_at
 from tests.text.controller import OK
 from tests.text.serial_pairs import serial_pair
 
+pytestmark = pytest.mark.slow
+
 BOUND = 3e-11
 """Of what is missed: two free angles at their thresholds of 1e-11, either of them a chord of 2."""
 SOME = 6

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from tests.catalogue.machines import Array, Machine
 from tests.catalogue.references import held_at
@@ -44,6 +45,7 @@ def inside_domains(machine: Machine, axes: Array) -> Array:
     return usable
 
 
+@pytest.mark.long
 def test_a_path_is_followed_without_a_jump(serial_pairs: tuple[SerialPair, ...]) -> None:
     """The block follows a path without a jump of an axis."""
     lengths = []

@@ -17,6 +17,8 @@ from tests.harness.pieces import Piece, split
 from tests.text.shapes import Seen, abridged, names, shape
 from tests.text.units import FOLDER
 
+pytestmark = pytest.mark.slow
+
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("*/*.st"))}
 WHOLE = "Softkin_Gantry2"
 
@@ -51,7 +53,6 @@ def title(piece: Piece) -> str:
     return piece.text.split("\n", 1)[0].split(" :")[0].removesuffix(" IMPLEMENTS")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("unit", TEXTS)
 def test_it_parses(unit: str) -> None:
     """The independent grammar reads every part of a unit."""
@@ -64,14 +65,12 @@ def test_nothing_is_left_out() -> None:
     assert sum(map(len, pieces().values())) > 100
 
 
-@pytest.mark.slow
 def test_a_unit_parses_as_it_is_written() -> None:
     """The independent grammar reads a unit as a whole."""
     trees = parse_text_with_blark(TEXTS[WHOLE], WHOLE)
     assert any(line.startswith("METHOD PROTECTED SolveBranch ") for line in trees)
 
 
-@pytest.mark.slow
 def test_all_names_are_names() -> None:
     """None of them is a word of the second grammar."""
     parts = (part for unit, text in TEXTS.items() for piece in split(text, unit) for part in (piece, *piece.members))
@@ -154,7 +153,6 @@ WRONG = (
 """Statements that are wrong, of phrases that are right elsewhere."""
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("wrong", WRONG)
 def test_a_wrong_statement_is_left(wrong: str) -> None:
     """However much is known, what is left of it does not parse, whether it stands alone or in another statement."""

@@ -35,6 +35,7 @@ EVERY = 7
 """The share of the grid at which the slower comparisons are made."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("label", MACHINES)
 def test_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
     """At multiples of a quarter turn every method answers as in Python."""
@@ -45,6 +46,7 @@ def test_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None
             COMPARISONS[method](one, sample)
 
 
+@pytest.mark.long("Scara4")
 @pytest.mark.parametrize("label", MACHINES)
 def test_near_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
     """Next to multiples of a quarter turn every method answers as in Python."""
@@ -54,6 +56,7 @@ def test_near_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) ->
             COMPARISONS[method](one, sample)
 
 
+@pytest.mark.long("Scara4")
 @pytest.mark.parametrize("label", MACHINES)
 def test_a_point_off_the_flange_at_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
     """At and next to quarter turns the offset methods answer as in Python."""
@@ -63,6 +66,7 @@ def test_a_point_off_the_flange_at_quarter_turns(serial_pairs: tuple[SerialPair,
             COMPARISONS[method](one, sample)
 
 
+@pytest.mark.long("Pos_RRR")
 def test_singularities_that_coincide(serial_pairs: tuple[SerialPair, ...]) -> None:
     """Wrist on axis 1, elbow stretched or folded, wrist straight: several at once, exactly and nearly."""
     if not serial_pairs[1].machine.is_spatial or not serial_pairs[1].robot.BRANCHES:
@@ -78,6 +82,7 @@ def offered(one: SerialPair, methods: tuple[str, ...]) -> list[str]:
     return [method for method in methods if method.lower() in one.controller.methods]
 
 
+@pytest.mark.long
 def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs: tuple[SerialPair, ...]) -> None:
     """The effective link of the offset interface is then too short to have a direction."""
     for one in serial_pairs:
@@ -88,6 +93,7 @@ def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs: tuple[Seria
                 COMPARISONS["CartesianToAxes_Offset"](one, replace(sample, offset=offset))
 
 
+@pytest.mark.long("Pos_RRR")
 def test_a_point_beside_the_first_axis_of_a_stretched_arm(serial_pairs: tuple[SerialPair, ...]) -> None:
     """Branches meet at two edges of the workspace at once."""
     for one in serial_pairs:

@@ -2,30 +2,44 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from derive.description.mechanism import Mechanism
-from tests.text.comparisons import COMPARISONS, POSELESS
-from tests.text.serial_pairs import serial_pairs_of
+from tests.text.comparisons import POSELESS
+from tests.text.controller import OK, Controller
+from tests.text.pairs import Pair, comparisons_of
+from tests.text.units import compiled
 
 FEW = 10
-MACHINES = ("nominal", "random 2", "limited")
+MACHINES = ("nominal", "random 2", "other", "limited")
 
 
-def test_every_method_answers_the_same_by_columns(mechanism: Mechanism) -> None:
+def by_columns(pair: Pair) -> Controller:
+    """The block with a library that stores its matrices the other way, which Initialize finds."""
+    controller = Controller(compiled(pair.mechanism, "columns"), pair.mechanism)
+    assert controller.initialise(pair.robot.parameters) == OK
+    assert controller.block.matrixOrder.lower() == "columns"
+    return controller
+
+
+@pytest.mark.long("Hexapod", "Scara4")
+def test_every_method_answers_the_same_by_columns(pairs: tuple[Pair, ...]) -> None:
     """Every method gives the same answers for matrices that are stored by columns."""
-    for by_rows, by_columns in zip(serial_pairs_of(mechanism), serial_pairs_of(mechanism, "columns"), strict=True):
-        if by_rows.machine.label not in MACHINES:
-            continue
-        for sample in by_rows.regular[:FEW]:
-            assert by_columns.controller.forward(sample.axes) == by_rows.controller.forward(sample.axes)
-            for method in COMPARISONS.keys() - POSELESS:
-                if method.lower() in by_columns.controller.methods:
-                    COMPARISONS[method](by_columns, sample)
+    compared = [pair for pair in pairs if pair.machine.label in MACHINES]
+    assert len(compared) == 3
+    for pair in compared:
+        controller = by_columns(pair)
+        other = replace(pair, controller=controller)
+        for sample in pair.regular[:FEW]:
+            assert controller.forward(sample.axes) == pair.controller.forward(sample.axes)
+            for method, compare in comparisons_of(pair.mechanism).items():
+                if method not in POSELESS and method.lower() in controller.methods:
+                    compare(other, sample)
 
 
-@pytest.mark.parametrize("order", ["rows", "columns"])
-def test_the_order_is_found(mechanism: Mechanism, order: str) -> None:
-    """Initialize finds the storage order of the library."""
-    (found,) = {one.controller.block.matrixOrder for one in serial_pairs_of(mechanism, order)}
-    assert found.lower() == order
+def test_the_order_is_found(pairs: tuple[Pair, ...]) -> None:
+    """Initialize finds the storage order of the library, in every machine."""
+    for pair in pairs:
+        assert pair.controller.block.matrixOrder.lower() == "rows"
+        by_columns(pair)

@@ -31,6 +31,7 @@ def on_the_way(name: str, rows: int) -> tuple[float, float]:
         tracemalloc.stop()
 
 
+@pytest.mark.long("Pos_RRR", "Scara4")
 @pytest.mark.parametrize("name", [n for n in NAMES if n not in SLOW])
 def test_the_peak_is_hardly_more_than_the_result(name: str) -> None:
     """Traced, without the input."""
@@ -38,6 +39,7 @@ def test_the_peak_is_hardly_more_than_the_result(name: str) -> None:
     assert size + more <= MOST * size
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SLOW)
 def test_few_rows_are_taken_at_once(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """As many rows together as of a batch of 100,000, in a shorter one: what is on the way stays."""

@@ -76,6 +76,7 @@ def test_it_is_a_value(name: str) -> None:
             assert free == mounted(robot.changed(check_limits=False)).in_radians() != radians
 
 
+@pytest.mark.long("Ac6", "Hexapod")
 @EVERY_NAME
 def test_nearest(name: str) -> None:
     """The answer is that of the machine without base and tool at the frame of its flange, and so is the refusal."""
@@ -111,6 +112,7 @@ def test_nearest(name: str) -> None:
                 assert apart(others, [same] * 2) < 1e-6
 
 
+@pytest.mark.long("Ac6", "Hexapod")
 @EVERY_NAME
 def test_radians_and_batches(name: str) -> None:
     """Frames, axes, Jacobians, margins and velocities in radians, each alone and in a batch."""
@@ -227,6 +229,7 @@ def test_limits_of_other_quantities_in_radians() -> None:
     assert limited.in_radians().limits["elbow"] == pytest.approx((0.0, np.pi / 2.0))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name", ["Kin_ArticulatedRobot_6DOF", "Kin_Scara4_ZCcoupled_Type1", "Kin_Gantry3", "scara, wrist"]
 )

@@ -13,6 +13,7 @@ from softkin import KinematicsError, Status
 from tests.catalogue.calls.robots import NAMES, poses, robots
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize("name", NAMES)
 def test_names_and_back(name: str) -> None:
     """Every slot on turns: its names make it again, and it is a configuration as any tuple."""

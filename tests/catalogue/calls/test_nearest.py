@@ -111,6 +111,7 @@ def check(one: Robot, made: softkin.Mechanism, start: Axes, near: Axes, weights:
     return True
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize("name", NAMES)
 def test_no_solution_is_nearer(name: str) -> None:
     """Random limits, references on other turns, both measures, with weights and without."""
@@ -129,6 +130,7 @@ def test_no_solution_is_nearer(name: str) -> None:
     assert any(outcomes)
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize("name", NAMES)
 def test_a_batch_is_the_scalar_calls(name: str) -> None:
     """Rows inside and beyond limits, out of reach, with garbage."""

@@ -18,6 +18,7 @@ def shifted(one: softkin.Mechanism, frame: Frame, reach: float) -> Frame:
     return Frame(tuple(np.add(frame.position, reach * np.array([0.02, -0.03, 0.01]))), frame.rotation)  # type: ignore[arg-type]
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize("name", NAMES)
 def test_a_line_is_straight_and_continuous(name: str) -> None:
     """Every sample is on the line and on the branch of the first; a stop is a refusal of the inverse, or a jump."""
@@ -47,6 +48,7 @@ def test_a_line_is_straight_and_continuous(name: str) -> None:
             assert jumps or refused.status is line.stop.refusal.status
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize("name", NAMES)
 def test_velocities_are_those_of_the_jacobian(name: str) -> None:
     """The Jacobian times the speeds of the axes is the speed of the frame, on a short line without a stop."""

@@ -36,6 +36,7 @@ def outcome(call: Any, *arguments: Any, **given: Any) -> Any:
         return error
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize("name", NAMES)
 def test_every_call_is_that_of_the_machine_in_degrees(name: str) -> None:
     """Scalar calls, with limits that refuse some of them."""
@@ -86,6 +87,7 @@ def said(robot: softkin.Mechanism, error: KinematicsError) -> str:
     return error.refusal._replace(reason=f"{reason[:-6]} [rad]", missing=math.radians(missing)).in_words
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize("name", NAMES)
 def test_batches(name: str) -> None:
     """The same of batches."""

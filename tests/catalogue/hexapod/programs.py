@@ -12,18 +12,16 @@ from numpy.typing import NDArray
 from derive.ir.interpret import run
 from derive.ir.program import Call, Iterate, Program, Require, Statement
 from derive.ir.reason import Why, about_machine
-from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
-from derive.mechanisms.kin_hexapod import MECHANISM
 from tests.catalogue.hexapod.machines import Array, Machine
+from tests.mechanisms import kinematics_of, named
 
 Statuses = NDArray[np.object_]
 
 
-@cache
 def kinematics() -> Kinematics:
     """All programs."""
-    return build(MECHANISM)
+    return kinematics_of(named("Kin_Hexapod"))
 
 
 @cache

@@ -15,6 +15,8 @@ from tests.catalogue.hexapod.machines import machines, rotation
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled
 
+pytestmark = pytest.mark.slow
+
 ANGLES = ("home_roll", "home_pitch", "home_yaw")
 KINDS: dict[str, Callable[[Generator, float], float]] = {
     "disturbed": lambda rng, value: float(np.clip(value + rng.normal() * 10.0 ** rng.uniform(-3, 2), -1e9, 1e9)),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 from softkin import Frame, KinematicsError, Status
 
 from tests.catalogue.hexapod.machines import Array, Machine
@@ -35,6 +36,7 @@ def spoiled(values: Array, *wrong: float) -> Array:
     return values
 
 
+@pytest.mark.long
 def test_forward(machine: Machine) -> None:
     """Batch forward kinematics gives the frames and statuses of single calls."""
     far = machine.axes(*machine.poses(150, turn=150.0))

@@ -23,6 +23,7 @@ def test_all_over_a_realistic_workspace(machine: Machine) -> None:
     assert_allclose(turned, turns, atol=1e-11)
 
 
+@pytest.mark.long
 def test_what_the_inverse_accepts_is_found_from_home(machine: Machine) -> None:
     """Up to 40 degrees about each axis: what the inverse refuses is in the other assembly mode, or nearly singular."""
     positions, turns = machine.poses(1500, turn=40.0)
@@ -38,6 +39,7 @@ def test_what_the_inverse_accepts_is_found_from_home(machine: Machine) -> None:
     assert_allclose(turned, turns[accepted], atol=1e-9)
 
 
+@pytest.mark.long
 def test_far_poses_are_found_or_refused_never_mistaken(machine: Machine) -> None:
     """Beyond the realistic: whatever answers has these lengths, in the machine's assembly mode."""
     positions, turns = machine.poses(1500, turn=100.0)

@@ -20,6 +20,8 @@ from tests.text.hexapod.blocks import made
 from tests.text.hexapod.test_structured_text import compare_some, in_the_other_mode
 from tests.text.units import compiled_text, file_of, text_of
 
+pytestmark = pytest.mark.slow
+
 _SEARCH, _INVERSE, _JACOBIAN = "PRIVATE FindPlatform", "PROTECTED SolveBranch", "PROTECTED FindJacobian"
 
 

@@ -135,6 +135,7 @@ def test_the_cone_of_every_joint_bounds_the_inverse(machine: Machine, side: str)
     assert not robot.forward_batch(machine.axes(positions, turns))[3].any()  # forward kinematics tests no limits
 
 
+@pytest.mark.long
 def test_each_joint_has_its_cone() -> None:
     """For every leg there is a pose at which its joint leans the most, and the cone that this just fits decides."""
     machine = machines()["lopsided"]
@@ -162,6 +163,7 @@ def test_the_edge_of_a_cone_belongs_to_it() -> None:
     assert refused.value.status is Status.UNREACHABLE
 
 
+@pytest.mark.long
 def test_a_straight_angle_is_no_bound() -> None:
     """The platform passes through the base, so that every leg points the other way: in the same mode, and accepted."""
     machine = machines()["nominal"]

@@ -21,6 +21,7 @@ from tests.text.hexapod.blocks import controller
 RATES = {real(f"{angle}_rate"): real(f"spin_{c}") for angle, c in zip(("roll", "pitch", "yaw"), "xyz", strict=True)}
 
 
+@pytest.mark.long
 def test_five_passes_from_the_neighbouring_pose(machine: Machine) -> None:
     """Every point of a path of 1000, from the one before it; the last pass only confirms."""
     positions, turns = machine.path()
@@ -30,6 +31,7 @@ def test_five_passes_from_the_neighbouring_pose(machine: Machine) -> None:
     assert_allclose(found, positions[1:], atol=1e-11 * machine.shift)
 
 
+@pytest.mark.long
 def test_the_number_of_passes_is_noticed() -> None:
     """Three passes are too few, and so are five where the rate of a turn is taken for the rates of
     roll, pitch and yaw.
@@ -76,6 +78,7 @@ def test_lengths_that_no_pose_has(name: str, axes: tuple[float, ...]) -> None:
     assert block.is_singular(axes)
 
 
+@pytest.mark.long
 def test_wild_lengths_end_alike_in_every_language(machine: Machine) -> None:
     """Some have a pose, most do not: no call faults, and all give the same answer to the last digit."""
     generator = np.random.default_rng(3)

@@ -75,6 +75,7 @@ def test_fichter_a_quarter_turn_is_singular_wherever_it_is(name: str, position: 
     assert not machine.robot.singularity(axes).is_singular and not controller(name).is_singular(axes)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("position", "tilt"), [((1.0, 2.0, 21.0), 0.0), ((-2.0, 0.0, 19.0), 4.0)])
 def test_a_path_into_the_singularity_is_flagged_before_it(position: tuple[float, ...], tilt: float) -> None:
     """Regular, then flagged, then beyond: never beyond without a flag; and the inverse stops before it is lost."""

@@ -4,6 +4,7 @@ is read."""
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from softkin import KinematicsError, Status
 
 from tests.catalogue.closure import Array
@@ -32,6 +33,7 @@ def is_constant(ratios: Array) -> bool:
     return bool(np.ptp(ratios) < ROUNDING * np.abs(ratios).max())
 
 
+@pytest.mark.long
 def test_type_1_margins_are_those_of_b_and_type_2_of_a(machines: tuple[LoopMachine, ...]) -> None:
     """But for a factor made of parameters: leg by leg, where each has a joint of its own, and in sign."""
     for machine in machines:
@@ -48,6 +50,7 @@ def test_type_1_margins_are_those_of_b_and_type_2_of_a(machines: tuple[LoopMachi
             assert is_constant(b[:, k, k] / found[branch.margin])
 
 
+@pytest.mark.long
 def test_margins_have_no_unit(machines: tuple[LoopMachine, ...]) -> None:
     """Of the order of one in size, and the same for a machine drawn in other units."""
     for machine in machines:
@@ -82,6 +85,7 @@ def test_the_jacobian_is_that_of_the_closure_and_of_forward(machines: tuple[Loop
             assert (np.abs(slope - derived[:, : slope.shape[1], i]).max(axis=1) < 1e-6 * size).all()
 
 
+@pytest.mark.long
 def test_a_way_out_ends_at_a_singularity_or_a_bound(machines: tuple[LoopMachine, ...]) -> None:
     """Straight on until the slot is refused: there a leg is stretched, or a ball joint at its end,
     or the plate lost.

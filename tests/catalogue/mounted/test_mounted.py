@@ -19,6 +19,8 @@ from tests.catalogue.references import held_at
 from tests.catalogue.search.arms import frame as frame_of_arm
 from tests.text.samples import tilted
 
+pytestmark = pytest.mark.long("Hexapod")
+
 EVERY_MECHANISM = pytest.mark.parametrize("mechanism", EVERY, ids=lambda m: m.name)
 ASIDE = Frame((25.0, 0.0, 0.0))
 
@@ -33,6 +35,7 @@ def moving(sample: Sample) -> bool:
     return sample.robot.ROLE != "orientation"
 
 
+@pytest.mark.long("Ac6")
 @EVERY_MECHANISM
 def test_its_frames_are_those_of_the_tool(mechanism: Mechanism) -> None:
     """Forward kinematics is base times flange times tool; the inverse leads back, alone and in a batch."""
@@ -224,6 +227,7 @@ def test_a_searched_arm_keeps_its_further_solutions() -> None:
     assert further
 
 
+@pytest.mark.long("Ac6")
 @EVERY_MECHANISM
 def test_garbage_is_refused_alike(mechanism: Mechanism) -> None:
     """Numbers that are none, wherever they stand: the same status alone and in a batch, and never an answer."""

@@ -13,6 +13,8 @@ from derive.description.mechanism import Mechanism
 from tests.catalogue.closure import Array
 from tests.catalogue.mounted.machines import BASE, EVERY, Sample, couplings, sample_of, tools_of
 
+pytestmark = pytest.mark.long("Hexapod")
+
 EVERY_MECHANISM = pytest.mark.parametrize("mechanism", EVERY, ids=lambda m: m.name)
 EVERY_COUPLING = pytest.mark.parametrize("name", couplings())
 STEP = 1e-5

@@ -26,6 +26,7 @@ def controller(mechanism: Mechanism, **given: float) -> tuple[Controller, str]:
     return block, block.initialise({**nominal, **given})
 
 
+@pytest.mark.long("Pos_RRR")
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
 def test_the_lengths_that_are_named_are_refused_at_0(mechanism: Mechanism) -> None:
     """And no others, but where conditions between several parameters forbid it; where none is named, all may be 0."""
@@ -44,6 +45,7 @@ def test_the_lengths_that_are_named_are_refused_at_0(mechanism: Mechanism) -> No
     assert named == []
 
 
+@pytest.mark.long("Pos_RRR")
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
 def test_what_limits_an_axis_that_is_given_no_limits_is_said(mechanism: Mechanism) -> None:
     """Where a pitch or the closure limits it, with the numbers, in the input's comment and the Python class."""

@@ -48,6 +48,7 @@ def test_every_edge(mechanism: Mechanism, make: Make) -> None:
                 check_edges(axis, limits, step, make)
 
 
+@pytest.mark.long("Ac6", "P2C", "Pos_RRR")
 @BOTH
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=named)
 def test_edges(mechanism: Mechanism, make: Make) -> None:
@@ -67,6 +68,7 @@ def test_references_anywhere(mechanism: Mechanism, make: Make) -> None:
             check_anywhere(axis, limits, make)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=named)
 def test_references_anywhere_in_short(mechanism: Mechanism) -> None:
     """With references anywhere an axis takes the turn that its range and the reference decide."""

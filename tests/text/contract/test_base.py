@@ -10,6 +10,8 @@ from tests.harness import ast
 from tests.harness.contract import header
 from tests.text.contract.blocks import CONTRACT, FILES, UNITS, blocks, library
 
+pytestmark = pytest.mark.slow
+
 
 def test_the_base_is_an_ordinary_block() -> None:
     """It implements nothing, so that the configurator does not list it, has no inputs, which would come before those of

@@ -8,6 +8,8 @@ import pytest
 
 from tests.text.contract.blocks import UNITS, blocks
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("file", UNITS)
 def test_inputs_are_documented(file: str) -> None:

@@ -7,6 +7,8 @@ import pytest
 from tests.harness.contract import INTERFACES, plain
 from tests.text.contract.blocks import CONTRACT, UNITS, blocks, library
 
+pytestmark = pytest.mark.slow
+
 PRIVATE = {"FindPlatform", "EndPointOnFlange", "MeetPose", "MeetPoint"}
 PRIVATE |= {"FindRoot", "TryAt", "TryJoint", "FinishRoot"}
 ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2")

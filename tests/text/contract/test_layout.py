@@ -9,6 +9,8 @@ import pytest
 
 from tests.text.contract.blocks import FILES, UNITS, blocks, library
 
+pytestmark = pytest.mark.slow
+
 # Every piece of text that is no comment, string or pragma.
 _SILENT = re.compile(r"\(\*.*?\*\)|//[^\n]*|\{[^}]*\}|'[^'\n]*'", re.DOTALL)
 

@@ -10,6 +10,8 @@ from tests.harness.faults import StError
 from tests.harness.library import compile_st
 from tests.text.contract.blocks import CONTRACT, FILES, library
 
+pytestmark = pytest.mark.slow
+
 
 def test_the_interface_has_our_own_methods() -> None:
     """Methods alone, those of the contract, with the headers that every block has: the check of types compares them."""

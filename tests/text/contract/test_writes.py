@@ -10,6 +10,8 @@ import pytest
 from tests.harness import ast
 from tests.text.contract.blocks import CONTRACT, UNITS, blocks, library
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("file", UNITS)
 def test_only_initialize_writes_the_instance(file: str) -> None:

@@ -15,6 +15,8 @@ from tests.text.samples import Sample
 from tests.text.statements import Statements
 from tests.text.units import compiled, file_of, text_of
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_every_statement_runs(mechanism: Mechanism) -> None:
@@ -37,7 +39,7 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
         tried.test_garbage_and_no_initialisation(mechanism)
         assert OrientationController(libraries[1], mechanism).initialise(pairs[0].robot.parameters) == NOT_INITIALIZED
         if pairs[0].robot.CONFIGURATION:
-            test_initialise.test_a_configuration_that_is_too_small_is_refused(mechanism)
+            test_initialise.test_a_configuration_that_is_too_small_is_refused(pairs)
             test_configuration_blocks.test_what_is_set_is_read(pairs[0])
     lines = text_of(mechanism).split("\n")
     missing = {place.line for place in statements.left_out()} - _unreachable(lines)

@@ -181,6 +181,7 @@ def test_every_method_is_here(mechanism: Mechanism) -> None:
     assert public_methods(mechanism)[: len(own)] == own
 
 
+@pytest.mark.long("IsCompatibleWithPosKin")
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
 def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str, order: str) -> None:
@@ -220,6 +221,7 @@ def test_a_tool_that_points_the_opposite_way(mechanism: Mechanism) -> None:
     assert status == (UNREACHABLE if refuses else OK)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_garbage_and_no_initialisation(mechanism: Mechanism) -> None:
     """Any scalar of any argument: an answer without a fault, and where it is a refusal nothing is written."""

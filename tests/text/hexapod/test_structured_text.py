@@ -10,18 +10,17 @@ import softkin
 from numpy.testing import assert_allclose
 from softkin import Status
 
-from derive.description.mechanism import Role
 from derive.ir.program import Status as Outcome
-from derive.kinematics.parameters import machine_parameters
 from derive.mechanisms.kin_hexapod import MECHANISM
 from tests.catalogue.hexapod import test_refusals
 from tests.catalogue.hexapod.machines import NAMES, Array, Machine, machines, rotation
 from tests.catalogue.hexapod.programs import found_from, without_mode
 from tests.harness.library import Library
 from tests.machines.other_poses import platform
-from tests.text import values
-from tests.text.controller import BAD_INPUT, IMPOSSIBLE, NOT_INITIALIZED, OK, UNREACHABLE, Controller
+from tests.text import test_initialise, test_not_initialised, values
+from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK, UNREACHABLE, Controller
 from tests.text.hexapod.blocks import controller, made
+from tests.text.loops.machines import Loop, loops_of
 from tests.text.statements import Statements
 from tests.text.test_every_statement import unreachable
 from tests.text.units import compiled, compiled_text, file_of, text_of
@@ -48,6 +47,7 @@ def compare_some(machine: Machine, block: Controller, count: int = 12) -> None:
         compare(machine, block, position, turn)
 
 
+@pytest.mark.long("lopsided", "hanging", "sideways")
 @pytest.mark.parametrize("name", NAMES)
 def test_every_method_answers_as_python_does(name: str) -> None:
     """Every method of the block gives the answers of the Python package."""
@@ -85,21 +85,6 @@ def test_it_says_what_the_flange_can_do() -> None:
     assert_allclose(zero, turn, atol=0.0)
 
 
-def test_nothing_works_before_initialize() -> None:
-    """Before Initialize every method answers that the block is not initialised."""
-    empty, axes = Controller(compiled(MECHANISM), MECHANISM), (650.0,) * 6
-    assert empty.forward(axes) == empty.jacobian(axes) == (NOT_INITIALIZED, None)
-    assert empty.inverse((0.0, 0.0, 600.0), np.eye(3), (), axes) == (NOT_INITIALIZED, None)
-    assert empty.diagnose((0.0, 0.0, 600.0), np.eye(3), (), axes) == ("not initialized", 0.0)
-    assert empty.is_singular(axes)
-    assert (
-        empty.image("GetFlangeOrientationImageTotal")
-        == empty.image_with_orientation(np.eye(3))
-        == (NOT_INITIALIZED, None)
-    )
-    assert not empty.block.call("IsInitialized") and controller("nominal").block.call("IsInitialized")
-
-
 def in_the_other_mode() -> tuple[float, ...]:
     """Lengths for which the search from home ends beyond the singularity, where the machine is not."""
     machine = machines()["asymmetric"]
@@ -110,6 +95,7 @@ def in_the_other_mode() -> tuple[float, ...]:
     return tuple(axes[np.flatnonzero(refused & (anywhere == Outcome.OK))[0]])
 
 
+@pytest.mark.long
 def test_the_other_assembly_mode_is_refused() -> None:
     """The search finds a pose with these lengths, on the other side; the machine is not there."""
     machine, axes = machines()["asymmetric"], in_the_other_mode()
@@ -125,6 +111,7 @@ def ending_where_nothing_holds() -> Library:
     return compiled_text(file_of(MECHANISM), text.replace(written, "\ndeterminant := 0.0;" + written[1:]))
 
 
+@pytest.mark.long
 def test_without_control_there_is_no_jacobian() -> None:
     """Where the legs do not control the platform there is no Jacobian, and the pose is singular."""
     block, axes = made(machines()["nominal"], ending_where_nothing_holds()), (650.0,) * 6
@@ -132,22 +119,23 @@ def test_without_control_there_is_no_jacobian() -> None:
     assert block.is_singular(axes)
 
 
+@pytest.mark.long
 def test_every_statement_runs() -> None:
-    """The tests of this file execute every statement of the block."""
-    small = compiled(MECHANISM, matrix_size=36)
+    """This file, and what is asked of every block, execute every statement of this one."""
+    loops, small = loops_of(MECHANISM), compiled(MECHANISM, matrix_size=36)
     statements = Statements([file_of(MECHANISM)], [compiled(MECHANISM), small, ending_where_nothing_holds()])
     with statements.watched():
         for name in ("nominal", "lopsided"):
             compare_some(machines()[name], controller(name), 2)
         test_it_says_what_the_flange_can_do()
-        test_nothing_works_before_initialize()
+        test_not_initialised.test_no_method_works(loops, test_not_initialised.fresh)
         test_the_other_assembly_mode_is_refused()
         test_without_control_there_is_no_jacobian()
         test_refusals.test_what_is_no_number(np.nan)
         for turn in (np.eye(3) * 1.1, np.diag((1.0, 1.0, -1.0)), np.eye(3) * np.nan):
             test_refusals.test_what_is_no_rotation(turn)
         check_axes()
-        check_initialize(small)
+        check_initialize(loops)
         check_bounds()
         check_other_poses()
         assert (
@@ -191,28 +179,16 @@ def check_axes() -> None:
     assert block.block.get("NumAxes") == 6 and block.block.call("GetKinematicsName") == "Kin_Hexapod"
 
 
-def check_initialize(small: Library) -> None:
+def check_initialize(loops: tuple[Loop, ...]) -> None:
     """Every parameter alone, limits in the wrong order, machines that cannot work, a matrix of another size."""
-    for name in machine_names():
-        wrong = {**machines()["nominal"].given, name: np.nan}
-        assert Controller(compiled(MECHANISM), MECHANISM).initialise(wrong) == NOT_INITIALIZED, name
-    for k in range(1, 7):
-        wrong = {**machines()["nominal"].given, f"lower_l{k}": 700.0, f"upper_l{k}": 600.0}
-        assert Controller(compiled(MECHANISM), MECHANISM).initialise(wrong) == NOT_INITIALIZED
+    test_initialise.test_every_parameter_is_checked(loops[-1:])
+    test_initialise.test_limits_are_in_order(loops, 10.0, 10.0)
+    test_initialise.test_a_matrix_of_another_size_is_refused(loops, 36)
     for case in test_refusals.refused_parameters():
         test_refusals.test_machines_that_cannot_work(case)
-    assert made(machines()["nominal"], compiled(MECHANISM), lower_l1=1.0, upper_l1=1e3).forward((650.0,) * 6)[0] == OK
     limits = {f"{end}_l{k}": value for k in range(1, 7) for end, value in (("lower", 1.0), ("upper", 1e4))}
-    assert (
-        made(machines()["nominal"], compiled(MECHANISM), **limits, max_angle_base_joint=30.0).forward((650.0,) * 6)[0]
-        == OK
-    )
-    assert Controller(small, MECHANISM).initialise(machines()["nominal"].given) == NOT_INITIALIZED
-
-
-def machine_names() -> list[str]:
-    """The parameters that are numbers."""
-    return [p.name for p in machine_parameters(MECHANISM) if p.role is not Role.FLAG]
+    for more in ({"lower_l1": 1.0, "upper_l1": 1e3}, limits | {"max_angle_base_joint": 30.0}):
+        assert made(machines()["nominal"], compiled(MECHANISM), **more).forward((650.0,) * 6)[0] == OK
 
 
 def check_bounds() -> None:

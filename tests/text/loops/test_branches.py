@@ -5,11 +5,14 @@ from __future__ import annotations
 from itertools import product
 
 import numpy as np
+import pytest
 
 from tests.text.closeness import asked, assert_same
 from tests.text.controller import BAD_INPUT, OK, UNREACHABLE
 from tests.text.loops.machines import Loop
 from tests.text.samples import Bytes, Sample
+
+pytestmark = pytest.mark.slow
 
 POSES, FAR = 8, 250
 BYTES = (0, 1, 2, 3)

@@ -32,6 +32,8 @@ from tests.text.statements import Statements
 from tests.text.test_every_statement import few, left_out, libraries
 from tests.text.units import file_of
 
+pytestmark = pytest.mark.slow
+
 FEW, FAR = 6, (0.3, 1.0, 3.0)
 """The number of samples, and how far beyond a pose a place is asked for: a watched call takes its time."""
 
@@ -66,9 +68,9 @@ def run_the_tests(mechanism: Mechanism, loops: tuple[Loop, ...]) -> None:
     test_blocks_alone.test_calling_the_block_itself_does_nothing(loops)
     test_not_initialised.test_no_method_works(loops, test_not_initialised.fresh)
     test_initialise.test_every_parameter_is_checked(loops[-1:])
-    test_refusals.test_limits_are_in_order(loops)
-    test_refusals.test_a_matrix_of_another_size_is_refused(loops, 36)
-    test_refusals.test_a_configuration_that_is_too_small_is_refused(loops)
+    test_initialise.test_limits_are_in_order(loops, 10.0, 10.0)
+    test_initialise.test_a_matrix_of_another_size_is_refused(loops, 36)
+    test_initialise.test_a_configuration_that_is_too_small_is_refused(loops)
     test_garbage.test_garbage_in_one_number(loops[:2] * 2)
     test_garbage.test_what_is_no_rotation(loops[:2])
     if loops[0].robot.CONFIGURATION:

@@ -14,6 +14,8 @@ from tests.text.loops.answers import COMPARISONS
 from tests.text.loops.machines import LOOPS, Loop, loops_of
 from tests.text.units import compiled_text, file_of, text_of
 
+pytestmark = pytest.mark.slow
+
 PUBLIC = {"FindPose": "AxesToCartesian", "SolveBranch": "CartesianToAxes", "FindJacobian": "Jacobian"}
 """The methods that are spoiled, and those that must answer differently."""
 SAMPLES = 6

@@ -20,6 +20,8 @@ from tests.text.counting import counted
 from tests.text.selftest.planted import planted
 from tests.text.units import FOLDER, compiled_shared, file_of, shared_texts, text_of
 
+pytestmark = pytest.mark.slow
+
 ALL = tuple(m for _, m in catalogue())
 PROGRAM = "PRG_SoftkinSelfTest"
 SELF_TESTS = {path.name: path.read_text(encoding="utf-8") for path in sorted((FOLDER / "selftest").glob("*.st"))}

@@ -138,6 +138,7 @@ def bent(program: Program, name: str, factor: float) -> Program:
     return replace(program, outputs=tuple(outputs))
 
 
+@pytest.mark.long
 def test_a_program_that_refuses_a_regular_pose(planar_arm: Kinematics) -> None:
     closed = Require(sp.Le(real("axis_a1"), 10), Status.UNREACHABLE)
     spoiled = replace(planar_arm.jacobian, body=(closed, *planar_arm.jacobian.body))
@@ -162,6 +163,7 @@ def test_a_machine_that_is_always_singular(planar_arm: Kinematics) -> None:
         witness(planar_arm, replace(planar_arm.mechanism, chain=chain))
 
 
+@pytest.mark.long
 def test_a_dimension_that_may_be_zero_needs_no_pose_there() -> None:
     """A link that is stated as a distance is zero in some of the machines that the witness tries: they are left out."""
     offset = distance("offset", "a link that may vanish", nominal=80.0)

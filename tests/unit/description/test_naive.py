@@ -189,6 +189,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.slow("six axes")
 @pytest.mark.parametrize("fault", FAULTS)
 def test_the_fault_is_told(fault: str, tmp_path: Path) -> None:
     """One sentence that names the line or the part, and what is wrong; never an error of the compiler."""

@@ -54,6 +54,7 @@ OF_EITHER_SIGN = ("tool_x", "point_x", "reach", "x", "r11", "heading", "cos_a2")
 """Their symbols are those of values of a derivation, to the last assumption."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "name"), [*((length, name) for name in NATURAL), *((distance, name) for name in OF_EITHER_SIGN)]
 )
@@ -69,6 +70,7 @@ def lengths_of_programs(kind: Callable[..., Parameter]) -> list[int]:
     return [len(p.body) for p in build(validate(with_parameter("link_beside", kind))).programs]
 
 
+@pytest.mark.long
 def test_a_joint_may_have_the_name_of_a_sum() -> None:
     """A1 + A2 is called a12 inside."""
     joints = {"joints": (A1, A2, TWELVE), "chain": links(A1, A2, TWELVE), "parameters": (L1, L2, L3)}

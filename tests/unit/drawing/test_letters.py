@@ -5,6 +5,8 @@ from __future__ import annotations
 from hashlib import sha256
 from multiprocessing import get_context
 
+import pytest
+
 from derive.emit.picture import canvas
 
 TEXTS = [f"A{k} link_{k} ±{k * 7}° tool centre {chr(65 + k % 26)}" for k in range(60)]
@@ -17,6 +19,7 @@ def drawn(_: int) -> str:
     return sha256(b"".join(letters.covered.tobytes() for letters in found)).hexdigest()
 
 
+@pytest.mark.long
 def test_processes_do_not_disturb_each_other() -> None:
     """Both have the font that this process has opened, and draw at the same time what it draws alone."""
     alone = drawn(0)

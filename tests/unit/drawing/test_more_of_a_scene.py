@@ -13,6 +13,8 @@ from derive.drawing.scene import Belt, Body
 from derive.kinematics.build import build
 from tests.unit.drawing.machines import CATALOGUE, drawn
 
+pytestmark = pytest.mark.slow
+
 BELTS = ("Kin_HGantry2", "Kin_HGantry3", "Kin_TGantry2", "Kin_TGantry3")
 DELTAS = ("Kin_Delta_P3C_Type3", "Softkin_Delta_C", "Kin_Tripod_Linear", "Kin_Tripod_P3Z")
 NONE = ("Kin_Tripod_Rotary", "Kin_Hexapod", "Softkin_DualScara", "Kin_Crane", "Kin_P2C_Type1")

@@ -98,6 +98,7 @@ def test_no_picture_without_a_block() -> None:
     assert sum(p.stat().st_size for p in PICTURES.iterdir()) < 2_500_000
 
 
+@pytest.mark.long
 def test_the_same_marks_give_the_same_bytes_without_a_date() -> None:
     """Equal marks give equal files, which hold no date."""
     one = drawn("Kin_P2C_Type2")

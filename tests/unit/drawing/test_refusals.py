@@ -46,6 +46,7 @@ WRONG = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", WRONG)
 def test_refused(case: str) -> None:
     """A mechanism that cannot be drawn is refused with a message that names the fault."""
@@ -58,6 +59,7 @@ def test_refused(case: str) -> None:
 FAR = replace(SCISSOR, joints=tuple(replace(j, nominal=2.0 * j.nominal) for j in SCISSOR.joints))
 
 
+@pytest.mark.long
 def test_nominal_joints_that_fit_no_pose() -> None:
     """Another pose is drawn, away from singular ones."""
     machine = nominal_machine(build(validate(FAR)))
@@ -66,6 +68,7 @@ def test_nominal_joints_that_fit_no_pose() -> None:
     assert np.min(np.abs(margins(machine, [pose.axes]))) > 0.05
 
 
+@pytest.mark.long
 def test_no_pose_can_be_drawn() -> None:
     """Where no sampled pose is possible either, the nominal values are named."""
     kinematics = build(validate(FAR))

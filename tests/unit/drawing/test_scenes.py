@@ -190,6 +190,7 @@ def test_rails_that_begin_in_one_point_are_stacked() -> None:
     assert next(iter(rails(alone).values()))[1] == pytest.approx(end)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SLIDES)
 def test_the_arrow_of_a_slide_runs_along_it(name: str) -> None:
     """The arrow of a linear axis is parallel to its rail."""
@@ -206,6 +207,7 @@ def test_the_arrow_of_a_slide_runs_along_it(name: str) -> None:
             assert drawn_along @ along == pytest.approx(np.linalg.norm(drawn_along) * np.linalg.norm(along), rel=1e-3)
 
 
+@pytest.mark.long
 def test_a_joint_that_bars_turn_back_has_no_arrow() -> None:
     """A palletizer: A3 drives the forearm against the base; nothing drives the wrist, which keeps the flange level."""
     scene = drawn("Softkin_Palletizer").drawing.scene

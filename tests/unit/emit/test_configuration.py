@@ -17,6 +17,7 @@ from softkin._table import numbers, whole_numbers
 from softkin._types import KinematicsError, Status
 
 
+@pytest.mark.long
 @given(axis=st.floats(-45000.0, 45000.0))
 def test_a_period_is_the_interval_that_holds_the_axis(axis: float) -> None:
     """The period number of an axis value belongs to the interval of one turn that holds the value."""

@@ -88,6 +88,7 @@ def test_names_of_python_are_avoided() -> None:
     ]
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=6)
 @given(expressions=st.lists(EXPRESSIONS, min_size=20, max_size=40))
 def test_laid_out_statements_mean_the_same(expressions: list[sp.Expr]) -> None:

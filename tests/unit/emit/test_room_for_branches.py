@@ -11,6 +11,8 @@ from derive.report import branch_stretches
 from derive.report.branch_stretches import MOST_KEPT, MOST_SIDES, stretches_of
 from tests.mechanisms import kinematics_of, named
 
+pytestmark = pytest.mark.slow
+
 DELTA = named("Kin_Delta_P3C_Type3")
 
 

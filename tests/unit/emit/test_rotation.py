@@ -62,6 +62,7 @@ def test_an_exact_rotation_is_used_bit_for_bit(seed: int) -> None:
     assert (in_the_reference(matrices)[0] == matrices).all()
 
 
+@pytest.mark.long
 @settings(max_examples=20)
 @given(seed=SEEDS)
 def test_what_is_nearly_a_rotation_is_made_one(seed: int) -> None:
@@ -93,6 +94,7 @@ def test_any_error_in_between(seed: int, size: float) -> None:
         assert error(found) < 1e-15
 
 
+@pytest.mark.long
 @settings(max_examples=20)
 @given(seed=SEEDS)
 def test_what_is_no_rotation_is_refused_and_the_reason_has_the_amount(seed: int) -> None:

@@ -61,6 +61,7 @@ def looped(robot: Mechanism, frame: tuple[object, ...], reference: tuple[float, 
     return Mechanism._every_branch(robot, position, rotation, reference)
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize("limit", [None, 120.0, 330.0], ids=["no limits", "limits", "more than a turn"])
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
 def test_inverse_all_is_its_branches_one_by_one(description: Description, limit: float | None) -> None:
@@ -79,6 +80,7 @@ def test_inverse_all_is_its_branches_one_by_one(description: Description, limit:
     assert answers >= 3
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
 def test_inverse_all_without_its_limits_answers_what_is_beyond_them(description: Description) -> None:
     """Limits that are not tested still say which turn an axis takes, where one value is inside."""
@@ -112,6 +114,7 @@ def test_inverse_all_of_numbers_that_are_none_is_its_branches_one_by_one(
             )
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize("offset", [0.0, 7.0], ids=["no offsets", "offsets"])
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
 def test_trusted_input_gives_the_same_directions(description: Description, offset: float) -> None:
@@ -145,6 +148,7 @@ def check_same(description: Description, robot: Mechanism, found: tuple[float, .
     np.testing.assert_allclose(rotation, turned, atol=1e-9)
 
 
+@pytest.mark.long("Ac6")
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
 def test_a_batch_of_all_branches_is_its_rows(description: Description) -> None:
     """A batch of all branches gives the axes and statuses of single calls."""
@@ -163,6 +167,7 @@ def test_a_batch_of_all_branches_is_its_rows(description: Description) -> None:
                 assert axes[row, slot] == pytest.approx(solution.axes, rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.long("Hexapod")
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
 def test_all_branches_of_a_row_are_the_same_in_any_company(
     description: Description, monkeypatch: pytest.MonkeyPatch
@@ -209,6 +214,7 @@ def test_rows_in_chunks_are_the_rows_alone(name: str) -> None:
         np.testing.assert_allclose(axes[row], alone[0], rtol=1e-12, atol=1e-12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["Kin_ArticulatedRobot_6DOF", "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"])
 def test_trusted_calls_can_be_sent_to_another_process(name: str) -> None:
     """The fast functions of a machine can be pickled and give the same axes."""

@@ -55,6 +55,7 @@ MACHINES = {
 }
 
 
+@pytest.mark.long("motors")
 @pytest.mark.quick
 @pytest.mark.parametrize("name", MACHINES)
 def test_it_is_the_same_machine(name: str) -> None:
@@ -75,6 +76,7 @@ def test_it_is_the_same_machine(name: str) -> None:
     assert np.ptp(ratios, axis=0).max() < 1e-9 and np.min(ratios) > 0.0
 
 
+@pytest.mark.long
 @pytest.mark.quick
 def test_names_of_angles() -> None:
     """10 degrees and 100 degrees have one name, and so have 35 and 235; 60 degrees are roots, and need none."""

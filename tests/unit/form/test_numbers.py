@@ -44,12 +44,14 @@ def test_no_other_angle_is_changed(text: str) -> None:
     assert as_right_angles(sp.sympify(float(text))) is None
 
 
+@pytest.mark.long
 @given(st.integers(-4, 4), st.integers(4, 12))
 def test_every_rounding_of_a_right_angle_is_one(quarters: int, decimals: int) -> None:
     written = sp.Float(round(quarters * math.pi / 2, decimals))
     assert sp.simplify(as_right_angles(written) - quarters * pi / 2) == 0
 
 
+@pytest.mark.long
 @given(st.integers(-360_000, 360_000), st.integers(10, 15))
 def test_every_long_decimal_of_thousandths_of_a_degree_is_exact(thousandths: int, decimals: int) -> None:
     """The form names such an angle by its degrees, and what was written must not differ from that."""
@@ -89,6 +91,7 @@ WRITTEN = st.one_of(
 SIZES = st.one_of(st.integers(-400, 400), st.floats(-2, 2).map(lambda v: round(v, 3)), st.just(Rational(1, 3)))
 
 
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(st.lists(st.tuples(WRITTEN, SIZES), min_size=1, max_size=4))
 def test_a_chain_with_names_is_the_same_chain(numbers: list[tuple[object, object]]) -> None:
@@ -145,6 +148,7 @@ def three_parallel(twist: object) -> Mechanism:
     return described(chain, (A1, A2, A3, A4, A5, A6), Task("xyz", Turning.FULL), offset_interface=False)
 
 
+@pytest.mark.long
 def test_a_right_angle_with_two_decimals_is_noted() -> None:
     """It keeps its value, and the documentation of the machine says what may be meant."""
     assert (
@@ -193,6 +197,7 @@ def test_refused(kind: str) -> None:
         build(validate(mechanism))
 
 
+@pytest.mark.long
 def test_an_angle_that_is_almost_right_is_kept_where_it_solves() -> None:
     """Nothing is snapped silently: a SCARA that stands turned by 1.57 is derived with that angle."""
     chain = Rz(A1 + 1.57) * Tx(0.35) * Rz(A2) * Tx(0.25)

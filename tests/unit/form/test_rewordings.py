@@ -31,9 +31,10 @@ from tests.unit.form.link_frames import by_table, in_link_frames
 from tests.unit.form.rewording import reworded
 from tests.unit.form.test_chain import frame, in_words
 
+pytestmark = pytest.mark.slow
+
 MACHINES = {**CHAINS, **{m.name: m for _, m in catalogue() if m.chain is not None}}
-WORDINGS, SHARE = 20, 4
-"""The wordings of a machine, and how many of them are asked where slow tests are left out."""
+WORDINGS = 20
 WAYS: tuple[Callable[[Mechanism, int], Chain], ...] = (reworded, in_link_frames, by_table)
 DERIVED = ("six axes by a table with angles as numbers", "SCARA that is turned where it stands")
 
@@ -43,13 +44,14 @@ def other(mechanism: Mechanism, number: int) -> Mechanism:
     return replace(mechanism, chain=WAYS[number % len(WAYS)](mechanism, number))
 
 
-def check(name: str, numbers: range) -> None:
+@pytest.mark.parametrize("name", MACHINES)
+def test_other_words_have_the_same_form(name: str) -> None:
     """Other wordings describe the same machine, and have the same form."""
     mechanism, form = MACHINES[name], in_form(MACHINES[name])
     rng = np.random.default_rng(3)
     values = {q.symbol: float(rng.uniform(0.5, 1.5)) for q in (*mechanism.parameters, *mechanism.joints)}
     stated = frame(with_exact_angles(mechanism).chain, values)
-    for number in numbers:
+    for number in range(WORDINGS):
         again = other(mechanism, number)
         assert frame(again.chain, values) == pytest.approx(stated, rel=1e-10, abs=1e-9), f"wording {number}"
         found = in_form(again)
@@ -57,23 +59,11 @@ def check(name: str, numbers: range) -> None:
         assert replace(found, drawn=None) == replace(form, drawn=None), f"wording {number}"
 
 
-@pytest.mark.parametrize("name", MACHINES)
-def test_other_words_have_the_same_form(name: str) -> None:
-    check(name, range(SHARE))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", MACHINES)
-def test_all_other_words_have_the_same_form(name: str) -> None:
-    check(name, range(SHARE, WORDINGS))
-
-
 def operations(kin: Kinematics) -> int:
     """The operations of the inverse for one branch."""
     return sum(int(sp.count_ops(s.value)) for s in kin.branch.body if isinstance(s, Let))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", DERIVED)
 def test_what_is_derived_of_another_wording_solves_the_machine(name: str) -> None:
     """No solution is wrong, and none is missing: the witness measures it against the first description."""
@@ -99,7 +89,6 @@ REFUSED = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", REFUSED)
 def test_a_refusal_is_the_same_refusal(kind: str) -> None:
     sentences = set()

@@ -62,6 +62,7 @@ def test_arithmetic_and_logic() -> None:
 TURNS = st.floats(-1e5, 1e5)
 
 
+@pytest.mark.long
 @given(angle=TURNS, centre=TURNS)
 def test_nearest_period(angle: float, centre: float) -> None:
     """The nearest period differs by whole turns, and is within half a turn of the centre."""
@@ -92,6 +93,7 @@ def test_the_interval_of_a_period_is_half_open_and_shifted_down(centre: float, d
     assert found == pytest.approx(centre + expected, abs=1e-12 * (1 + abs(centre)))
 
 
+@pytest.mark.long
 @given(axis=TURNS)
 def test_the_commanded_period_brings_an_axis_back(axis: float) -> None:
     """Period n of an axis value, and the value in that period: the two shifts are the same."""
@@ -115,6 +117,7 @@ def test_the_period_of_an_edge_is_stable(edge: float) -> None:
 HALVES = st.one_of(st.floats(0.0, pi), st.sampled_from([0.0, pi / 2, pi]))
 
 
+@pytest.mark.long
 @given(angle=st.floats(-50, 50), centre=st.floats(-50, 50), half=HALVES)
 def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
     """The nearest angle of an arc is on the arc, and no other angle of the arc is nearer."""

@@ -30,6 +30,8 @@ from derive.kinematics.kinematics import Kinematics
 from derive.pipeline import derive_and_measure
 from derive.report.reference_calls import Machine, forward, machine_with
 
+pytestmark = pytest.mark.slow
+
 R, F, ARM = (length(n, n, nominal=v) for n, v in (("rod", 400.0), ("base", 300.0), ("arm", 180.0)))
 S1, S2, S3 = (linear(f"S{k}", "slide") for k in (1, 2, 3))
 J1, J2 = (rotary(f"J{k}", "arm") for k in (1, 2))

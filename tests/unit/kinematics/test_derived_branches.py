@@ -18,6 +18,8 @@ from derive.report.branch_meanings import pair_at_one_frame
 from derive.report.reference_calls import branches, forward, machine_with
 from tests.mechanisms import kinematics_of, named
 
+pytestmark = pytest.mark.slow
+
 NAMES = {
     "Kin_Scara4_ZCcoupled_Type1": ["elbow_1"],
     "Kin_SCCC": ["elbow_1"],

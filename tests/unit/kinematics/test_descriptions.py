@@ -16,6 +16,8 @@ from derive.witness import witness
 from tests.unit.kinematics.inventions import INVENTIONS
 from tests.unit.kinematics.machine import ENTRIES, Machine, Values, machine
 
+pytestmark = pytest.mark.slow
+
 COUNT = 120
 EVERY = pytest.mark.parametrize("name", INVENTIONS)
 

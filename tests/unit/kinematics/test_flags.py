@@ -15,6 +15,8 @@ from derive.ir.symbols import PLACE, Flag, flag, is_condition, is_count, real
 from derive.kinematics.kinematics import Kinematics
 from tests.mechanisms import kinematics_of, named
 
+pytestmark = pytest.mark.long("Hexapod")
+
 CHOSEN = ("Kin_Scara4_CCZC_ZCcoupled", "Kin_GantryCutter2", "Kin_Hexapod")
 
 

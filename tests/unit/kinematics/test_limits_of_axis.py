@@ -59,6 +59,7 @@ def test_it_does_not_matter_who_knows_them(limits: Range) -> None:
     assert both(limits, None) == both(None, limits) == both(limits, limits)
 
 
+@pytest.mark.long
 @given(lower=numbers, upper=numbers, own=st.none() | ranges)
 def test_no_range_is_refused(lower: float, upper: float, own: Range) -> None:
     """Limits of a drive that are reversed, or no numbers, are refused."""

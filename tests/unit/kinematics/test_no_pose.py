@@ -93,6 +93,7 @@ NOWHERE = {
 }
 
 
+@pytest.mark.long("five-bar", "out of reach", "never positive", "rails")
 @pytest.mark.parametrize("kind", NOWHERE)
 def test_no_pose_closes(kind: str) -> None:
     """The sentence names what misses, and by how much; it comes within seconds."""

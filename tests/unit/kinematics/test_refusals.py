@@ -104,6 +104,7 @@ def searched() -> Mechanism:
     return solution.prepared(load(SEARCHED))
 
 
+@pytest.mark.long
 def test_a_search_that_leaves_two_conditions(searched: Mechanism, monkeypatch: pytest.MonkeyPatch) -> None:
     solve = derivations.solve_at
 
@@ -122,6 +123,7 @@ def test_a_trial_that_is_out_of_reach_elsewhere(searched: Mechanism, monkeypatch
     assert "may be out of reach in its two-root steps only; search another joint" in said
 
 
+@pytest.mark.long
 def test_a_slope_of_both_signs(searched: Mechanism, monkeypatch: pytest.MonkeyPatch) -> None:
     measured = margins._measured_slope
 

@@ -68,6 +68,7 @@ def test_random_arms(axes: int, seed: int, has_parameters: bool) -> None:
     assert len(said) < 900
 
 
+@pytest.mark.long
 def test_the_same_work_whatever_was_derived_before() -> None:
     machine, counts = prepared(validate(random_arm(2, 6, has_parameters=True))), []
     for _ in range(2):
@@ -77,6 +78,7 @@ def test_the_same_work_whatever_was_derived_before() -> None:
     assert counts[0] == counts[1]
 
 
+@pytest.mark.long
 def test_a_derivation_that_grows_too_large_is_refused_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     """The machine has a solution; with a bound that is too small for it the refusal says so, and names joints."""
     wrist = Rx(J[3]) * Ry(J[4]) * Rx(J[5]) * Tx(80)
@@ -88,6 +90,7 @@ def test_a_derivation_that_grows_too_large_is_refused_with_the_reason(monkeypatc
         with_search(prepared(machine))
 
 
+@pytest.mark.long
 def test_the_stages_behind_the_solver_share_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     """With one term less than it needs the whole arm is refused by the stage that needs the last one."""
     wrist = Rx(J[3]) * Ry(J[4]) * Rx(J[5]) * Tx(80)
@@ -109,6 +112,7 @@ def five(chain: Chain) -> str:
     return str(refusal.value)
 
 
+@pytest.mark.long
 def test_three_parallel_axes_are_told_to_be_so_and_a_task_that_fits() -> None:
     upper = Rz(J[0]) * Tz(310) * Ry(J[1]) * Tz(260) * Ry(J[2]) * Tx(230) * Ry(J[3]) * Tx(75)
     said = five(upper * Rx(J[4]) * Ty(35) * Tx(45))

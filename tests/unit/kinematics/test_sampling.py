@@ -60,6 +60,7 @@ def rails(rod_length: float, apart: float = 300.0) -> Mechanism:
     )
 
 
+@pytest.mark.long
 def test_branches_are_told_apart_where_few_of_the_drawn_poses_close() -> None:
     """Rods much shorter than the rails are apart: enough poses are found, and each indicator agrees with one step."""
     mechanism = rails(40.0)
@@ -70,6 +71,7 @@ def test_branches_are_told_apart_where_few_of_the_drawn_poses_close() -> None:
     assert 0 < np.sum(np.asarray(status) == Status.OK) < ENOUGH
 
 
+@pytest.mark.long
 def test_a_loop_that_closes_far_away_is_said_to() -> None:
     """Rails that cross far from where they begin: the sentence names where, by the law of sines."""
     sentence = "no sampled pose is possible, but the loop closes at S1 = 9.728e+05, S2 = 5.938e+05: state nominal"

@@ -39,6 +39,7 @@ def values(own: Machine, **axes: float) -> Values:
     return {j.axis.name: np.asarray(axes[j.name]) for j in own.kinematics.mechanism.joints}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("elbow", [0.0, 180.0])
 @pytest.mark.parametrize("name", ["all turns clockwise", "a motor of either sense", "a lift between the joints"])
 def test_a_stretched_or_folded_arm_is_one_solution(name: str, elbow: float) -> None:
@@ -89,6 +90,7 @@ def test_a_wrist_above_the_shoulder_leaves_the_column_free(reference: float) -> 
     assert sorted(float(s["axis_a3"]) for s in found) == pytest.approx([-90.0, -90.0, 90.0, 90.0], abs=1e-9)
 
 
+@pytest.mark.long
 def test_a_boom_that_stands_up_is_on_both_sides() -> None:
     """Where a boom stands upright both slots hold the same solution."""
     own = built("a boom that tips over")

@@ -12,6 +12,8 @@ from derive.geometry.frames import Rx, Ry, Rz, Tx, Txyz, Ty, Tz, denavit_hartenb
 from derive.kinematics.build import build
 from derive.witness import witness
 
+pytestmark = pytest.mark.slow
+
 L1 = length("link_1", "first link", nominal=300.0)
 L2 = length("link_2", "second link", nominal=250.0)
 ASIDE = distance("aside", "beside", nominal=40.0)
@@ -185,11 +187,7 @@ ARMS: dict[Callable[[], Mechanism], int] = {
 """Every arm, and how many solutions a pose has."""
 
 
-QUICK = (telescope, position_alone)
-CASES = [pytest.param(arm, marks=() if arm in QUICK else pytest.mark.slow) for arm in ARMS]
-
-
-@pytest.mark.parametrize("make", CASES, ids=lambda f: f.__name__)
+@pytest.mark.parametrize("make", ARMS, ids=lambda f: f.__name__)
 def test_an_arm_in_space(make: Callable[[], Mechanism]) -> None:
     """An invented spatial arm is derived, and the witness finds as many solutions as the inverse has."""
     described = make()

@@ -26,11 +26,11 @@ from tests.text.units import compiled_text
 from tests.unit.kinematics.machine import Values, machine
 from tests.unit.kinematics.turning_inventions import TURNING_INVENTIONS, three_rpr
 
+pytestmark = pytest.mark.slow
+
 NAMES = tuple(TURNING_INVENTIONS)
 QUICK = tuple(n for n in NAMES if n != "six cranks with rods")
-EVERY = pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=[] if n in QUICK else pytest.mark.slow) for n in NAMES], ids=str
-)
+EVERY = pytest.mark.parametrize("name", NAMES, ids=str)
 COUNT = 60
 
 

@@ -4,6 +4,7 @@ after."""
 from __future__ import annotations
 
 import numpy as np
+import pytest
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -182,6 +183,7 @@ def random_program(draw: st.DrawFn) -> Program:
     return normalise("program", lets, [Output(name.name, name) for name in names[-3:]])
 
 
+@pytest.mark.slow
 @settings(max_examples=150)
 @given(random_program(), st.integers(0, 2**16))
 def test_values_stay_the_same(one: Program, seed: int) -> None:

@@ -22,6 +22,8 @@ from derive.lowering.unrolling import is_straight, unroll
 from derive.optimize.without_periods import specialised, without_chosen_turns
 from tests.mechanisms import kinematics_of
 
+pytestmark = pytest.mark.slow
+
 A, B, C, X, Y = (real(n) for n in "abcxy")
 ELBOW, WRIST = Sign(real("sigma_elbow"), ("right", "left")), Sign(real("sigma_wrist"), ("down", "up"))
 SHAPES = ["kin_scara4_zccoupled_type1", "kin_polar", "kin_gantry2", "kin_tripod_rotary", "kin_articulatedrobot_6dof"]

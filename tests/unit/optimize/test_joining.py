@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
+import pytest
 import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
@@ -127,6 +128,7 @@ def bodies(draw: st.DrawFn) -> list[Let]:
     return body
 
 
+@pytest.mark.long
 @given(bodies(), st.data())
 def test_values_stay_the_same_and_are_bound_on_every_way(body: Sequence[Let], data: st.DataObject) -> None:
     """Joined or not, a tree has the same values on every side, and reads nothing that one side of a choice binds."""

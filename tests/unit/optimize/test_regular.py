@@ -88,6 +88,7 @@ def test_what_is_no_arithmetic() -> None:
     assert regular(normalise("p", [Let(AXIS, sp.sin(X))], [Output("axis", AXIS)]), ()) is None
 
 
+@pytest.mark.long("Ac6", "P2C", "Pos_RRR", "Wrist2")
 @pytest.mark.parametrize("mechanism", [m for _, m in catalogue()], ids=lambda m: m.name)
 def test_the_same_answers(mechanism: Mechanism) -> None:
     """At random poses, and where axes are at multiples of 90 degrees: the answer of the whole program, or none. Most

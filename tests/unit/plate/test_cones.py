@@ -40,6 +40,7 @@ def test_what_cannot_be_a_cone(mechanism: Mechanism, cone: sp.Expr, word: str) -
             validate(with_cones(mechanism, *side))
 
 
+@pytest.mark.long
 def test_a_rod_without_a_cone_is_free_and_others_have_their_own() -> None:
     """One base joint with one width, one with another; nothing is asked of the others, nor of the platform."""
     wide, narrow = BASE_CONE * DEGREE, PLATFORM_CONE * DEGREE

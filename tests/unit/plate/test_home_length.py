@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 import sympy as sp
 
 from derive.description.mechanism import length
@@ -10,6 +11,7 @@ from derive.kinematics.build import build
 from tests.mechanisms import named
 
 
+@pytest.mark.long
 def test_a_home_pose_may_be_a_length() -> None:
     described = named("Kin_Hexapod")
     read = {s for v in described.home for s in sp.sympify(v).free_symbols}

@@ -28,6 +28,7 @@ def stated(mechanism: Mechanism, factor: object = -3) -> Mechanism:
     return replace(mechanism, rods=(), closure=tuple(factor * r.equation for r in mechanism.rods))
 
 
+@pytest.mark.long("cranks", "Kin_Hexapod")
 @pytest.mark.parametrize("name", MACHINES)
 def test_equations_that_are_rods_are_read_as_these(name: str) -> None:
     """Every machine that turns its platform, in space and in a plane, with joints in the length and in the base."""
@@ -44,6 +45,7 @@ def test_equations_that_are_rods_are_read_as_these(name: str) -> None:
         assert abs(sp.N(difference)) <= 1e-9 * (1.0 + abs(sp.N(other.equation.subs(values | rest))))
 
 
+@pytest.mark.long
 def test_the_programs_are_those_of_the_rods() -> None:
     """The planar 3-RRR as equations is the 3-RRR of the catalogue."""
     mechanism = named("Softkin_Planar_3RRR")
@@ -54,6 +56,7 @@ def test_the_programs_are_those_of_the_rods() -> None:
     assert one.margins == other.margins
 
 
+@pytest.mark.long
 def test_an_equation_that_is_multiplied_out_is_read_too() -> None:
     """With two entries of the rotation, as heading's cosine and sine, and every square expanded."""
     mechanism = named("Softkin_Planar_3RRR")

@@ -34,6 +34,7 @@ TABLE = problem(
 BELTS = problem(K * V - L * W - A, L * V + K * W - B, lengths=(V, W))
 
 
+@pytest.mark.long
 @few
 @given(turn=ANGLES, a=NUMBERS, b=NUMBERS, k=LENGTHS, link=LENGTHS)
 def test_the_root(turn: float, a: float, b: float, k: float, link: float) -> None:
@@ -70,6 +71,7 @@ SLIDES = problem(
 """Three slides that two turns carry: a trunnion."""
 
 
+@pytest.mark.long
 @few
 @given(turn=ANGLES, lean=ANGLES, a=NUMBERS, b=NUMBERS, c=NUMBERS)
 def test_three_lengths_that_a_rotation_carries(turn: float, lean: float, a: float, b: float, c: float) -> None:

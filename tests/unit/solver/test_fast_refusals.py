@@ -27,6 +27,8 @@ from derive.solver import eliminations, solve
 from derive.solver.unsolved import Unsolved
 from tests.unit.kinematics.inventions import invention
 
+pytestmark = pytest.mark.slow
+
 LENGTHS = tuple(length(f"l{k}", f"length {k}", nominal=100.0 + 17.0 * k) for k in range(14))
 JOINTS = tuple(rotary(f"A{k}", f"axis {k}", value=f"q{k}") for k in range(1, 8))
 A1, A2, A3, A4, A5, A6, A7 = JOINTS

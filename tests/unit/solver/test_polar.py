@@ -86,6 +86,7 @@ def test_the_equations_may_stand_the_other_way_round(a: float, b: float, c: floa
     assert abs(values["f"] * values["sin_v"] - (a + c)) <= max(1e-13 * size, AT_CENTRE)
 
 
+@pytest.mark.long
 @few
 @given(f=NUMBERS, v=ANGLES, k=LENGTHS)
 def test_factors_of_the_radius(f: float, v: float, k: float) -> None:

@@ -178,6 +178,7 @@ def solutions(case: Case, derivation: Derivation, given: Mapping[str, np.ndarray
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_all_solutions(name: str) -> None:
     """The derivation finds all solutions of the closure, each on the branch of its signs."""
@@ -202,6 +203,7 @@ def _apart(case: Case, first: Mapping[str, float], second: Mapping[str, float]) 
     return max([*angles, *(abs(first[v.name] - second[v.name]) for v in case.lengths)])
 
 
+@pytest.mark.long("3R")
 @pytest.mark.parametrize("name", CASES)
 def test_by_these_rules(name: str) -> None:
     """The driver uses the expected rules in the expected order."""
@@ -291,6 +293,7 @@ for name in ("2R with a tool beside the arm", "2R with absolute angles", "should
 """
 
 
+@pytest.mark.slow
 def test_the_same_text_in_every_process() -> None:
     """The derivation is the same for two hash seeds of Python."""
     root = Path(__file__).resolve().parents[3]

@@ -82,6 +82,7 @@ def machine(link_1: float, link_2: float, p: float, q: float) -> dict[sp.Symbol,
     return {L1: link_1, L2: link_2, P: p, Q: q, sp.Symbol("scale"): link_1 + link_2}
 
 
+@pytest.mark.long
 @few
 @pytest.mark.parametrize("name", [n for n in KINDS if n != "law of cosines"])
 @given(link_1=LENGTHS, link_2=LENGTHS, p=NUMBERS, q=NUMBERS, u=ANGLES)

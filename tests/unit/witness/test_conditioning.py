@@ -20,6 +20,8 @@ from derive.mechanism import Turning
 from derive.witness import Disagreement, witness
 from tests.unit.kinematics.inventions import invention
 
+pytestmark = pytest.mark.slow
+
 A1, A2, A3, B, C = (rotary(n, "turn") for n in ("A1", "A2", "A3", "B", "C"))
 X, Y, Z = (linear(n, "slide") for n in "XYZ")
 ELBOW = (branch("elbow", sin(A2), right=+1, left=-1),)

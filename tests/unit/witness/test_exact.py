@@ -75,6 +75,7 @@ def test_the_equations_hold_exactly(name: str) -> None:
     assert (exact.trials, exact.but) == (3, PROVEN[name])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", DRIVEN)
 def test_gears_are_exact_too(name: str) -> None:
     """A turn of the axis is a fraction of one of the joint, or a multiple; screws read angles as numbers."""
@@ -91,6 +92,7 @@ def test_what_cannot_be_asked_is_said() -> None:
 P1, A1, LINK = linear("P1", "rail"), rotary("A1", "turn"), length("link", "link", nominal=300.0)
 
 
+@pytest.mark.long
 def test_a_turn_behind_the_links_is_exact() -> None:
     chain = Tx(P1) * Rz(A1) * Tx(LINK) * Rz(sp.pi / 5)
     described = validate(Mechanism(name="Turned", parameters=(LINK,), joints=(P1, A1), chain=chain, task=Task("xy")))

@@ -51,6 +51,7 @@ def said_of(kinematics: Kinematics) -> str:
     return with_remedy(str(refused.value))
 
 
+@pytest.mark.long
 def test_a_search_that_misses_solutions(arm: Kinematics, monkeypatch: pytest.MonkeyPatch) -> None:
     """One elbow is never found: half of the solutions."""
     monkeypatch.setattr(inverse, "_round_trip", lambda *_: 0.0)
@@ -59,12 +60,14 @@ def test_a_search_that_misses_solutions(arm: Kinematics, monkeypatch: pytest.Mon
     assert "the search misses 24 of 48 solutions; leave search= out" in said_of(one_elbow)
 
 
+@pytest.mark.long
 def test_a_search_that_refuses_poses_where_branches_meet(arm: Kinematics, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(inverse, "refused_when_planted", lambda *_: (2, 100))
     said = said_of(arm)
     assert "the search refuses 2 of 100 poses next to where branches meet; leave search= out" in said
 
 
+@pytest.mark.long
 def test_a_home_pose_of_several_modes(monkeypatch: pytest.MonkeyPatch) -> None:
     """With its working modes not told apart, the legs at home stand in both assembly modes."""
     kinematics = kinematics_of(named("Softkin_Planar_3RRR"))

@@ -52,6 +52,7 @@ def test_the_scara_agrees(scara: Kinematics) -> None:
     assert max(evidence.closure_residual, evidence.inverted.round_trip, evidence.inverted.jacobian) <= 1e-12
 
 
+@pytest.mark.long
 def test_what_is_not_excluded_is_missed() -> None:
     """Without `positive` the mirror solutions count: radius and azimuth, and the polar angle with them."""
     kinematics = kinematics_of(named("Kin_Crane"))
