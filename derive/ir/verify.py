@@ -9,10 +9,9 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import PRIMITIVES
-from derive.ir.program import Call, Iterate, Program, Solve, Statement, binds, expressions, reason_expressions
+from derive.ir.program import Call, Iterate, Program, Solve, Statement, reason_expressions
 from derive.ir.symbols import is_decided, names_in, symbols_of
-from derive.ir.typed import check_types
-from derive.ir.types import IllTypedError
+from derive.ir.types import IllTypedError, check_types
 
 _PORTABLE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _ARITHMETIC = (sp.Add, sp.Mul, sp.Pow, sp.Symbol, sp.Rational, sp.Float, sp.Integer)
@@ -62,9 +61,9 @@ def _check_statement(program: Program, statement: Statement, bound: dict[str, sp
             raise BrokenProgram(f"{program.name}: the matrix, the right-hand sides and the names do not fit together")
     if isinstance(statement, Call):
         _check_call(program, statement)
-    for value in (*expressions(statement), *reason_expressions(statement)):
+    for value in (*statement.children(), *reason_expressions(statement)):
         _check_expression(program, value, bound)
-    bound |= {name.name: name for name in binds(statement)}
+    bound |= {name.name: name for name in statement.bound()}
 
 
 def _check_call(program: Program, call: Call) -> None:

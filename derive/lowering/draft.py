@@ -14,7 +14,7 @@ import sympy as sp
 
 from derive.ir.graph import PRODUCT, Graph, Node, Value
 from derive.ir.primitives import Root
-from derive.ir.program import Iterate, Let, Program, Statement, expressions, reason_expressions
+from derive.ir.program import Iterate, Let, Program, Statement, reason_expressions
 
 _ONE = sp.Integer(1)
 
@@ -124,10 +124,8 @@ class _Reading:
         return value.node
 
     def _effect(self, statement: Statement) -> Effect:
-        read, refused = (
-            tuple((e, self.value(e)) for e in found(statement)) for found in (expressions, reason_expressions)
-        )
-        return Effect(statement, read, refused)
+        found = statement.children(), reason_expressions(statement)
+        return Effect(statement, *(tuple((e, self.value(e)) for e in expressions) for expressions in found))
 
     def _loop(self, loop: Iterate, order: int) -> Loop:
         start = tuple(map(self.value, loop.start))

@@ -12,9 +12,9 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE
 from derive.ir.graph import PRODUCT, SUM, Graph, Node, Value, reached
-from derive.ir.names import Names
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Output, Program
+from derive.ir.symbols import Names
 from derive.lowering.draft import Draft, Named, Rewriting, values_of
 from derive.lowering.wording import said
 from derive.lowering.writing import is_condition, written

@@ -6,7 +6,6 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from derive.ir.graph import Node, reached
-from derive.ir.passes import calling
 from derive.ir.program import Let, Program
 from derive.ir.symbols import Sign
 from derive.lowering.coefficients import collected
@@ -55,7 +54,7 @@ def lowered(
     done: dict[str, Program] = {}
     for draft in drafts:
         draft.items[:] = [
-            replace(i, statement=calling(i.statement, done)) if isinstance(i, Effect) else i for i in draft.items
+            replace(i, statement=i.statement.calling(done)) if isinstance(i, Effect) else i for i in draft.items
         ]
         short = cut(draft, graph, names)
         done[draft.program.name] = written(short, names, taken, modulo_turns=modulo_turns)

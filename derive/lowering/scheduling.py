@@ -20,7 +20,7 @@ import sympy as sp
 
 from derive.ir.passes import with_bound_reason
 from derive.ir.primitives import Select
-from derive.ir.program import Let, Program, Statement, binds, reads
+from derive.ir.program import Let, Program, Statement
 from derive.ir.symbols import names_in
 from derive.ir.tree import If, Item, bound_behind, read_in
 from derive.kept import kept_by_identity
@@ -60,10 +60,10 @@ def _together(body: Sequence[Statement]) -> tuple[Statement, ...]:
 def _advance(let: Let, place: int, target: int, stretches: list[list[Let]], others: Sequence[Statement]) -> None:
     """Move a statement and all that it needs to the end of an earlier stretch, if everything can be computed there."""
     between = [s for lets in stretches[target + 1 : place + 1] for s in lets]
-    needed = set(reads(let)) | {let.name}
+    needed = set(let.reads()) | {let.name}
     for other in reversed(between):
-        needed |= reads(other) if other.name in needed else set()
-    if not any(needed & set(binds(s)) for s in others[target:place]):
+        needed |= other.reads() if other.name in needed else set()
+    if not any(needed & set(s.bound()) for s in others[target:place]):
         moved = [s for s in between if s.name in needed]
         stretches[target] += moved
         for lets in stretches[target + 1 : place + 1]:

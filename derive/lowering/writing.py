@@ -15,11 +15,10 @@ from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
 from derive.ir.graph import ODD, PRODUCT, SUM, Node, Value, reached
-from derive.ir.names import Names
 from derive.ir.passes import with_inputs
 from derive.ir.primitives import Atan2, Select
-from derive.ir.program import Let, Output, Program, Solve, Statement, binds, rewritten
-from derive.ir.symbols import count, is_count
+from derive.ir.program import Let, Output, Program, Solve, Statement, rewritten
+from derive.ir.symbols import Names, count, is_count
 from derive.lowering.cutting import LONGEST, SHORT, letters
 from derive.lowering.draft import Draft, Effect, Item, Named, read_values
 from derive.lowering.wording import said
@@ -137,7 +136,7 @@ class _Writer:
             yield from self._effect(item)
             return
         yield from self._bindings(item.start)
-        inside = set(binds(item.statement))
+        inside = set(item.statement.bound())
         outside = [n for n in self._needed(read_values(item)) if not any(r.head in inside for r in reached([n]))]
         yield from self._let(outside)
         step: list[Statement] = []

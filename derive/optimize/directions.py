@@ -17,11 +17,10 @@ from itertools import permutations, product
 import sympy as sp
 
 from derive.ir.constants import DEGREE
-from derive.ir.names import Names
 from derive.ir.passes import is_read_once, normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select
-from derive.ir.program import Let, Output, Program, reads, reason_expressions, rewritten
-from derive.ir.symbols import angle_of, angle_word, is_condition, symbols_of
+from derive.ir.program import Let, Output, Program, reason_expressions, rewritten
+from derive.ir.symbols import Names, angle_of, angle_word, is_condition, symbols_of
 
 _AXES = {"cos": "x", "sin": "y"}
 Pair = tuple[sp.Symbol, sp.Symbol]
@@ -103,7 +102,7 @@ def direction_of(let: Let) -> Pair | None:
 
 def _readers(program: Program, symbol: sp.Symbol) -> list[sp.Symbol | None]:
     """The readers of a name: the names that they bind, None for other statements."""
-    lets = [s.name if isinstance(s, Let) else None for s in program.body if symbol in reads(s)]
+    lets = [s.name if isinstance(s, Let) else None for s in program.body if symbol in s.reads()]
     return lets + [None for o in program.outputs if symbol in symbols_of(o.value)]
 
 
@@ -176,7 +175,7 @@ def _graded(program: Program, names: frozenset[sp.Symbol]) -> frozenset[sp.Symbo
     for statement in program.body:
         if any(symbols_of(value) & graded for value in reason_expressions(statement)):
             return None
-        if not reads(statement) & graded:
+        if not statement.reads() & graded:
             continue
         if not isinstance(statement, Let) or statement.name in names:
             return None

@@ -21,7 +21,7 @@ import sympy as sp
 
 from derive.ir.passes import with_inputs
 from derive.ir.primitives import NearestPeriod, Root, Select
-from derive.ir.program import Let, Program, expressions, rewritten
+from derive.ir.program import Let, Program, rewritten
 from derive.ir.symbols import replaced
 from derive.ir.tree import If, Item, bindings_in, expressions_in
 
@@ -90,7 +90,7 @@ def _read(items: Sequence[Item]) -> Counter[sp.Basic]:
         if isinstance(item, If):
             found += _written(item.condition) + _written(item.condition) + (_read(item.holds) | _read(item.fails))
         else:
-            for value in expressions(item):
+            for value in item.children():
                 found += _written(value)
     return found
 

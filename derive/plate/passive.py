@@ -20,7 +20,7 @@ from derive.equations.closures.fixed_names import all_angles, fixed_lets, fixed_
 from derive.equations.problem import Equation, Problem, StepDeterminant
 from derive.ir.passes import renamed
 from derive.ir.primitives import Select
-from derive.ir.program import Let, Output, Require, Statement, binds, rewritten
+from derive.ir.program import Let, Output, Require, Statement, rewritten
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.plate.legs import NORMAL, moments, names, rotation_of, spins
@@ -198,5 +198,5 @@ def completed(
     table = dict(zip((*places, *turns), (*position, *rotation), strict=True))
     table |= dict(zip(_COMMANDED, rotation, strict=False)) if "twist" in mechanism.passive else {}
     own = [s for s in passive_statements(mechanism) if not isinstance(s, Require)]
-    table |= {name: real(f"completed_{name.name}") for s in own for name in binds(s)}
+    table |= {name: real(f"completed_{name.name}") for s in own for name in s.bound()}
     return spelled(own, table), tuple(table[c] for c in places), tuple(table[r] for r in turns)

@@ -15,7 +15,7 @@ from derive.emit.c.layout import comment
 from derive.emit.c.printer import C, list_of, spelled, type_of
 from derive.emit.c.refusal import Refusals
 from derive.emit.interface import names_in, read_by
-from derive.ir.program import Call, FindRoot, Solve, binds
+from derive.ir.program import Call, FindRoot, Solve
 from derive.ir.symbols import PLACE
 from derive.lowering.decided import decided
 from derive.lowering.scheduling import structured
@@ -87,7 +87,7 @@ class Body(walk.Body):
 
     def solve(self, system: Solve) -> list[str]:
         """Linear equations: the matrix with its right-hand sides in one array, which then holds the solution."""
-        size, columns, declares = system.size, system.columns, self.declared.isdisjoint(binds(system))
+        size, columns, declares = system.size, system.columns, self.declared.isdisjoint(system.bound())
         array, word = self.another("system"), "const double " if declares else ""
         rows = [
             [*system.matrix[i * size : (i + 1) * size], *system.right[i * columns : (i + 1) * columns]]

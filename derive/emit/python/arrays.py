@@ -22,7 +22,7 @@ from derive.emit.python.program import (
     without_conversions,
 )
 from derive.ir.primitives import NearestPeriod
-from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve, Statement, reads
+from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve, Statement
 from derive.ir.symbols import START_POSITION, START_ROTATION
 from derive.ir.tree import If, Item, grouped
 from derive.kinematics.kinematics import Kinematics
@@ -63,7 +63,7 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
     if not method.is_shared:
         lines.append(f"status = passed({', '.join(a.name for a in method.arguments)})")
     program = without_conversions(method.program)
-    read = {s for statement in program.body for s in reads(statement) if s.name in constants}
+    read = {s for statement in program.body for s in statement.reads() if s.name in constants}
     alike = fixed(program.body, read - {*START_POSITION, *START_ROTATION})
 
     def bound(item: Item) -> list[str]:
@@ -102,7 +102,7 @@ def _refused_late(body: Iterable[Statement]) -> list[Statement]:
         if isinstance(statement, Require) and not all(isinstance(s, Require) for s in found):
             waiting.append(statement)
             continue
-        if isinstance(statement, Iterate | Call | FindRoot):
+        if not statement.is_straight:
             found, waiting = [*found, *waiting], []
         found.append(statement)
     return [*found, *waiting]

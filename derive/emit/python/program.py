@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import sympy as sp
-
 from derive.emit.interface import Shape, names, read_by
 from derive.emit.python import calls as python_calls
 from derive.emit.python.layout import assigned, fits, note_lines, taken_apart, tuple_of
@@ -107,24 +105,15 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
 def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """A binding, or a choice between two sides that bind the same or refuse."""
     if isinstance(item, If):
-        notes = dict.fromkeys(
-            i.comment for i in item.holds if isinstance(i, Let) and i.name in item.names and i.comment
-        )
-        head = [*(line for note in notes for line in note_lines(note)), f"if {conjunction([item.condition])}:"]
-        sides = [[_unnoted(i, item.names) for i in side] for side in (item.holds, item.fails)]
-        holds, fails = (_side(side, refusals, printer) for side in sides)
-        return [*head, *holds, "else:", *fails]
+        comments = [line for comment in item.comments for line in note_lines(comment)]
+        holds, fails = (_side(side, refusals, printer) for side in item.sides)
+        return [*comments, f"if {conjunction([item.condition])}:", *holds, "else:", *fails]
     if isinstance(item, Require):
         return refusals.lines([item])
     if isinstance(item, Let) and isinstance(item.value, NearestPeriod):
         return _turn_lines(item, item.value, printer)
     assert isinstance(item, Let | Solve)
     return binding_lines(item, printer)
-
-
-def _unnoted(item: Item, names: Sequence[sp.Symbol]) -> Item:
-    """The statement without its note, if the note stands above the choice that binds the name."""
-    return replace(item, note="", turn_of="") if isinstance(item, Let) and item.name in names else item
 
 
 def _side(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:

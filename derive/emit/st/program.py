@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import groupby
 
 import sympy as sp
@@ -114,10 +114,11 @@ def _sides(choice: If, printer: StructuredText, refusal: Refusal, width: int) ->
     """
 
     def side(items: Sequence[Item]) -> list[str]:
-        return indented(list(_body(_unnoted(items, choice.names), printer, refusal, width - INSIDE)))
+        return indented(list(_body(items, printer, refusal, width - INSIDE)))
 
+    holds, fails = choice.sides
     yield from wrapped(f"IF {printer.print(choice.condition)} THEN", width)
-    yield from side(choice.holds)
+    yield from side(holds)
     match choice.fails:
         case (If() as other,) if not (note := _note_of(other, printer.names)) or note == _note_of(
             choice, printer.names
@@ -125,16 +126,11 @@ def _sides(choice: If, printer: StructuredText, refusal: Refusal, width: int) ->
             first, *others = _sides(other, printer, refusal, width - INSIDE)
             yield from (f"ELS{first}", *others)
         case _:
-            yield from ("ELSE", *side(choice.fails), "END_IF")
+            yield from ("ELSE", *side(fails), "END_IF")
 
 
 def _note_of(choice: If, names: Mapping[str, str]) -> str:
-    return _notes([s for s in choice.holds if isinstance(s, Let) and s.name in choice.names], names)
-
-
-def _unnoted(side: Sequence[Item], names: Sequence[sp.Symbol]) -> list[Item]:
-    """One side of a choice, without the notes that stand above it."""
-    return [replace(s, note="", turn_of="") if isinstance(s, Let) and s.name in names else s for s in side]
+    return "; ".join(dict.fromkeys(respelled(comment, names) for comment in choice.comments))
 
 
 Kind = tuple[Status | str | None, object, bool]

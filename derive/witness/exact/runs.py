@@ -18,7 +18,7 @@ from sympy.logic.boolalg import BooleanFalse, BooleanTrue
 
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
-from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Solve, Statement, binds
+from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Solve, Statement
 from derive.ir.symbols import Flag, is_condition
 from derive.witness.exact.field import PRIME, element, inverse, root, root_of_whole
 from derive.witness.exact.values import MINUS_ONE, ONE, ZERO, Angles, NotAlgebraic, Value, fraction
@@ -78,7 +78,7 @@ class Run:
     ) -> None:
         self.known, self._angles, self._signs, self._degree = known, angles, signs, degree
         self._input_of = input_of
-        self._sources: dict[str, Statement] = {n.name: s for s in program.body for n in binds(s)}
+        self._sources: dict[str, Statement] = {n.name: s for s in program.body for n in s.bound()}
         self._program = program
 
     def output(self, name: str) -> Value:

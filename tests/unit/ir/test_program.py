@@ -6,7 +6,7 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Select
-from derive.ir.program import Let, Output, Program, Require, Status, reads
+from derive.ir.program import Let, Output, Program, Require, Status
 from derive.ir.symbols import real, symbols_of
 
 A, B, X, Y = (real(n) for n in "abxy")
@@ -20,8 +20,8 @@ SAMPLE = Program(
 
 def test_what_a_statement_reads() -> None:
     """A statement reads the names in its expressions."""
-    assert reads(SAMPLE.body[0]) == {X}
-    assert reads(SAMPLE.body[1]) == {A, Y}
+    assert SAMPLE.body[0].reads() == {X}
+    assert SAMPLE.body[1].reads() == {A, Y}
 
 
 def test_a_degree_is_no_input() -> None:

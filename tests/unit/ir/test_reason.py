@@ -9,7 +9,7 @@ import sympy as sp
 
 from derive.ir.passes import hoist, normalise, untold, with_inputs
 from derive.ir.primitives import Select
-from derive.ir.program import Let, Output, Program, Require, Status, reads, rewritten
+from derive.ir.program import Let, Output, Program, Require, Status, rewritten
 from derive.ir.program import reason_expressions as told
 from derive.ir.reason import Kind, OtherTurn, Reason, Subject, Unit, Why, about, about_joint
 from derive.ir.symbols import real
@@ -69,7 +69,7 @@ def test_amounts_read_constants_that_are_hoisted() -> None:
 def test_an_amount_does_not_count_as_read() -> None:
     """It is computed where the program refuses, and nowhere else."""
     statement = refusing(Y)
-    assert reads(statement) == {X}
+    assert statement.reads() == {X}
     assert list(told(statement)) == [Y]
 
 
