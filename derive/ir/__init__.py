@@ -13,6 +13,7 @@ reason: why a program refuses: what is at fault, what is wrong with it, and how 
 roots: all roots of a trial along one joint, on arrays, found with `cells`
 statement: what all kinds of statements have in common
 symbols: every name that programs share, the signs of branches, and new names
+text: programs as plain text
 tree: a program as a structured tree, with choices of which only one side is run
 types: the types of values, the operations on each, and the check of a whole program
 verify: the verifier, which finds a broken program at once

@@ -8,14 +8,15 @@ else:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
+from types import MappingProxyType
 
 import sympy as sp
 
-from derive.ir.program import Let, Require, Statement
-from derive.ir.symbols import names_in
+from derive.ir.program import Let, Program, Require, Statement
+from derive.ir.symbols import names_in, replaced
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,29 @@ class If:
 
 
 Item = Statement | If
+
+
+@dataclass(frozen=True)
+class Tree:
+    """A program on its way to a language: its statements are in `items`, some of them on the sides of choices."""
+
+    program: Program
+    items: tuple[Item, ...]
+
+    @classmethod
+    def of(cls, program: Program) -> Tree:
+        """A program without choices that have sides."""
+        return cls(program, program.body)
+
+    @property
+    def wanted(self) -> list[sp.Basic]:
+        """The values of the outputs."""
+        return [output.value for output in self.program.outputs]
+
+    def with_items(self, items: tuple[Item, ...], values: Mapping[sp.Basic, sp.Basic] = MappingProxyType({})) -> Tree:
+        """The tree with other statements. values: what the outputs read in place of some names."""
+        outputs = tuple(replace(o, value=replaced(o.value, values)) for o in self.program.outputs)
+        return Tree(replace(self.program, outputs=outputs) if values else self.program, items)
 
 
 def _without_comment(item: Item, names: Sequence[sp.Symbol]) -> Item:

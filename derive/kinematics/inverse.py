@@ -34,7 +34,7 @@ from derive.ir.reason import Unit, Why, about, about_machine
 from derive.ir.symbols import HEADING, OFFSET, POSITION, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.kinematics.scan.guards import without_wrist
 from derive.kinematics.scan.machine_checks import MachineCheck, apart
-from derive.optimize.simplify import shorter
+from derive.lowering.passes import DERIVED, NOTHING, applied
 from derive.plate.passive import commanded, passive_statements, spelled
 from derive.solver.solve import Derivation, solve
 
@@ -223,7 +223,7 @@ def inverse_program(
     draft = normalise(name, body, outputs)
     groups = (POSITION, OFFSET, tuple(j.reference for j in mechanism.joints))
     checks = tuple(check for group in groups for check in finite([s for s in group if s in draft.inputs]))
-    return shorter(normalise(name, (*checks, *draft.body), draft.outputs))
+    return applied(DERIVED, normalise(name, (*checks, *draft.body), draft.outputs), NOTHING)
 
 
 def _in_plane(mechanism: Mechanism, name: str, value: sp.Expr) -> Require:

@@ -27,11 +27,6 @@ Pair = tuple[sp.Symbol, sp.Symbol]
 """Two names that are the sine and the cosine of an angle, or are proportional to them."""
 
 
-def plain_directions(program: Program) -> Program:
-    """The program in which the angles of axes are computed from such directions."""
-    return _unscaled(_added(program))
-
-
 @dataclass(frozen=True)
 class _Amount:
     """An angle as a signed sum of the angles of directions, and half a turn or not."""
@@ -48,7 +43,7 @@ class _Amount:
         return _Amount((*self.terms, *other.terms), self.is_opposite != other.is_opposite)
 
 
-def _added(program: Program) -> Program:
+def added(program: Program) -> Program:
     """The program with the angle of a rotated direction as a sum of angles, where this needs no more of them."""
     axes = {let.name: pair for let in program.lets() for pair in [direction_of(let)] if pair is not None}
     values = {let.name: let.value for let in program.lets()}
@@ -137,7 +132,7 @@ def products(sine: sp.Expr, cosine: sp.Expr) -> Iterator[tuple[bool, tuple[int, 
                 yield k < 0, (m1, (p1, c1)), (m2, (p2, c2))
 
 
-def _unscaled(program: Program) -> Program:
+def unscaled(program: Program) -> Program:
     """The program without divisions by a length, where only the direction of the quotients is needed."""
     for names, length in _divided(program):
         graded = _graded(program, names)

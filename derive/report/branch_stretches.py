@@ -19,7 +19,7 @@ from derive.ir.symbols import is_branch_sign, names_in
 from derive.ir.tree import If, Item, bound_in, expressions_in, given_to, read_in
 from derive.ir.types import Type, type_of
 from derive.kept import kept_by_identity
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 
 MOST_SIDES, MOST_KEPT = 16, 80
 """The most that branches can share: stretches, one for every side of their signs, and values."""

@@ -23,7 +23,7 @@ from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, So
 from derive.ir.tree import If, Item
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 from derive.report.branch_stretches import stretches_of
 
 _BINARY_FRACTIONS = (2, 4, 8, 16)

@@ -17,7 +17,7 @@ from derive.ir.program import Require, Status
 from derive.ir.symbols import REFUSAL, choices, suffixed, symbols_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 from derive.report.reasons import Reasons
 
 NAME = "find_every_branch"

@@ -18,7 +18,7 @@ from derive.emit.interface import names_in, read_by
 from derive.ir.program import Call, FindRoot, Solve
 from derive.ir.symbols import PLACE
 from derive.lowering.decided import decided
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 from derive.report.reasons import Reasons
 
 _PLACES = {name.name: f"place->{name.name}" for name in PLACE}

@@ -17,7 +17,7 @@ from derive.emit.javascript.refusal import Refusals
 from derive.ir.program import Call, FindRoot, Solve
 from derive.ir.symbols import PLACE, is_condition
 from derive.lowering.decided import decided
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 
 _PLACE = "({ tried, side, freed, freed_angle }) => "
 

@@ -17,7 +17,7 @@ from derive.equations.trigonometry import named_trigonometry
 from derive.ir.program import Output
 from derive.ir.symbols import HEADING, cosine, real, sine
 from derive.kinematics.kinematics import Kinematics, Margin
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 from derive.report.derived import Derived
 
 

@@ -23,7 +23,7 @@ from derive.ir.program import Let, Program
 from derive.ir.symbols import real
 from derive.kinematics.kinematics import Kinematics, Margin
 from derive.kinematics.margins.candidates import Factor
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 from derive.report.branch_stretches import stretches_of
 from derive.report.derived import Derived, derived_of
 from derive.report.reasons import workspace

@@ -19,14 +19,13 @@ from derive.emit.python.program import (
     step_lines,
     unpacked,
     values_of,
-    without_conversions,
 )
 from derive.ir.primitives import NearestPeriod
-from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve, Statement
+from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve
 from derive.ir.symbols import START_POSITION, START_ROTATION
-from derive.ir.tree import If, Item, grouped
+from derive.ir.tree import If, Item, Tree, grouped
 from derive.kinematics.kinematics import Kinematics
-from derive.lowering.scheduling import scheduled
+from derive.lowering.passes import ARRAYS, NOTHING, UNCONVERTED, applied
 
 OF_A_SEARCH = 120_000
 """The number of values for one row of a root scan, whose trials are computed together: measured."""
@@ -62,7 +61,7 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
     lines = [*unpacked(method), *(["k = self.constants"] if constants else [])]
     if not method.is_shared:
         lines.append(f"status = passed({', '.join(a.name for a in method.arguments)})")
-    program = without_conversions(method.program)
+    program = applied(UNCONVERTED, method.program, NOTHING)
     read = {s for statement in program.body for s in statement.reads() if s.name in constants}
     alike = fixed(program.body, read - {*START_POSITION, *START_ROTATION})
 
@@ -74,7 +73,7 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
             item, turns if isinstance(item, Let) and isinstance(item.value, NearestPeriod) else printer
         )
 
-    for item, same in grouped(scheduled(_refused_late(program.body), [o.value for o in program.outputs])):
+    for item, same in grouped(applied(ARRAYS, Tree.of(program), NOTHING).items):
         if isinstance(item, Iterate):
             lines += [*array_head(item, printer), *step_lines(item, printer), *array_end(item, printer)]
         elif isinstance(item, Call):
@@ -88,24 +87,6 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
         else:
             lines += bound(item)
     return lines
-
-
-def _refused_late(body: Iterable[Statement]) -> list[Statement]:
-    """The statements with the conditions moved behind the values.
-
-    All rows are computed in any case, and values that stand together can share a choice. The first conditions check the
-    inputs and stay in front. No condition moves across an iteration, a search or a call: these skip refused rows.
-    """
-    found: list[Statement] = []
-    waiting: list[Statement] = []
-    for statement in body:
-        if isinstance(statement, Require) and not all(isinstance(s, Require) for s in found):
-            waiting.append(statement)
-            continue
-        if not statement.is_straight:
-            found, waiting = [*found, *waiting], []
-        found.append(statement)
-    return [*found, *waiting]
 
 
 def values_of_a_row(kin: Kinematics) -> int:

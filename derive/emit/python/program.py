@@ -21,13 +21,10 @@ from derive.ir.program import (
     Program,
     Require,
     Solve,
-    rewritten,
 )
-from derive.ir.symbols import replaced
 from derive.ir.tree import If, Item, grouped
-from derive.ir.verify import verify
 from derive.lowering.decided import decided
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import NOTHING, UNCONVERTED, applied, structured
 
 _SCALAR, _MODULO_TURNS = ScalarPrinter(), ScalarPrinter(modulo_turns=True)
 
@@ -80,7 +77,7 @@ def scalar_body(method: Method, refusals: Refusals = PLAIN) -> list[str]:
 
 def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """The statements of a program on plain numbers."""
-    return item_lines(structured(without_conversions(program)), refusals, printer)
+    return item_lines(structured(applied(UNCONVERTED, program, NOTHING)), refusals, printer)
 
 
 def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:
@@ -135,17 +132,6 @@ def _turn_lines(let: Let, value: NearestPeriod, printer: ScalarPrinter) -> list[
 def has_search(program: Program) -> bool:
     """Whether a program searches for a root."""
     return any(isinstance(s, FindRoot) for s in program.body)
-
-
-def without_conversions(program: Program) -> Program:
-    """The program without conversions of whole numbers: where they multiply, Python converts them by itself."""
-    own = {
-        let.name: let.value for let in program.lets() if isinstance(let.value, ToReal) and let.value.args[0].is_Symbol
-    }
-    others = (s for s in program.body if not (isinstance(s, Let) and s.name in own))
-    body = [rewritten(s, lambda e: replaced(e, own)) for s in others]
-    outputs = tuple(replace(o, value=replaced(o.value, own)) for o in program.outputs)
-    return verify(replace(program, body=tuple(body), outputs=outputs)) if own else program
 
 
 def binding_lines(statement: Let | Solve, printer: ScalarPrinter) -> list[str]:

@@ -23,7 +23,7 @@ from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, So
 from derive.ir.tree import If, Item, bound_in
 from derive.ir.types import type_of
 from derive.lowering.decided import decided
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 
 _SHORT = 72
 """The most columns of a selection that stays on one line."""

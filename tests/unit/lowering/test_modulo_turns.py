@@ -10,6 +10,7 @@ from derive.ir.primitives import Atan2, NearestPeriod, Root, ToReal, Wrap
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import Sign, count, real
 from derive.lowering.lower import lowered
+from derive.lowering.passes import STRAIGHT_LINE
 from derive.lowering.unrolling import unroll
 from derive.report.cost import cost_of
 from tests.unit.answers import same, values
@@ -25,7 +26,7 @@ def of(*lets: Let, outputs: tuple[sp.Symbol, ...]) -> Program:
 
 
 def shorter(program: Program, constants: str = "") -> Program:
-    (found,), _ = lowered([program], tuple(constants), modulo_turns=True, inverts=False)
+    (found,), _ = lowered([program], tuple(constants), STRAIGHT_LINE)
     return found
 
 

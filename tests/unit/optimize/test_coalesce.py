@@ -45,15 +45,6 @@ def test_a_branch_uses_the_names_of_the_one_before() -> None:
     ]  # fmt: skip
 
 
-def test_what_is_needed_at_the_same_time_keeps_its_words() -> None:
-    """Values that are needed at the same time keep different names."""
-    body = (Let(P, Root(X) + ELBOW.symbol), Let(Q, P * ARM.symbol))
-    program = unrolled(*body, outputs={"o": Q + P})
-    wanted = [o.value for o in program.outputs]
-    _, names = coalesced(scheduled(program.body, wanted), wanted, SIGNS)
-    assert {names[n].name for n in names if n.name.startswith("p_")} == {"p_down", "p_up"}
-
-
 def test_words_behind_a_name() -> None:
     """A name is split into the neutral name and the words of its branches."""
     assert without_words("axis_a1_front_up", SIGNS) == ("axis_a1", ("front", "up"))

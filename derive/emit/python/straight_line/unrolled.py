@@ -28,21 +28,15 @@ from derive.emit.python.program import (
     item_lines,
     let_lines,
     unpacked,
-    without_conversions,
 )
 from derive.emit.python.refusal import Refusals, status_of
 from derive.emit.python.straight_line.finish import Function, finish
 from derive.ir.passes import untold
 from derive.ir.program import Let, Program, Status
-from derive.ir.symbols import REFUSAL, choices, replaced, suffixed, symbols_of
-from derive.ir.tree import Item
+from derive.ir.symbols import REFUSAL, Sign, choices, replaced, suffixed, symbols_of
+from derive.ir.tree import Item, Tree
 from derive.kinematics.kinematics import Kinematics
-from derive.lowering.scheduling import scheduled
-from derive.optimize.coalesce import coalesced
-from derive.optimize.guards import guarded
-from derive.optimize.inline import inlined, squares_where_read
-from derive.optimize.joining import joined
-from derive.optimize.without_periods import without_chosen_turns
+from derive.lowering.passes import ANY_TURN, NOTHING, UNCONVERTED, WITHOUT_SQUARES, WRITTEN_SHORT, Given, applied
 
 NO_OFFSETS = "no_offsets"
 """Whether all axes have their zero where the joints have it, so that no offset is added."""
@@ -113,7 +107,7 @@ def unrolled(kin: Kinematics) -> Unrolled:
 def trusted_branch(kin: Kinematics) -> Function:
     """The method for trusted input of a machine without branches that never loses digits."""
     kin = replace(kin, branch=untold(kin.branch))
-    method = _single(kin, without_chosen_turns(trusted(kin)))
+    method = _single(kin, applied(ANY_TURN, trusted(kin), NOTHING))
     written = _Written.of(method, kin.setup.lets())
     values = list(written.values.values())
     lines = [*constant_lines(written.method), *item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)]
@@ -122,7 +116,7 @@ def trusted_branch(kin: Kinematics) -> Function:
 
 def _methods(kin: Kinematics, found: StraightLines) -> tuple[Method, Method]:
     text = "Every slot, the axes in some turn, of input that is trusted."
-    every, one = map(squares_where_read, (found.every, found.one))
+    every, one = (applied(WITHOUT_SQUARES, program, NOTHING) for program in (found.every, found.one))
     return (
         Method("branches", text, every, (_FRAME, _optional(kin), _WHERE_REFUSED), "tuple[Any, ...]", ()),
         _single(kin, one),
@@ -158,10 +152,9 @@ def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Functi
     """All branches, statements one branch after the other."""
     count = 2 ** len(kin.branches)
     refusals = _refusals(lambda status: repeated(f"{_REFUSED}[{status_of(status)}]", count))
-    written = _Written.of(method, known)
-    items, shorter = coalesced(written.items, list(written.values.values()), signs(kin))
-    values = {name: replaced(value, dict(shorter)) for name, value in written.values.items()}
-    return written.function([*item_lines(items, refusals, _DIRECTIONS), f"return {_slots(kin, values)}"])
+    written = _Written.of(method, known, signs(kin))
+    lines = item_lines(written.items, refusals, _DIRECTIONS)
+    return written.function([*lines, f"return {_slots(kin, written.values)}"])
 
 
 def _direction(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
@@ -190,13 +183,11 @@ class _Written:
     """The outputs."""
 
     @classmethod
-    def of(cls, method: Method, known: Sequence[Let]) -> _Written:
-        """known: the bindings of the constants that it reads."""
-        method = replace(method, program=without_conversions(method.program))
-        wanted = [o.value for o in method.program.outputs]
-        items = joined(scheduled(guarded(method.program.body, known), wanted), wanted)
-        items, values = inlined(items, wanted)
-        return cls(method, items, {o.name: replaced(o.value, values) for o in method.program.outputs})
+    def of(cls, method: Method, known: Sequence[Let], signs: Sequence[Sign] = ()) -> _Written:
+        """known: the bindings of the constants that it reads; signs: those of the branches that it holds."""
+        method = replace(method, program=applied(UNCONVERTED, method.program, NOTHING))
+        tree = applied(WRITTEN_SHORT, Tree.of(method.program), Given(known=tuple(known), signs=tuple(signs)))
+        return cls(method, tree.items, {o.name: o.value for o in tree.program.outputs})
 
     def function(self, body: list[str]) -> Function:
         """The function with this body."""
