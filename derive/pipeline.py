@@ -31,17 +31,11 @@ from derive.kinematics.kinematics import Evidence, Kinematics
 PROCESSES = 2
 WRITTEN = (python.name, StructuredTextFiles.name)
 """The languages that are written unless others are asked for."""
-LANGUAGES = (*WRITTEN, javascript.name, c.name, linuxcnc.name)
-_LANGUAGES = {
-    python.name: "Python", StructuredTextFiles.name: "Structured Text", javascript.name: "JavaScript", c.name: "C",
-    linuxcnc.name: "LinuxCNC",
-}  # fmt: skip
-_BOUNDS = {
-    StructuredTextFiles.name: "no block: it has {axes} axes, and SoftMotion knows six",
-    c.name: f"no C: its calls hold {c.MOST_AXES} axes and {c.MOST_BRANCHES} branches",
-    linuxcnc.name: f"no module for LinuxCNC: it has {{axes}} axes, a pose there 1 to {linuxcnc.MOST_AXES}, or no C",
+_OTHERS: tuple[Language, ...] = (javascript, c, linuxcnc)
+LANGUAGES = (*WRITTEN, *(language.name for language in _OTHERS))
+_TITLES = {python.name: python.title, StructuredTextFiles.name: StructuredTextFiles.title} | {
+    language.name: language.title for language in _OTHERS
 }
-"""Why a language does not hold a machine."""
 Told = Callable[[str, str], None]
 """What is told about a stage: its name, and its result, which is empty at its begin."""
 
@@ -71,7 +65,7 @@ class Built:
         wanted: their names; without one, those that are always written.
         """
         parts = ((name, part) for name, part in self.parts.items() if name in (wanted or WRITTEN))
-        return tuple(f"{_LANGUAGES.get(name, name)}: {n}" for name, part in parts for n in part["notes"])
+        return tuple(f"{_TITLES[name]}: {n}" for name, part in parts for n in part["notes"])
 
     def as_plain(self) -> dict[str, Any]:
         """What JSON can hold."""
@@ -211,9 +205,7 @@ def languages(
         every: tuple[Language, ...] = (
             python if package == python.PACKAGE else NamedPackage(package),
             StructuredTextFiles(profile),
-            javascript,
-            c,
-            linuxcnc,
+            *_OTHERS,
         )
     except ValueError as problem:
         raise GenerationError(str(problem)) from None
@@ -222,9 +214,9 @@ def languages(
 
 def unwritten(built: Built, outputs: Sequence[Language], mechanism: Mechanism) -> Iterator[str]:
     """Why a language that is asked for does not have this machine, a sentence each."""
-    for name in (language.name for language in outputs):
-        if name not in built.parts:
-            yield _BOUNDS[name].format(axes=len(mechanism.joints))
+    for language in outputs:
+        if language.name not in built.parts:
+            yield language.bound.format(axes=len(mechanism.joints))
 
 
 def files_of(

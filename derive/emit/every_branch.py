@@ -13,8 +13,7 @@ from derive.ir.symbols import Sign, branch_sign, symbols_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.lost_digits.doubts import without_meeting
-from derive.lowering.lower import lowered
-from derive.lowering.passes import ANY_TURN, NOTHING, STRAIGHT_LINE, TRUSTED, Given, applied
+from derive.lowering.passes import ANY_TURN, NOTHING, STRAIGHT_LINE, TRUSTED, Given, applied, lowered
 from derive.lowering.unrolling import is_straight
 from derive.optimize.without_periods import turns_that_count
 

@@ -38,6 +38,14 @@ class Language(Protocol):
     def name(self) -> str:
         """The folder below `generated/`, `templates/` and `runtime/`."""
 
+    @property
+    def title(self) -> str:
+        """The name of the language in a message."""
+
+    @property
+    def bound(self) -> str:
+        """Why `part` has nothing of a machine with `{axes}` axes; empty if it holds every machine."""
+
     def part(self, kinematics: Kinematics) -> Part | None:
         """The texts about one mechanism, which do not depend on the others. None where the language cannot express the
         mechanism.

@@ -22,7 +22,7 @@ import sympy as sp
 from sympy.core.relational import Relational
 
 from derive.ir.constants import DEGREE
-from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
+from derive.ir.primitives import PRIMITIVES, Atan2, NearestOnArc, NearestPeriod, Select, ToReal, Wrap
 from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, Statement
 from derive.ir.symbols import Flag, is_count, is_decided, names_in
 
@@ -71,8 +71,8 @@ def _type_of(value: sp.Basic, angles: frozenset[tuple[sp.Symbol, Type]]) -> Type
         return Type.WRITTEN if value.is_Integer else Type.REAL
     if is_decided(value):
         return Type.BOOL
-    rule = next((rule for kind, rule in _RULES.items() if isinstance(value, kind)), None)
-    if rule is None:
+    rule = next((rule for kind, rule in _RULES.items() if isinstance(value, kind)), _reals)
+    if rule is _reals and not isinstance(value, PRIMITIVES):
         raise IllTypedError(f"{type(value).__name__} is not a primitive")
     return rule(value, [type_of(part, known) for part in value.args])
 
@@ -284,7 +284,6 @@ _RULES: dict[type[sp.Basic], Callable[[sp.Basic, Sequence[Type]], Type]] = {
     sp.Abs: _numbers,
     sp.sin: _of_angle,
     sp.cos: _of_angle,
-    Root: _reals,
     Atan2: _direction,
     Wrap: _of_angle,
     NearestPeriod: _period,
@@ -296,4 +295,5 @@ _RULES: dict[type[sp.Basic], Callable[[sp.Basic, Sequence[Type]], Type]] = {
     sp.Or: _logic,
     sp.Not: _opposite,
 }
-"""For each operation, the function from the types of its parts to the type of its result."""
+"""For each operation, the function from the types of its parts to the type of its result; any other primitive makes a
+Real of Reals."""

@@ -17,8 +17,9 @@ gives the same answers. `tests/unit/passes` has a folder for each, with programs
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import Generic, NamedTuple, TypeVar
 
 import sympy as sp
@@ -29,15 +30,17 @@ from derive.ir.symbols import Sign
 from derive.ir.tree import Item, Tree
 from derive.kept import kept_by_identity
 from derive.lowering.coefficients import collected
+from derive.lowering.cutting import cut
 from derive.lowering.decided import decided
-from derive.lowering.draft import Draft, changed, values_of
+from derive.lowering.draft import Draft, Effect, Reader, changed, values_of
 from derive.lowering.factoring import Dividing, Factoring
-from derive.lowering.hoisting import Constant, Gathering
+from derive.lowering.hoisting import Constant, Gathering, hoisted
 from derive.lowering.opening import opened
 from derive.lowering.scheduling import refused_late, scheduled, together, with_reasons_on_sides
 from derive.lowering.sharing import Sharing
 from derive.lowering.symmetry import Mirrored, Symmetry
 from derive.lowering.unrolling import unrolled
+from derive.lowering.writing import written
 from derive.optimize.angle_addition import with_added_angles
 from derive.optimize.coalesce import coalesced
 from derive.optimize.directions import added, unscaled
@@ -187,3 +190,35 @@ def _coalesced(tree: Tree, signs: Sequence[Sign]) -> Tree:
 def structured(program: Program) -> tuple[Item, ...]:
     """A program for a language that returns at the first refusal, and executes only one side of a choice."""
     return applied(SIDES, Tree.of(program), NOTHING).items
+
+
+def lowered(
+    programs: Sequence[Program],
+    constants: Collection[str],
+    passes: OnDrafts = EVERY,
+    *,
+    branches: Mapping[str, tuple[Sign, ...]] = MappingProxyType({}),
+    known: Iterable[Let] = (),
+) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
+    """The programs, and the bindings of their constants. A program that others call comes before them.
+
+    branches: for the name of a program, the signs whose branches are unrolled; known: the bindings of constants that
+    are computed from others.
+    """
+    reader = Reader()
+    graph, constant = reader.graph, Constant(constants)
+    given = dict(reader.constant(let) for let in known)
+    drafts = [reader.draft(p) for p in programs]
+    shared = Shared(graph, constant, Gathering(graph, constant), branches)
+    for stage in passes.stages:
+        drafts = [applied(stage, draft, shared) for draft in drafts]
+    names, lets = hoisted(drafts, constant, constants, given)
+    taken = {*constants, *(let.name.name for let in lets)}
+    done: dict[str, Program] = {}
+    for draft in drafts:
+        draft.items[:] = [
+            replace(i, statement=i.statement.calling(done)) if isinstance(i, Effect) else i for i in draft.items
+        ]
+        short = cut(draft, graph, names)
+        done[draft.program.name] = written(short, names, taken, modulo_turns=passes.modulo_turns)
+    return tuple(done.values()), lets

@@ -25,8 +25,7 @@ from derive.ir.symbols import COORDINATE_NAMES, REFUSAL, ROTATION_ENTRIES, branc
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.lost_digits.doubts import without_meeting
-from derive.lowering.lower import lowered
-from derive.lowering.passes import ANY_TURN, LANES, REGULAR, SPECIALISED, Given, applied
+from derive.lowering.passes import ANY_TURN, LANES, REGULAR, SPECIALISED, Given, applied, lowered
 
 ONE, EVERY = "regular", "regular_all"
 """The ends of the names of the functions: for the branch that the signs choose, and for all branches."""

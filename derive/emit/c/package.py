@@ -37,8 +37,9 @@ from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import NO_MEANING, reasons_of, reasons_of_rotation
 
-name = "c"
+name, title = "c", "C"
 MOST_AXES, MOST_BRANCHES, MOST_DIRECTIONS, MOST_LISTED = 24, 12, 6, 10
+bound = f"no C: its calls hold {MOST_AXES} axes and {MOST_BRANCHES} branches"
 _WRITTEN = ("softkin_constants.h", "softkin_rotation.h")
 """The files beside the runtime that hold constants and a program."""
 _TAKEN = frozenset(

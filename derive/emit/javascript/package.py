@@ -28,7 +28,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 from derive.report.reasons import reasons_of, reasons_of_rotation
 
-name = "javascript"
+name, title, bound = "javascript", "JavaScript", ""
 _VERSION = "0.1.0"
 _AROUND = ("index.js", "package.json")
 _WRITTEN = ("softkin/constants.js", "softkin/rotation.js")

@@ -20,7 +20,7 @@ from derive.emit.python.program import (
     unpacked,
     values_of,
 )
-from derive.ir.primitives import NearestPeriod
+from derive.ir.primitives import FUNCTIONS, KEYS, NearestPeriod
 from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve
 from derive.ir.symbols import START_POSITION, START_ROTATION
 from derive.ir.tree import If, Item, Tree, grouped
@@ -29,11 +29,10 @@ from derive.lowering.passes import ARRAYS, NOTHING, UNCONVERTED, applied
 
 OF_A_SEARCH = 120_000
 """The number of values for one row of a root scan, whose trials are computed together: measured."""
-CALLED = frozenset((
-    "DEGREE", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc",
-    "nearest_period", "opposite", "passed", "reasonable", "require", "root", "run_where", "select", "settled", "sin",
-    "solve", "sqrt",
-))  # fmt: skip
+CALLED = frozenset(ArrayPrinter.function(KEYS[one]) for one in FUNCTIONS) | {
+    "DEGREE", "advanced", "degrees", "elsewhere", "initial", "opposite", "passed", "reasonable", "require", "run_where",
+    "settled", "solve", "sqrt",
+}  # fmt: skip
 """The functions that programs on arrays call."""
 TYPES = frozenset((
     "Codes", "Matrix", "Real", "Reals", "Rotation", "Signs", "Truth", "Turns", "Values", "Vector", "Whole",

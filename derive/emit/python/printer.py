@@ -9,13 +9,14 @@ from keyword import iskeyword
 import sympy as sp
 
 from derive.emit.conditions import sized
-from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, ExpressionPrinter
+from derive.emit.expression import ATOM, COMPARE, ExpressionPrinter
 from derive.ir.constants import DEGREE
-from derive.ir.primitives import Atan2, Root, Select
+from derive.ir.primitives import FUNCTIONS, KEYS, Atan2, Root, Select
 from derive.optimize.guards import PositiveRoot
 from derive.optimize.inline import Grouped
 
-TAKEN = frozenset(FUNCTION_KEYS.values()) | {
+_PRIMITIVES = frozenset(KEYS[one] for one in FUNCTIONS)
+TAKEN = _PRIMITIVES | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
     "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "no_offsets", "opposite", "holds",
@@ -43,7 +44,7 @@ def literal(value: float) -> str:
 
 def primitives_in(lines: Iterable[str]) -> list[str]:
     """The primitives and constants that statements use, in alphabetical order."""
-    known = {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "reasonable", "arctan2", "solve", "sqrt"} - {"abs", "select"}
+    known = _PRIMITIVES - {"abs", "select"} | {"DEGREE", "RADIAN", "reasonable", "arctan2", "solve", "sqrt"}
     return sorted(words(lines) & known)
 
 

@@ -55,6 +55,8 @@ class StructuredTextFiles:
 
     profile: str | None = None
     name: ClassVar[str] = _FOLDER
+    title: ClassVar[str] = "Structured Text"
+    bound: ClassVar[str] = "no block: it has {axes} axes, and SoftMotion knows six"
 
     def __post_init__(self) -> None:
         """Refuse a profile that the contract does not have, before anything is derived."""

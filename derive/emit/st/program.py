@@ -19,7 +19,7 @@ from derive.emit.st.shared import OUTCOME, call_lines
 from derive.emit.st.stretches import SIDE, has_sides, stretch_lines
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Root, Select
-from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, Status
+from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Status
 from derive.ir.tree import If, Item, bound_in
 from derive.ir.types import type_of
 from derive.lowering.decided import decided
@@ -143,11 +143,11 @@ def _kind(statement: Item, printer: StructuredText) -> Kind:
     separate, because AND evaluates both sides, and what follows is defined only where these tests hold. Selections by
     one condition become one IF.
     """
-    if isinstance(statement, Solve | Iterate | Call | FindRoot | If):
-        return None, statement, False
     if isinstance(statement, Require):
         subject = None if statement.reason is None else statement.reason.subject
         return statement.otherwise, subject, all(map(is_size_test, sp.And.make_args(statement.condition)))
+    if not isinstance(statement, Let):
+        return None, statement, False
     if isinstance(statement.value, Select) and limits_of(statement.value) is None:
         return printer.print(statement.value.args[0]), "", False
     return None, "", False

@@ -20,18 +20,14 @@ import {
 import { MEANINGS, Status, TIE } from "./constants.js";
 import { bytesOf, numbersOf, parametersOf, poseOf, refuseParameters } from "./input.js";
 import { constantsOf } from "./limits.js";
-import {
-  DEGREE, RADIAN, angleOf, isReasonable, nearestOnArc, nearestPeriod, solveLinear, squareRoot,
-} from "./numbers.js";
+import { isReasonable } from "./numbers.js";
 import { Refusal, inWords, refuse } from "./refusal.js";
 import { findRotation } from "./rotation.js";
 import { everyRoot, nearestRoot } from "./roots.js";
 import { sceneOf } from "./scene.js";
 
-export {
-  DEGREE, MEANINGS, RADIAN, Refusal, Status, angleOf, everyRoot, inWords, isReasonable, nearestOnArc, nearestPeriod,
-  nearestRoot, refuse, refuseParameters, solveLinear, squareRoot, turnInside,
-};
+export * from "./numbers.js";
+export { MEANINGS, Refusal, Status, everyRoot, inWords, nearestRoot, refuse, refuseParameters, turnInside };
 
 /** Plain data that nobody can change. */
 export function freeze(data) {

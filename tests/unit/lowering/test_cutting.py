@@ -13,7 +13,7 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import Names, real
-from derive.lowering.lower import lowered
+from derive.lowering.passes import lowered
 
 INPUTS = [real(f"measured_length_{i}") for i in range(150)]
 RESULT = real("result")

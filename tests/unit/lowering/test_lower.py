@@ -13,7 +13,7 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Status
 from derive.ir.symbols import real
-from derive.lowering.lower import lowered
+from derive.lowering.passes import lowered
 from derive.report.cost import cost_of
 
 A, B, C, D, F, G, H, X, Y, Z = (real(n) for n in ("a", "b", "c", "d", "f", "g", "h", "x", "y", "z"))

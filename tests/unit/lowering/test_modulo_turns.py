@@ -9,8 +9,7 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, ToReal, Wrap
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import Sign, count, real
-from derive.lowering.lower import lowered
-from derive.lowering.passes import STRAIGHT_LINE
+from derive.lowering.passes import STRAIGHT_LINE, lowered
 from derive.lowering.unrolling import unroll
 from derive.report.cost import cost_of
 from tests.unit.answers import same, values

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from derive.ir.program import Let
-from derive.lowering.lower import lowered
+from derive.lowering.passes import lowered
 from tests.unit.lowering.test_lower import A, B, F, G, H, X, Y, lets_of, program
 
 FIRST, SECOND, THIRD = Let(F, X - A), Let(G, B * Y + A), Let(H, X - G)

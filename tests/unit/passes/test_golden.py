@@ -18,8 +18,7 @@ from derive.ir.tree import Tree
 from derive.lowering import passes
 from derive.lowering.draft import Reader
 from derive.lowering.hoisting import Constant, Gathering
-from derive.lowering.lower import lowered
-from derive.lowering.passes import Given, OnDrafts, Pass, Shared
+from derive.lowering.passes import Given, OnDrafts, Pass, Shared, lowered
 from derive.lowering.writing import written
 from tests.unit.answers import same
 from tests.unit.passes.reading import BECOMES, Case
