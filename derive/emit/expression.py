@@ -48,13 +48,13 @@ class ExpressionPrinter(ABC):
     radian: ClassVar[str] = "RADIAN"
     """The degrees of a radian, by which the language multiplies; empty if it divides by `DEGREE` instead."""
 
-    @abstractmethod
     def name(self, symbol: sp.Symbol) -> str:
         """The spelling of a symbol."""
+        return str(symbol.name)
 
-    @abstractmethod
     def number(self, value: float) -> str:
         """A real literal."""
+        return repr(value)
 
     @abstractmethod
     def choice(self, condition: str, first: str, second: str) -> str:
@@ -75,9 +75,9 @@ class ExpressionPrinter(ABC):
         """The larger of two printed numbers, the second where one is NaN; "" where it is written as a choice."""
         return ""
 
-    @abstractmethod
     def logic(self, word: str) -> str:
         """The spelling of "and", "or", "not", "true", "false"."""
+        return word
 
     def comparison(self, operator: str) -> str:
         """The spelling of a comparison, given as Python has it."""
