@@ -36,8 +36,8 @@ LANGUAGES = (*WRITTEN, *(language.name for language in _OTHERS))
 _TITLES = {python.name: python.title, StructuredTextFiles.name: StructuredTextFiles.title} | {
     language.name: language.title for language in _OTHERS
 }
-Told = Callable[[str, str], None]
-"""What is told about a stage: its name, and its result, which is empty at its begin."""
+Report = Callable[[str, str], None]
+"""A listener for stages: it gets the name of a stage, and its result, which is empty when the stage begins."""
 
 
 @dataclass(frozen=True)
@@ -136,23 +136,23 @@ def _load() -> None:
 
 
 def derive_one(
-    mechanism: Mechanism, profile: str | None = None, told: Told = _nobody, wanted: Sequence[str] = LANGUAGES
+    mechanism: Mechanism, profile: str | None = None, report: Report = _nobody, wanted: Sequence[str] = LANGUAGES
 ) -> Built:
     """Derive one mechanism, measure it, draw it, and write it in the languages that are wanted.
 
-    told: called at the begin of each of these stages with its name and "", at its end with its name and the result.
+    report: called at the begin of each of these stages with its name and "", at its end with its name and the result.
     """
     # Not loaded where nothing is derived: CasADi and matplotlib take longer to start than the rest of such a run.
     start = time.perf_counter()
-    whole = derive_and_measure(mechanism, told)
+    whole = derive_and_measure(mechanism, report)
     outputs = languages(profile, wanted=wanted)
     drawn: Mapping[str, bytes] = {}
     if StructuredTextFiles.name in wanted:  # the pictures stand beside the blocks
-        told("draw", "")
+        report("draw", "")
         if len(mechanism.joints) <= most_axes(profile):
             drawn, undrawn = _pictures(whole)
             whole = replace(whole, undrawn=undrawn)
-        told("draw", whole.undrawn or ", ".join(drawn) or "nothing: it has no block")
+        report("draw", whole.undrawn or ", ".join(drawn) or "nothing: it has no block")
     found = ((language.name, language.part(whole)) for language in outputs)
     parts = {name: part for name, part in found if part is not None}
     pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in drawn.items()}
@@ -160,7 +160,7 @@ def derive_one(
     return Built(_derived(whole), measured, seconds, parts, pictures, whole.evidence, whole.undrawn)
 
 
-def derive_and_measure(mechanism: Mechanism, told: Told = _nobody) -> Kinematics:
+def derive_and_measure(mechanism: Mechanism, report: Report = _nobody) -> Kinematics:
     """Derive one mechanism and measure it. Raises what `faults.UNFIT` lists, where one of them fails."""
     from derive.kinematics.build import build
     from derive.kinematics.refusals.no_pose import why_no_pose
@@ -168,16 +168,16 @@ def derive_and_measure(mechanism: Mechanism, told: Told = _nobody) -> Kinematics
     from derive.report.self_test import self_test
     from derive.witness import Disagreement, NoPose, witness
 
-    told("derive", "")
+    report("derive", "")
     derived = with_meanings(build(mechanism))
-    told("derive", _derived(derived).removeprefix(mechanism.name).strip())
-    told("measure", "")
+    report("derive", _derived(derived).removeprefix(mechanism.name).strip())
+    report("measure", "")
     try:
         evidence = witness(derived, mechanism)
     except NoPose:
         raise Disagreement(f"{mechanism.name}: {why_no_pose(derived.mechanism)}") from None
     whole = replace(derived, evidence=evidence)
-    told("measure", _measured(whole))
+    report("measure", _measured(whole))
     return replace(whole, self_test=self_test(derived))
 
 

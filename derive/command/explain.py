@@ -31,7 +31,7 @@ _LONGEST = 160
 def explain(options: argparse.Namespace) -> int:
     """Print the derivation of every machine, or write its page; 2 where one of them cannot be derived."""
 
-    def told(path: Path, stages: Stages) -> None:
+    def explained(path: Path, stages: Stages) -> None:
         mechanism = load(path)
         if options.html:
             opened(written(path, mechanism, options.out, stages))
@@ -42,7 +42,7 @@ def explain(options: argparse.Namespace) -> int:
         except Exception as problem:
             raise error(path, problem) from None
 
-    return each(described(options.files), told, keep_going=True, with_trace=options.traceback)
+    return each(described(options.files), explained, keep_going=True, with_trace=options.traceback)
 
 
 def programs(mechanism: Mechanism) -> Iterator[str]:

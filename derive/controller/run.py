@@ -96,14 +96,14 @@ def _named(host: str) -> str:
 
 def _teller(say: Callable[[str], None]) -> Callable[[Condition], None]:
     """A function that reports each new condition once, so that a lasting loss is not reported at every try."""
-    said: list[str] = []
+    printed: list[str] = []
 
     def hear(condition: Condition) -> None:
         text = condition.status.value + (f": {condition.message}" if condition.message else "")
         is_another_try = condition.status is Status.CONNECTING and bool(condition.message)
-        if not is_another_try and said[-1:] != [text]:
-            said.append(text)
-            del said[:-1]
+        if not is_another_try and printed[-1:] != [text]:
+            printed.append(text)
+            del printed[:-1]
             say(text)
 
     return hear

@@ -239,9 +239,9 @@ class Mechanism:
         if not names:
             return self.notes
         them = "it" if len(names) == 1 else "them"
-        told = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} held"
+        held = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} held"
         return (
-            f"{told}: inverse kinematics leaves {them} where the reference has {them} (aRef in a block), and solves "
+            f"{held}: inverse kinematics leaves {them} where the reference has {them} (aRef in a block), and solves "
             "for the other axes. Margins tell how far these are from a singular pose; "
             "the Jacobian has a column for every axis.",
             *self.notes,

@@ -117,9 +117,9 @@ def _choices(machine: Machine, drawn: Pose, other: Machine | None) -> Iterator[C
     other byte is drawn in the other mode.
     """
     branches = machine.kinematics.mechanism.branches
-    told = [k for k, branch in enumerate(branches) if not branch.is_crossing]
-    found = _pairs(machine, drawn, told, machine)
-    missing = [k for k in told if k not in found]
+    shown_branches = [k for k, branch in enumerate(branches) if not branch.is_crossing]
+    found = _pairs(machine, drawn, shown_branches, machine)
+    missing = [k for k in shown_branches if k not in found]
     changed = {} if other is None or not missing else _pairs(machine, drawn, missing, other)
     for index, branch in enumerate(branches):
         scenes, is_first = (found | changed).get(index, (None, True))
@@ -127,11 +127,11 @@ def _choices(machine: Machine, drawn: Pose, other: Machine | None) -> Iterator[C
         yield Choice(branch.name, branch.names, scenes, modes if modes is None or is_first else modes[::-1])
 
 
-def _pairs(machine: Machine, drawn: Pose, told: list[int], other: Machine) -> dict[int, _Pair]:
+def _pairs(machine: Machine, drawn: Pose, shown_branches: list[int], other: Machine) -> dict[int, _Pair]:
     """Both bytes of these branches: a pose of the machine, and one of the other machine with the other byte."""
     found: dict[int, _Pair] = {}
     for axes in _candidates(machine, drawn):
-        missing = [k for k in told if k not in found]
+        missing = [k for k in shown_branches if k not in found]
         if missing and (pose := pose_at(machine, axes)) is not None:
             scene = cache(partial(scene_at, machine, pose))
             pairs = {k: _pair(scene, pose, k, other) for k in missing if pose.configuration[k] != 3}

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.ir.passes import untold
+from derive.ir.passes import without_reasons
 from derive.ir.program import Let, Program
 from derive.ir.symbols import Sign, branch_sign, symbols_of
 from derive.kept import kept_by_identity
@@ -47,7 +47,7 @@ def has_doubts(kin: Kinematics) -> bool:
 
 def without_doubts(kin: Kinematics) -> Kinematics:
     """The kinematics whose branch has no answer where digits may be lost, and refuses without a reason."""
-    return replace(kin, branch=untold(without_meeting(kin.derived_branch)))
+    return replace(kin, branch=without_reasons(without_meeting(kin.derived_branch)))
 
 
 def signs(kin: Kinematics) -> tuple[Sign, ...]:

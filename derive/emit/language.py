@@ -104,8 +104,8 @@ def runtime(language: str) -> dict[str, str]:
     found = {}
     for path in files_in(RUNTIME / language):
         place = path.relative_to(RUNTIME / language).as_posix()
-        told = _GENERATED.format(f"runtime/{language}/{place}")
-        first = f"{_COMMENTS[path.suffix].format(told)}\n" if path.suffix in _COMMENTS else ""
+        head = _GENERATED.format(f"runtime/{language}/{place}")
+        first = f"{_COMMENTS[path.suffix].format(head)}\n" if path.suffix in _COMMENTS else ""
         found[place] = first + path.read_text(encoding="utf-8")
     return found
 

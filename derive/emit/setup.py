@@ -75,4 +75,4 @@ def refused_inputs(require: Require, inputs: Inputs) -> tuple[str, list[str]]:
     """The sentence that refuses parameters, and their names in the language."""
     assert require.reason is not None
     read = {s.name for s in require.condition.free_symbols}
-    return inputs.told(require.reason.subject.name), [name for inner, name in inputs.names.items() if inner in read]
+    return inputs.reworded(require.reason.subject.name), [name for inner, name in inputs.names.items() if inner in read]

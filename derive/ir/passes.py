@@ -204,7 +204,7 @@ def _in_full(value: sp.Basic, bound: Container[sp.Symbol], values: Mapping[sp.Sy
 
 
 @kept_by_identity(200)
-def untold(program: Program) -> Program:
+def without_reasons(program: Program) -> Program:
     """The program for callers that get a status but no reason: nothing is computed for reasons."""
     if not any(next(reason_expressions(s), None) is not None for s in program.body):
         return program

@@ -57,14 +57,14 @@ from derive.solver.unsolved import Unsolved
 
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
-    told = almost_right_angles(mechanism)
+    warning = almost_right_angles(mechanism)
     try:
-        noted = replace(mechanism, notes=(*mechanism.notes, f"{told}.")) if told else mechanism
+        noted = replace(mechanism, notes=(*mechanism.notes, f"{warning}.")) if warning else mechanism
         found = with_free_names(noted, lambda further: replace(_built(prepared(noted, further)), further=dict(further)))
         return with_share(found)
     except (Unsolved, DescriptionError) as problem:
-        if told:
-            raise type(problem)(f"{problem}; {told}") from None
+        if warning:
+            raise type(problem)(f"{problem}; {warning}") from None
         raise
 
 

@@ -35,7 +35,7 @@ from derive.ir.symbols import HEADING, OFFSET, POSITION, ROTATION_ENTRIES, SCALE
 from derive.kinematics.scan.guards import without_wrist
 from derive.kinematics.scan.machine_checks import MachineCheck, apart
 from derive.lowering.passes import DERIVED, NOTHING, applied
-from derive.plate.passive import commanded, passive_statements, spelled
+from derive.plate.passive import commanded, passive_statements, renamed_in
 from derive.solver.solve import Derivation, solve
 
 
@@ -219,7 +219,7 @@ def inverse_program(
         if let.name not in resolved
     )
     outputs = [Output(j.axis.name, j.axis) for j in mechanism.joints]
-    body = spelled((*inverse.naming, *in_plane, *statements, *last, *axes, *of_axes), commanded(mechanism))
+    body = renamed_in((*inverse.naming, *in_plane, *statements, *last, *axes, *of_axes), commanded(mechanism))
     draft = normalise(name, body, outputs)
     groups = (POSITION, OFFSET, tuple(j.reference for j in mechanism.joints))
     checks = tuple(check for group in groups for check in finite([s for s in group if s in draft.inputs]))

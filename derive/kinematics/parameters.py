@@ -167,8 +167,8 @@ def _of_machine(
             body += window.ends
             outputs += window.outputs
     outputs += [Output(let.name.name, let.name) for let in numbers]
-    sized, constants = _size(mechanism, at_home)
-    body += sized
+    sizes, constants = _size(mechanism, at_home)
+    body += sizes
     outputs += constants
     if chooses_by_lengths(mechanism):
         body.append(Let(TIE_OF_LENGTHS, TIE_SHARE**2 * SCALE**2, "squared distances that differ by less are equal"))

@@ -32,7 +32,7 @@ Called = Callable[[Node], sp.Expr | None]
 """The name of a node, with a minus sign where it is that of the negative."""
 
 
-def said(value: Value, called: Called, reader: str) -> str:
+def name_for(value: Value, called: Called, reader: str) -> str:
     """A value in words; where there would be too many, its operation and the name of the first value that reads it.
 
     called: the names of nodes; reader: the name of the value that reads it, "" where none has a name.

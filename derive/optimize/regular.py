@@ -16,7 +16,7 @@ from collections.abc import Collection
 import sympy as sp
 
 from derive.ir.constants import EDGE
-from derive.ir.passes import normalise, untold
+from derive.ir.passes import normalise, without_reasons
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, ToReal
 from derive.ir.program import Let, Program, Require, Statement, Status
 from derive.ir.symbols import is_count, names_in
@@ -38,7 +38,7 @@ def regular(program: Program, constants: Collection[str]) -> Program | None:
     lets = {let.name: let for let in program.lets()}
     found = _needed(lets, wanted, own)
     body: list[Statement] = []
-    for statement in untold(program).body:
+    for statement in without_reasons(program).body:
         body += found.get(statement.name, ()) if isinstance(statement, Let) else (statement,)
     done = normalise(program.name, body, program.outputs)
     return done if all(map(_is_plain, done.lets())) else None

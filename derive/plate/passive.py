@@ -23,7 +23,7 @@ from derive.ir.primitives import Select
 from derive.ir.program import Let, Output, Require, Statement, rewritten
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, SCALE, cosine, real, sine
-from derive.plate.legs import NORMAL, moments, names, rotation_of, spins
+from derive.plate.legs import NORMAL, moments, names, rotation_axes, rotation_of
 from derive.solver.solve import Derivation, solve
 from derive.solver.unsolved import Unsolved
 
@@ -124,7 +124,7 @@ def guides_determinant(mechanism: Mechanism) -> sp.Expr:
     are divided by the platform's radius.
     """
     tool = rotation_of(mechanism)[:, 2]
-    about = dict(zip(spins(mechanism), tool[-len(spins(mechanism)) :, 0], strict=True))
+    about = dict(zip(rotation_axes(mechanism), tool[-len(rotation_axes(mechanism)) :, 0], strict=True))
     rows = []
     for plane in mechanism.fixed_guides:
         along = dict(zip(COORDINATE_NAMES, names(NORMAL, plane), strict=False))
@@ -178,7 +178,7 @@ def commanded(mechanism: Mechanism) -> dict[sp.Symbol, sp.Symbol]:
     return table | (dict(zip(_COMMANDED, ROTATION_ENTRIES, strict=True)) if turned else {})
 
 
-def spelled(statements: Iterable[Statement], table: Mapping[sp.Symbol, sp.Symbol]) -> tuple[Statement, ...]:
+def renamed_in(statements: Iterable[Statement], table: Mapping[sp.Symbol, sp.Symbol]) -> tuple[Statement, ...]:
     """The statements in which names are replaced, also those that they bind."""
     if not table:
         return tuple(statements)
@@ -199,4 +199,4 @@ def completed(
     table |= dict(zip(_COMMANDED, rotation, strict=False)) if "twist" in mechanism.passive else {}
     own = [s for s in passive_statements(mechanism) if not isinstance(s, Require)]
     table |= {name: real(f"completed_{name.name}") for s in own for name in s.bound()}
-    return spelled(own, table), tuple(table[c] for c in places), tuple(table[r] for r in turns)
+    return renamed_in(own, table), tuple(table[c] for c in places), tuple(table[r] for r in turns)

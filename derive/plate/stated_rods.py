@@ -52,9 +52,9 @@ def with_positive_lengths(mechanism: Mechanism) -> Mechanism:
     whose sign a branch of the description tells.
     """
     joints = {j.symbol for j in mechanism.joints}
-    told = {s for b in mechanism.branches if not b.is_crossing for s in b.indicator.free_symbols}
+    in_branches = {s for b in mechanism.branches if not b.is_crossing for s in b.indicator.free_symbols}
     read = [(rod.length, rod.length.free_symbols & joints) for rod in mechanism.rods]
-    own = [length for length, names in read if names and not names & told and length not in mechanism.positive]
+    own = [length for length, names in read if names and not names & in_branches and length not in mechanism.positive]
     return replace(mechanism, positive=(*mechanism.positive, *own)) if own else mechanism
 
 

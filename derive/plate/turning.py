@@ -88,8 +88,8 @@ def samples_near_home(
     signs: the signs of its steps. Raises `NoPoseAtHome` where none of the poses is possible.
     """
     known = (*platform_size(mechanism), *modes_at_home(mechanism, pose_at_home(mechanism)))
-    told = [Output(SCALE.name, SCALE), *mode_constants(mechanism)]
-    machine = {**machine, **run(normalise("size", known, told), machine)[0]}
+    sizes = [Output(SCALE.name, SCALE), *mode_constants(mechanism)]
+    machine = {**machine, **run(normalise("size", known, sizes), machine)[0]}
     rng = np.random.default_rng(seed)
     poses = poses_around_home(mechanism, machine, rng, (_AROUND, _TURNED), _SAMPLES)
     axes = [Let(let.name, let.value) for j in mechanism.joints for let in axis_lets(j)]

@@ -58,7 +58,7 @@ def stretches_of(program: Program) -> tuple[Stretch, ...]:
         if not all(type_of(name) in (Type.REAL, Type.ANGLE, Type.BOOL) for name in kept):
             is_shared, kept = False, ()
         found.insert(0, Stretch(tuple(group), tuple(s for s in signs if s in supported), kept, is_shared))
-        wanted |= read_in(group).union(*map(_told, group))
+        wanted |= read_in(group).union(*map(_read_by_reason, group))
     return tuple(_with_room(found))
 
 
@@ -85,7 +85,7 @@ def _groups(items: Sequence[Item], signs: Sequence[sp.Symbol]) -> list[tuple[fro
     place: dict[sp.Symbol, int] = {}
     groups: list[tuple[frozenset[sp.Symbol], list[Item]]] = []
     for item in items:
-        needed = given_to((item,)) | _told(item)
+        needed = given_to((item,)) | _read_by_reason(item)
         own = frozenset[sp.Symbol]().union(*(support.get(name, frozenset()) for name in needed))
         first = max((place[name] for name in needed if name in place), default=0)
         earlier = [k for k in range(first, len(groups)) if groups[k][0] == own]
@@ -102,7 +102,7 @@ def _groups(items: Sequence[Item], signs: Sequence[sp.Symbol]) -> list[tuple[fro
     return groups
 
 
-def _told(item: Item) -> set[sp.Symbol]:
+def _read_by_reason(item: Item) -> set[sp.Symbol]:
     """The names that the reason of a refusal reads."""
     return {s for value in reason_expressions(item) for s in names_in(value)} if isinstance(item, Require) else set()
 

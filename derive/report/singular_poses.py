@@ -26,7 +26,7 @@ from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, branc
 from derive.kinematics.reference_cases import Reals
 from derive.kinematics.sampling import sample_axes, size_of
 from derive.plate.legs import angles, by_angles
-from derive.plate.passive import commanded, spelled
+from derive.plate.passive import commanded, renamed_in
 from derive.plate.plate import platform_checks
 from derive.report.derived import Derived
 from derive.report.reference_calls import FRAME, Machine, are_inside
@@ -129,9 +129,9 @@ def _measured(machine: Machine, rows: Array) -> Array:
     size = size_of(kinematics.mechanism, machine.values)
     axes = {j.axis.name: rows[:, k] for k, j in enumerate(kinematics.mechanism.joints)}
     found, status = run(kinematics.singularity, {**machine.values, **axes})
-    told = [np.broadcast_to(found[m.factor], (len(rows),)) / (size if m.length else 1.0) for m in kinematics.margins]
+    scaled = [np.broadcast_to(found[m.factor], (len(rows),)) / (size if m.length else 1.0) for m in kinematics.margins]
     good = np.asarray(np.broadcast_to(status == Status.OK, (len(rows),)), dtype=bool) & are_inside(machine, axes)
-    return np.where(good, np.abs(np.stack(told)), np.nan)
+    return np.where(good, np.abs(np.stack(scaled)), np.nan)
 
 
 def _scales(machine: Machine) -> Array:
@@ -237,7 +237,7 @@ def _program_at_pose(derived: Derived) -> Program:
     lets = [let for factor in derived.factors for let in factor.lets]
     own = {s.name for s in statements if isinstance(s, Let)}
     axes = [let for j in mechanism.joints for let in axis_lets(j) if let.name not in own]
-    body = spelled((*statements, *platform_checks(mechanism, statements), *lets, *axes), commanded(mechanism))
+    body = renamed_in((*statements, *platform_checks(mechanism, statements), *lets, *axes), commanded(mechanism))
     kept = [s for s in body if not _is_far_from_type_2(s)]
     margins_told = [Output(f.name, f.lets[-1].name) for f in derived.factors]
     return normalise("margins", kept, [*margins_told, *(Output(j.axis.name, j.axis) for j in mechanism.joints)])

@@ -129,12 +129,12 @@ def _solved(
     good = np.asarray(np.broadcast_to(status == Status.OK, (count,)), dtype=bool)
     named = {**machine.values, **{j.axis.name: row for j, row in zip(joints, solution, strict=True)}}
     good = good & are_inside(machine, {j.axis.name: row for j, row in zip(joints, solution, strict=True)})
-    told = [m.name for m in kinematics.margins if m.length is None]
-    if not told:
+    names = [m.name for m in kinematics.margins if m.length is None]
+    if not names:
         return solution, good, np.where(good, 1.0, np.nan)
     there = {f"start_{n}": values[n] for n in FRAME} if kinematics.starts else {}
     margins, at = run(kinematics.singularity, named | there)
-    least = np.min(np.abs(np.stack([np.broadcast_to(margins[n], (count,)) for n in told])), axis=0)
+    least = np.min(np.abs(np.stack([np.broadcast_to(margins[n], (count,)) for n in names])), axis=0)
     has_margin = good & np.asarray(np.broadcast_to(at == Status.OK, (count,)), dtype=bool)
     return solution, good, np.where(has_margin, least, np.nan)
 

@@ -143,7 +143,7 @@ def _known(kin: Kinematics, module: str) -> dict[str, Any]:
         "counts": counts(kin),
         "slots": 2 ** len(kin.branches),
         "parameters": [
-            {"name": given.names[p.name], "meaning": harmless(_told(p.meaning, p.unit, in_words(p), p.default))}
+            {"name": given.names[p.name], "meaning": harmless(_described(p.meaning, p.unit, in_words(p), p.default))}
             for p in kin.parameters
         ],
         "constants": _members(made.constants),
@@ -166,7 +166,7 @@ def _function(kin: Kinematics, function: Function, machine: str, stored: dict[st
     return [*before, function_lines(function, machine, stored, reasons_of(kin))]
 
 
-def _told(meaning: str, unit: str, words: str, default: float | None) -> str:
+def _described(meaning: str, unit: str, words: str, default: float | None) -> str:
     at_first = "must be given" if default is None else f"default {default:g}"
     return f"{meaning}{f' [{unit}]' if unit else ''}: {words}; {at_first}"
 
@@ -185,7 +185,7 @@ def _head(kin: Kinematics) -> list[str]:
     order = [b.name for b in kin.branches] + [f"turn of {j.name}" for j in kin.period_joints]
     further = [f"configuration: {', '.join(order)}"] if order else []
     further.append(f"rows of the Jacobian: {', '.join(kin.rows) or 'none'}")
-    texts = head_of(kin, map(inputs(kin).told, kin.mechanism.all_notes), further)
+    texts = head_of(kin, map(inputs(kin).reworded, kin.mechanism.all_notes), further)
     return [line for text in texts for line in comment(text) or [""]]
 
 

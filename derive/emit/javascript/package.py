@@ -122,7 +122,7 @@ def _drawn(kin: Kinematics) -> list[float] | None:
 
 def _head(kin: Kinematics) -> list[str]:
     """The lines at the top of a module."""
-    texts = head_of(kin, map(inputs(kin).told, kin.mechanism.all_notes))
+    texts = head_of(kin, map(inputs(kin).reworded, kin.mechanism.all_notes))
     return [line for text in texts for line in comment(text) or [""]]
 
 

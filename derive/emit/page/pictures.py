@@ -73,8 +73,8 @@ def singularities(found: Pictured, derived: Derived, names: Mapping[str, str]) -
     for margin in kinematics.margins:
         at = singular_pose(found.machine, derived, margin.name, start)
         picture = Markup("") if at is None or found.drawing is None else _singular(found, at, names)
-        told = "" if at is None else ", ".join(_axes(kinematics, at))
-        yield margin.name, Singularity(at, picture, told)
+        axes_in_words = "" if at is None else ", ".join(_axes(kinematics, at))
+        yield margin.name, Singularity(at, picture, axes_in_words)
 
 
 def _axes(kinematics: Kinematics, at: SingularPose) -> Iterator[str]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 from sympy.core.relational import Relational
 
-from derive.emit.conditions import parts_of, sized
+from derive.emit.conditions import magnitude_tests, parts_of
 from derive.emit.python.calls import FOUND
 from derive.emit.python.layout import note_lines, quoted
 from derive.emit.python.printer import ScalarPrinter
@@ -120,14 +120,14 @@ class Limits:
         ):
             return None
         found = cls(low.lhs, low.rhs, high.rhs, reason)
-        told = (Why.BELOW, low.rhs - low.lhs), (Why.ABOVE, high.lhs - high.rhs)
-        is_told = (reason, other) == tuple(replace(reason, why=why, amount=amount) for why, amount in told)
-        return found if is_told and below.otherwise is above.otherwise is Status.UNREACHABLE else None
+        amounts = (Why.BELOW, low.rhs - low.lhs), (Why.ABOVE, high.lhs - high.rhs)
+        is_alike = (reason, other) == tuple(replace(reason, why=why, amount=amount) for why, amount in amounts)
+        return found if is_alike and below.otherwise is above.otherwise is Status.UNREACHABLE else None
 
 
 def _unless(conditions: Sequence[sp.Basic]) -> str:
     """The `if` in front of the statements for the case that conditions do not all hold."""
-    values = sized(conditions, _MANY)
+    values = magnitude_tests(conditions, _MANY)
     if values:
         return f"if not reasonable({', '.join(map(_SCALAR.print, values))}):"
     return f"if not ({conjunction(conditions)}):"
@@ -136,7 +136,7 @@ def _unless(conditions: Sequence[sp.Basic]) -> str:
 def _notes(requires: Sequence[Require]) -> list[str]:
     """The subject of the conditions as a comment; none for inputs, where the name of the called function tells it."""
     note = requires[0].comment
-    return [] if sized([requires[0].condition], _MANY) else note_lines(note)
+    return [] if magnitude_tests([requires[0].condition], _MANY) else note_lines(note)
 
 
 def status_of(status: Status) -> str:

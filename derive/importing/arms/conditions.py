@@ -74,8 +74,8 @@ def motions(arm: Arm, count: int) -> Motions:
     found: list[tuple[Array, Array, Array, Array]] = []
     for _ in range(_SAMPLES):
         values = rng.uniform(0.3, 1.2, count) * rng.choice([-1.0, 1.0], count)
-        sized = np.array([v * _unit(arm, k) for k, v in enumerate(values)])
-        found.append(_jacobian(arm, sized))
+        in_units = np.array([v * _unit(arm, k) for k, v in enumerate(values)])
+        found.append(_jacobian(arm, in_units))
     jacobians, rotations, last, before = (np.array(some) for some in zip(*found, strict=True))
     return Motions(jacobians, rotations, last, before)
 

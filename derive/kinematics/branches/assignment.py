@@ -91,7 +91,7 @@ def _assigned(
     sampled, indicators = _sampled(mechanism, inverse, forward, optional_zero)
     found: list[Assignment] = []
     for branch, indicator in zip(mechanism.branches, indicators, strict=True):
-        steps = _told(branch, indicator, determinants, sampled)
+        steps = _steps_of(branch, indicator, determinants, sampled)
         if len(steps) != 1:
             raise DescriptionError(
                 f"branch {branch.name!r}: its indicator agrees with {len(steps)} steps, not one: its sign must change "
@@ -105,7 +105,7 @@ def _assigned(
     return tuple(found), unnamed
 
 
-def _told(
+def _steps_of(
     branch: Branch, indicator: np.ndarray, determinants: Sequence[StepDeterminant], sampled: Sequence[np.ndarray]
 ) -> list[tuple[StepDeterminant, int]]:
     """The steps whose determinants have the sign of an indicator, or the opposite one. Where several steps have equal
@@ -163,7 +163,7 @@ def steps_without_branch(mechanism: Mechanism, inverse: Inverse, forward: Forwar
     named = [
         step
         for branch, indicator in zip(mechanism.branches, indicators, strict=True)
-        for step, _ in _told(branch, indicator, determinants, sampled)
+        for step, _ in _steps_of(branch, indicator, determinants, sampled)
     ]
     return tuple(step for step in determinants if step not in named)
 

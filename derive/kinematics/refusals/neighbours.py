@@ -38,9 +38,9 @@ def what_misses(mechanism: Mechanism) -> str:
         found.insert(0, _of_the_tool(*lines[-1], tip, size))
     exact = [is_so for share, is_so, _ in found if share < _SAME]
     near = sorted((share, wanted) for share, _, wanted in found if _SAME <= share < inf)
-    told = f"{' and '.join(exact)}, which is not enough" if exact else ""
+    known = f"{' and '.join(exact)}, which is not enough" if exact else ""
     wanted = ", or if ".join(words for _, words in near[:_NAMED])
-    return "; ".join(part for part in (told, wanted and f"it would help if {wanted}") if part)
+    return "; ".join(part for part in (known, wanted and f"it would help if {wanted}") if part)
 
 
 _Change = tuple[float, str, str]

@@ -221,8 +221,8 @@ def _know(trial: Trial) -> None:
     else:
         stated = [f.args[0] for e in trial.described.equations for f in sp.sympify(e).atoms(sp.sin, sp.cos)]
     moving = sorted((a for a in {*stated, *turned} if a.free_symbols & turned), key=sp.default_sort_key)
-    told = evaluated(moving, {**trial.own, **joints}, trial.angles, trial.degree)
-    for angle in (*told, *trial.machine_joints().values()):
+    moved = evaluated(moving, {**trial.own, **joints}, trial.angles, trial.degree)
+    for angle in (*moved, *trial.machine_joints().values()):
         if angle.form is not None:
             trial.angles.know(angle)
 

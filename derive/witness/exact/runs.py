@@ -34,11 +34,11 @@ class _Missing(Exception):
 
 
 class Signs:
-    """The signs that a run may choose: those that are told, then ones that are positive; and what it has compared."""
+    """The signs that a run may choose: those that are given first, then positive ones; and what it has compared."""
 
-    def __init__(self, told: Sequence[int] = ()) -> None:
+    def __init__(self, first: Sequence[int] = ()) -> None:
         self.taken: list[int] = []
-        self._told = told
+        self._first = first
         self._positive: set[int] = set()
 
     def is_positive(self, number: int) -> bool:
@@ -51,7 +51,7 @@ class Signs:
     def next(self) -> int:
         """The next sign."""
         place = len(self.taken)
-        self.taken.append(self._told[place] if place < len(self._told) else 1)
+        self.taken.append(self._first[place] if place < len(self._first) else 1)
         return self.taken[-1]
 
     def others(self) -> Signs | None:

@@ -31,7 +31,7 @@ from derive.emit.python.program import (
 )
 from derive.emit.python.refusal import Refusals, status_of
 from derive.emit.python.straight_line.finish import Function, finish
-from derive.ir.passes import untold
+from derive.ir.passes import without_reasons
 from derive.ir.program import Let, Program, Status
 from derive.ir.symbols import REFUSAL, Sign, choices, replaced, suffixed, symbols_of
 from derive.ir.tree import Item, Tree
@@ -40,7 +40,7 @@ from derive.lowering.passes import ANY_TURN, NOTHING, UNCONVERTED, WITHOUT_SQUAR
 
 NO_OFFSETS = "no_offsets"
 """Whether all axes have their zero where the joints have it, so that no offset is added."""
-_SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True, is_trusted=True)
+_SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True, for_valid_input=True)
 _FRAME = Argument("frame", "PlainFrame", (POSITION, ROTATION))
 _REFUSED = "refused"
 """The value in place of a refusal, by the number of its status: None, unless a caller asks for the status."""
@@ -106,7 +106,7 @@ def unrolled(kin: Kinematics) -> Unrolled:
 
 def trusted_branch(kin: Kinematics) -> Function:
     """The method for trusted input of a machine without branches that never loses digits."""
-    kin = replace(kin, branch=untold(kin.branch))
+    kin = replace(kin, branch=without_reasons(kin.branch))
     method = _single(kin, applied(ANY_TURN, trusted(kin), NOTHING))
     written = _Written.of(method, kin.setup.lets())
     values = list(written.values.values())
