@@ -49,13 +49,13 @@ class Built:
     measured: str
     """What the witness measured, for the same line."""
     seconds: float | None
-    """How long it took; None where it was kept from an earlier run."""
+    """How long it took; None if it was kept from an earlier run."""
     parts: Mapping[str, Part]
     """What every language writes of it, by the name of the language."""
     pictures: Mapping[str, bytes]
     """Path below the output folder → bytes. They are made where the mechanism is derived: drawing takes as long."""
     evidence: Evidence | None = None
-    """What the witness found; None where it was kept from an earlier run."""
+    """What the witness found; None if it was kept from an earlier run."""
     undrawn: str = ""
     """Why there is no picture: a drawing is no part of the proof, and a machine without one is whole."""
 

@@ -64,7 +64,7 @@ def at_most(terms: float, inner: Work | None = None) -> Iterator[Work]:
 
 
 def spend(terms: int) -> None:
-    """Count terms before they are written. Raises `TooMuchWork` where they exceed the bound."""
+    """Count terms before they are written. Raises `TooMuchWork` if they exceed the bound."""
     work = _WORK.get()
     if work.done + terms > work.most:
         raise TooMuchWork(work.most, terms)

@@ -54,7 +54,7 @@ def programs(mechanism: Mechanism) -> Iterator[str]:
 
 
 def explanation(mechanism: Mechanism) -> Iterator[str]:
-    """The lines of one machine. Raises `Unsolved` or `DescriptionError` where it cannot be derived."""
+    """The lines of one machine. Raises `Unsolved` or `DescriptionError` if it cannot be derived."""
     try:
         solution = with_free_names(mechanism, lambda further: solve_machine(prepared(mechanism, further)))
     except Unsolved as stuck:

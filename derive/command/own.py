@@ -92,7 +92,7 @@ def described(given: Sequence[Path]) -> list[Path]:
 
 
 def package_of(path: Path, wanted: str | None) -> str:
-    """The name of the package: that of the file, in small letters. Raises `GenerationError` where it cannot be one."""
+    """The name of the package: that of the file, in small letters. Raises `GenerationError` if it cannot be one."""
     name = wanted or re.sub(r"\W+", "_", path.stem, flags=re.ASCII).strip("_").lower()
     name = f"machine_{name}" if not wanted and name[:1].isdigit() else name
     if not (name.isidentifier() and name.isascii()) or iskeyword(name):

@@ -80,7 +80,7 @@ def _is_beside_viewer(folder: Path) -> bool:
 
 
 def _viewer(path: Path) -> str:
-    """The page that `view` writes of a machine; empty where its file has a name that no package can have."""
+    """The page that `view` writes of a machine; empty if its file has a name that no package can have."""
     try:
         return f"../{package_of(path, None)}.html"
     except GenerationError:

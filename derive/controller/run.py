@@ -63,7 +63,7 @@ async def live(
 ) -> None:
     """Serve until it is cancelled. say: gets the address to open, then each change of the connection.
 
-    Raises `Refused` where the page cannot be served, or the source refuses, after the page has been told.
+    Raises `Refused` if the page cannot be served, or the source refuses, after the page has been told.
     """
     try:
         from derive.controller.server import serving

@@ -113,14 +113,14 @@ def _with_exact_angle(factor: Factor) -> Factor:
 
 
 def almost_right_angles(mechanism: Mechanism) -> str:
-    """The message about angles of a chain that are almost multiples of 90°; empty where there are none."""
+    """The message about angles of a chain that are almost multiples of 90°; empty if there are none."""
     factors = mechanism.chain.factors if mechanism.chain is not None else ()
     turns = (number_in(f.amount) for f in factors if f.motion is Motion.TURN)
     return "; ".join(dict.fromkeys(text for n in turns if (text := almost_right(n)) is not None))
 
 
 def as_right_angles(number: sp.Expr) -> sp.Expr | None:
-    """The exact multiple of 90° that a number stands for; None where it stands for none."""
+    """The exact multiple of 90° that a number stands for; None if it stands for none."""
     exact = sp.nsimplify(number.subs(DEGREE, sp.pi / 180) / _RIGHT) if not number.has(sp.Float) else None
     if exact is not None and exact.is_Integer:
         return exact * _RIGHT

@@ -28,14 +28,14 @@ def expression(what: str, given: object) -> sp.Expr:
 
 
 def number(what: str, given: object) -> str | None:
-    """The message where a part should be a number and is none; None where it is one."""
+    """The message where a part should be a number and is none; None if it is one."""
     if not isinstance(given, Real) or isinstance(given, bool):
         return f"{what} is {described(given)}, and no number"
     return None if not math.isnan(float(given)) else f"{what} is not a number (NaN)"
 
 
 def pair(what: str, given: object) -> str | None:
-    """The message where a part should be the two ends of a range; None where it is."""
+    """The message where a part should be the two ends of a range; None if it is."""
     is_pair = isinstance(given, tuple | list) and len(given) == 2 and not any(number("", end) for end in given)
     return None if is_pair else f"its {what} is {described(given)}, and not two numbers: as in {what}=(-90.0, 90.0)"
 

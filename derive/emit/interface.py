@@ -35,12 +35,12 @@ class Entry:
     """A program as a function."""
 
     key: str
-    """Its name among the programs of a machine; empty where only other programs call it."""
+    """Its name among the programs of a machine; empty if only other programs call it."""
     summary: str
     program: Program
     arguments: Arrays
     results: Arrays = ()
-    """Nothing where the program only refuses."""
+    """Nothing if the program only refuses."""
 
     @property
     def given(self) -> frozenset[str]:

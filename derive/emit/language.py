@@ -47,7 +47,7 @@ class Language(Protocol):
         """Why `part` has nothing of a machine with `{axes}` axes; empty if it holds every machine."""
 
     def part(self, kinematics: Kinematics) -> Part | None:
-        """The texts about one mechanism, which do not depend on the others. None where the language cannot express the
+        """The texts about one mechanism, which do not depend on the others. None if the language cannot express the
         mechanism.
         """
 

@@ -174,7 +174,7 @@ def needed_lets(lets: Iterable[Let], values: Iterable[sp.Expr]) -> tuple[Let, ..
 
 
 def written_out(body: Sequence[Statement], known: Iterable[Statement]) -> tuple[Statement, ...]:
-    """The statements; where a reason reads a name that is bound only later, its value stands in place of the name."""
+    """The statements; if a reason reads a name that is bound only later, its value stands in place of the name."""
     values = {s.name: s.value for s in known if isinstance(s, Let)}
     found: list[Statement] = []
     bound: set[sp.Symbol] = set()

@@ -24,7 +24,7 @@ class Root(sp.Function):
     is_nonnegative = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """The derivative; zero where the root is zero."""
+        """The derivative; zero if the root is zero."""
         is_long = sp.Gt(self.args[0], 0)
         return Select(is_long, 1 / (2 * Select(is_long, self, sp.Integer(1))), sp.Integer(0))
 

@@ -47,7 +47,7 @@ class Let(Common):
     """The value of a number, or the condition of a flag."""
     note: str = ""
     turn_of: str = ""
-    """The axis whose whole turns the value chooses; empty where it chooses none."""
+    """The axis whose whole turns the value chooses; empty if it chooses none."""
 
     @property
     def comment(self) -> str:
@@ -65,7 +65,7 @@ class Require(Common):
     otherwise: Status
     note: str = ""
     reason: Reason | None = None
-    """The reason that a caller gets; None where it gets the status alone."""
+    """The reason that a caller gets; None if it gets the status alone."""
 
     @property
     def comment(self) -> str:
@@ -77,11 +77,11 @@ class Require(Common):
 class Solve(Common):
     """Bind `names` to matrix^-1 right, by LU decomposition with partial pivoting.
 
-    Total: determinant and solution are zeros where the matrix is singular, or a number is NaN or larger than
+    Total: determinant and solution are zeros if the matrix is singular, or a number is NaN or larger than
     `SOLVABLE`.
 
     All three are given by rows. The matrix is square; `names` and `right` have a column for each right-hand side, and
-    none where only the determinant is wanted.
+    none if only the determinant is wanted.
     """
 
     expression_fields, name_fields = ("matrix", "right"), ("names", "determinant")
@@ -136,7 +136,7 @@ class Iterate(Common):
 
 @dataclass(frozen=True)
 class Call(Common):
-    """Run a program that several programs share, and bind names of its outputs; where it refuses, so does the caller.
+    """Run a program that several programs share, and bind names of its outputs; if it refuses, so does the caller.
 
     given: the values of the arguments. The other inputs of the shared program are constants of the machine, which are
     inputs of the caller, too. Where `wanted` does not hold the program is not run, and the names are bound to false
@@ -196,9 +196,9 @@ class FindRoot(Common):
 
     A trial is a function of `TRIED`, with the two-root step on the wanted side (`SIDE` = 1) or the other (-1), and the
     angle of the step with the number `FREED` set to `FREED_ANGLE` (-1: no step). Its outputs are the residual with its
-    slope, the guard, which is negative where there is no solution, with its slope, then cosine and sine of every angle
+    slope, the guard, which is negative if there is no solution, with its slope, then cosine and sine of every angle
     that may be free. `finish` has the same arguments; its first output tells whether the root is on the wanted
-    branch. `roots` says how roots are found. Where there is none, or `wanted` is false, the names are bound to false
+    branch. `roots` says how roots are found. If there is none, or `wanted` is false, the names are bound to false
     and zeros.
 
     Where candidates for the roots are known in closed form, nothing is tried: `trial` lists them. Its outputs are, for
@@ -216,7 +216,7 @@ class FindRoot(Common):
     """The arguments of both programs besides the place; their other inputs are constants of the machine."""
     note: str = ""
     sides: tuple[int, ...] = ()
-    """The side of each listed candidate; empty where a trial is scanned."""
+    """The side of each listed candidate; empty if a trial is scanned."""
 
     @property
     def is_listed(self) -> bool:

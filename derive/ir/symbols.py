@@ -139,7 +139,7 @@ POSITION = tuple(map(real, COORDINATE_NAMES))
 HOME_ROTATION = tuple(real(f"home_{r.name}") for r in ROTATION_ENTRIES)
 
 FLANGE_AXIS = tuple(real(f"flange_axis_{c}") for c in COORDINATE_NAMES)
-"""The line about which the carrying flange turns, in the frame of the flange; zero where the flange turns freely."""
+"""The line about which the carrying flange turns, in the frame of the flange; zero if the flange turns freely."""
 BASE_AXIS = tuple(real(f"base_axis_{c}") for c in COORDINATE_NAMES)
 """The line of `FLANGE_AXIS` as the base sees it."""
 

@@ -109,7 +109,7 @@ def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:
 
 @cache
 def _joined(name: str) -> str:
-    """A name as Structured Text compares it, with its words joined and without case; empty where it is not portable."""
+    """A name as Structured Text compares it, with its words joined and without case; empty if it is not portable."""
     return name.replace("_", "") if _PORTABLE.match(name) else ""
 
 
@@ -135,7 +135,7 @@ def _refuse_name(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol])
 
 @cache
 def _strange_part(value: sp.Basic) -> str:
-    """A description of the part of an expression that no language can print; empty where every part can be printed."""
+    """A description of the part of an expression that no language can print; empty if every part can be printed."""
     for node in sp.preorder_traversal(value):
         if isinstance(node, sp.Pow) and not _is_power_printable(node):
             return f"power {node} is not an integer power"

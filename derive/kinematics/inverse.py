@@ -174,7 +174,7 @@ def heading_parts(behind: sp.Matrix) -> tuple[sp.Expr, sp.Expr]:
 
 
 def heading_lets(behind: sp.Matrix) -> tuple[Statement, ...]:
-    """The heading of the commanded rotation; there is none where the tool points exactly the opposite way."""
+    """The heading of the commanded rotation; there is none if the tool points exactly the opposite way."""
     along, across = real("heading_along"), real("heading_across")
     length, divisor = real("heading_length"), real("heading_divisor")
     determined = sp.Or(sp.Gt(sp.Abs(along), FREE_ANGLE), sp.Gt(sp.Abs(across), FREE_ANGLE))

@@ -115,7 +115,7 @@ class _Reading:
             yield self._effect(statement)
 
     def _bind(self, let: Let, order: int) -> Node | None:
-        """Name a value and return its node; None where the value has a name already, or needs none."""
+        """Name a value and return its node; None if the value has a name already, or needs none."""
         value = self.value(let.value)
         self._bound[let.name] = value
         if value.node.is_leaf or value.node in self.names:
@@ -161,7 +161,7 @@ class _Reading:
 
 
 def changed(draft: Draft, change: Callable[[Value], Value]) -> Draft:
-    """The draft with every value changed. Where two values become one, so do their names."""
+    """The draft with every value changed. If two values become one, so do their names."""
     names: dict[Node, Named] = {}
     for node, named in draft.names.items():
         value = change(Value(node, 1))

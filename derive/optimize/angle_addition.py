@@ -103,10 +103,7 @@ def _angle(pair: Pair, known: _Known) -> sp.Expr | None:
     if condition != same or not isinstance(sine_else, sp.sin) or cosine_else != sp.cos(sine_else.args[0]):
         return None
     for length in [1 / f for f in sp.Mul.make_args(along) if 1 / f in known.lengths]:
-        across, along = (
-            across * length,
-            along * length,
-        )  # a divisor of only one of the two would be left
+        across, along = (across * length, along * length)  # a divisor of only one of the two would be left
     first = _turned(known.values.get(across, across), known.values.get(along, along), known)
     return None if first is None else Select(condition, first, sine_else.args[0])
 

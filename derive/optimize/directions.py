@@ -163,7 +163,7 @@ def lengths_of(program: Program) -> frozenset[sp.Symbol]:
 
 
 def _graded(program: Program, names: frozenset[sp.Symbol]) -> frozenset[sp.Symbol] | None:
-    """All names that are proportional to the given ones; None where any other value depends on them, or a reason reads
+    """All names that are proportional to the given ones; None if any other value depends on them, or a reason reads
     them.
     """
     graded = set(names)

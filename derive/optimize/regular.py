@@ -5,7 +5,7 @@ where that is wrong.
     cos_c = select(radius > 1e-11, x/length, cos(free))    →   cos_c = x/radius
 
 The first side of a choice by a comparison of numbers is the regular one. A choice by a flag of the machine stays, and
-so does the choice of a status: a refused branch is not singular. Where the result refuses, the whole program decides.
+so does the choice of a status: a refused branch is not singular. If the result refuses, the whole program decides.
 So it serves where many poses are computed by the same instructions, and a few of them once more.
 """
 
@@ -27,7 +27,7 @@ _PLAIN = (Root, Atan2, Select, ToReal, NearestPeriod, sp.Abs)
 
 
 def regular(program: Program, constants: Collection[str]) -> Program | None:
-    """The program for regular poses; None where it has more than arithmetic, roots and angles. constants: the names of
+    """The program for regular poses; None if it has more than arithmetic, roots and angles. constants: the names of
     constants of the machine.
     """
     if not all(isinstance(s, Let | Require) for s in program.body):

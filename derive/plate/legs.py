@@ -48,7 +48,7 @@ def home_angles(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def position_of(mechanism: Mechanism) -> Vector:
-    """The position of the platform: zero where the task commands none."""
+    """The position of the platform: zero if the task commands none."""
     return tuple(real(c) if c in mechanism.motion.position else sp.Integer(0) for c in COORDINATE_NAMES)
 
 
@@ -164,10 +164,7 @@ def plane_row(
     """
     normal = names(NORMAL, plane)
     values = values or tuple(with_fixed_names(mechanism, v) for v in plane.normal)
-    lets = (
-        *(Let(n, v) for n, v in zip(normal, values, strict=True)),
-        *_moment(mechanism, plane, arm, normal),
-    )
+    lets = (*(Let(n, v) for n, v in zip(normal, values, strict=True)), *_moment(mechanism, plane, arm, normal))
     return with_note(lets, f"guide {plane.name}: its normal, and the moment of this about the platform's origin")
 
 

@@ -91,7 +91,7 @@ def at_home(mechanism: Mechanism) -> Start:
 
 
 def at_given(mechanism: Mechanism) -> Start:
-    """Start at the pose that is a constant of the machine, and that a caller may replace. Where the platform turns
+    """Start at the pose that is a constant of the machine, and that a caller may replace. If the platform turns
     about z alone, the start is the nearest rotation about z.
     """
     position = _position(mechanism, "start_")
@@ -193,10 +193,7 @@ def search_program(mechanism: Mechanism) -> Program:
     joints = {j.symbol for j in mechanism.joints}
     positive = [sp.Gt(v, 0) for v in mechanism.positive if v.free_symbols <= joints]
     mirror = Require(sp.And(*positive), Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_MIRROR))
-    checks: tuple[Statement, ...] = (
-        *joint_lets(mechanism),
-        *([mirror] if positive else []),
-    )
+    checks: tuple[Statement, ...] = (*joint_lets(mechanism), *([mirror] if positive else []))
     search = normalise(SEARCH, (*checks, *_newton(mechanism)), outputs)
     return replace(
         search, summary="The pose of the platform at its axis values, the rows of A there, and their determinant"
@@ -212,16 +209,8 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
     fit, fitted = flag("fit"), flag("fitted")
     loop = Iterate(
         state=(*pose, fitted),
-        start=(
-            *_position(mechanism, "begin_"),
-            *[sp.Integer(0)] * len(angles(mechanism)),
-            sp.false,
-        ),
-        step=(
-            *_pass(mechanism, bases),
-            Let(fit, fits, "whether every leg has its length"),
-            *_step(mechanism),
-        ),
+        start=(*_position(mechanism, "begin_"), *[sp.Integer(0)] * len(angles(mechanism)), sp.false),
+        step=(*_pass(mechanism, bases), Let(fit, fits, "whether every leg has its length"), *_step(mechanism)),
         following=(*(s + real(f"{s.name}_rate") / real("stretch") for s in pose), fit),
         done=sp.And(fit, fitted),
         limit=LIMIT,

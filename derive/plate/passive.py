@@ -30,7 +30,7 @@ from derive.solver.unsolved import Unsolved
 TWIST = real("twist")
 """The turn about the tool, from the commanded rotation to that of the platform."""
 GUIDES = "guides_dependent"
-"""The name of the margin that is zero where the planes do not determine the passive coordinates."""
+"""The name of the margin that is zero if the planes do not determine the passive coordinates."""
 _COMMANDED = tuple(real(f"commanded_{r.name}") for r in ROTATION_ENTRIES)
 
 
@@ -89,7 +89,7 @@ def passive_statements(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 
 def _about_the_plate(statement: Statement) -> Statement:
-    """The statement; where it refuses because planes do not determine the twist, its reason says so."""
+    """The statement; if it refuses because planes do not determine the twist, its reason says so."""
     if isinstance(statement, Require) and statement.reason is not None and statement.reason.why is Why.TOO_SHORT:
         return replace(statement, reason=about_machine(Why.UNCONTROLLED))
     return statement

@@ -1,6 +1,6 @@
 """A platform that a loop turns: its home pose, and the checks of its inverse.
 
-det A (see `legs`) is the margin: it is zero where the lines of the rods belong to one linear complex (type 2). The
+det A (see `legs`) is the margin: it is zero if the lines of the rods belong to one linear complex (type 2). The
 inverse computes it from the spans of the legs, and divides by their lengths at the end.
 """
 
@@ -182,7 +182,7 @@ def home_rotation(mechanism: Mechanism) -> sp.Matrix:
 
 
 def home_position(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
-    """The position of the home pose: zero where the task commands none."""
+    """The position of the home pose: zero if the task commands none."""
     given = dict(zip(mechanism.motion.position, mechanism.home, strict=False))
     return tuple(given.get(c, sp.Integer(0)) for c in COORDINATE_NAMES)
 

@@ -59,7 +59,7 @@ def with_positive_lengths(mechanism: Mechanism) -> Mechanism:
 
 
 def _plane_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Plane | None:
-    """The plane that has this equation; None where there is none."""
+    """The plane that has this equation; None if there is none."""
     size = 2 if _is_flat(mechanism, equation) else 3
     coordinates = [real(c) for c in COORDINATE_NAMES[:size]]
     entries = sp.Matrix(3, 3, ROTATION_ENTRIES)[:size, :size]
@@ -92,7 +92,7 @@ def _is_flat(mechanism: Mechanism, equation: sp.Expr) -> bool:
 
 
 def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
-    """The rod that has this equation but for a constant factor; None where there is none."""
+    """The rod that has this equation but for a constant factor; None if there is none."""
     size = 2 if _is_flat(mechanism, equation) else 3
     coordinates = [real(c) for c in COORDINATE_NAMES[:size]]
     names = [real(f"r{i + 1}{j + 1}") for i in range(size) for j in range(size)]

@@ -33,7 +33,7 @@ class Stretch:
     signs: tuple[sp.Symbol, ...]
     """The signs on which they depend, in the order of the inputs."""
     kept: tuple[sp.Symbol, ...]
-    """Where branches share the stretch, the values that the rest reads; nothing where they do not."""
+    """Where branches share the stretch, the values that the rest reads; nothing if they do not."""
     is_shared: bool
 
     @property
@@ -44,7 +44,7 @@ class Stretch:
 
 @kept_by_identity(50)
 def stretches_of(program: Program) -> tuple[Stretch, ...]:
-    """The stretches of a branch; one that is not shared where there is nothing to share."""
+    """The stretches of a branch; one that is not shared if there is nothing to share."""
     items = structured(program)
     signs = tuple(s for s in program.inputs if is_branch_sign(s))
     if len(items) < 2 or not signs or not all(isinstance(i, Let | Require | If) or _is_rare(i) for i in items):

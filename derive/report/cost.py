@@ -91,9 +91,9 @@ class Costs:
     automatic: Cost
     """The inverse with a configuration whose branch bytes are all automatic; without branches, equal to `inverse`."""
     exact: Cost
-    """The check of an exact commanded rotation, once a call; zero where the rotation is not read."""
+    """The check of an exact commanded rotation, once a call; zero if the rotation is not read."""
     repair: Cost
-    """Check and repair of any other commanded rotation, once a call; zero where the rotation is not read."""
+    """Check and repair of any other commanded rotation, once a call; zero if the rotation is not read."""
     corners: Cost
     """The additional cost of a branch at a singular pose: the second sides of choices."""
     bounds: tuple[Bound, ...]

@@ -171,7 +171,7 @@ def are_inside(machine: Machine, axes: Mapping[str, Array]) -> NDArray[np.bool_]
 
 
 def margins(machine: Machine, poses: Sequence[Reals]) -> Array:
-    """The margins of IsSingularity by rows, a column for every pose; NaN where there is none."""
+    """The margins of IsSingularity by rows, a column for every pose; NaN if there is none."""
     kinematics = machine.kinematics
     found, status = _run(kinematics.singularity, machine, _axes(machine, poses))
     rows = [found[m.name] for m in kinematics.margins] or [np.ones(len(poses))]

@@ -1,7 +1,7 @@
 """Poses in which one margin of the nominal machine vanishes: found by Newton's method from regular poses.
 
 A margin is a function of the axis values. For a loop that turns its platform it is a function of the pose instead, and
-the inverse gives the axis values, because the iteration of forward kinematics fails where the margin vanishes. A step
+the inverse gives the axis values, because the iteration of forward kinematics fails if the margin vanishes. A step
 goes along the gradient, to where the margin would be zero if it were linear; it is halved until the machine reaches
 that pose, inside its limits, and the margin there is smaller. So the search also ends on the boundary of what a loop
 can reach, where the
@@ -48,7 +48,7 @@ _CLEAR = 0.05
 
 Array = NDArray[np.float64]
 Measure = Callable[[Array], Array]
-"""A function from rows of coordinates to the margins, a column for every row; NaN where the machine has no pose."""
+"""A function from rows of coordinates to the margins, a column for every row; NaN if the machine has no pose."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class SingularPose:
 
 
 def singular_pose(machine: Machine, derived: Derived, name: str, start: Reals) -> SingularPose | None:
-    """A pose in which the margin of that name vanishes, as near to the start as one is found; None where none is.
+    """A pose in which the margin of that name vanishes, as near to the start as one is found; None if none is.
 
     start: axis values, from which the search begins.
     """
@@ -154,7 +154,7 @@ def _starts(machine: Machine, start: Array, measure: Measure, place: int) -> Ite
 
 
 def _descended(measure: Measure, place: int, start: Array, scales: Array) -> Array | None:
-    """A pose where the margin vanishes, found from a start; None where none is found."""
+    """A pose where the margin vanishes, found from a start; None if none is found."""
     at = start.copy()
     value = float(measure(at[None])[place, 0])
     for _ in range(_PASSES):

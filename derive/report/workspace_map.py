@@ -42,7 +42,7 @@ class Slice:
     solutions: Array
     """The number of solutions: 0 where the machine cannot reach the point."""
     margin: Array
-    """The smallest margin in size, for the solution with the largest one; NaN where there is no solution."""
+    """The smallest margin in size, for the solution with the largest one; NaN if there is no solution."""
     tool: tuple[float, float]
     """The position of the tool in the drawn pose."""
 
@@ -152,7 +152,7 @@ def _different(solutions: list[Array], good: list[NDArray[np.bool_]]) -> Array:
 
 
 def _best(margins: list[Array]) -> Array:
-    """The largest of the margins at each point; NaN where there is none."""
+    """The largest of the margins at each point; NaN if there is none."""
     stacked = np.stack(margins)
     best = np.max(np.where(np.isnan(stacked), -1.0, stacked), axis=0)
     return np.asarray(np.where(best < 0.0, np.nan, best))

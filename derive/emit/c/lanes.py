@@ -54,8 +54,8 @@ class InLanes:
 
 @kept_by_identity(10)
 def in_lanes(kin: Kinematics) -> tuple[InLanes, ...]:
-    """The programs of a machine. None where they would need more than arithmetic, roots and angles, where a turn moves
-    several axes or a gear, and where nothing moves. That of all branches only where these are few.
+    """The programs of a machine. None if they would need more than arithmetic, roots and angles, if a turn moves
+    several axes or a gear, or if nothing moves. That of all branches only if these are few.
     """
     if not kin.mechanism.joints or any(joint.coupling != 0 or joint.is_geared for joint in kin.period_joints):
         return ()
@@ -69,7 +69,7 @@ def in_lanes(kin: Kinematics) -> tuple[InLanes, ...]:
 
 
 def _every_branch(kin: Kinematics, one: Program) -> InLanes | None:
-    """The program of all branches; None where there is no straight line. one: that of one branch."""
+    """The program of all branches; None if there is no straight line. one: that of one branch."""
     line = straight_line(kin)
     if line is None:
         return None

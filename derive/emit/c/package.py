@@ -18,15 +18,7 @@ from derive.emit.c.functions import FRAME, Function, functions, rotation_functio
 from derive.emit.c.lanes import constants_of_lanes
 from derive.emit.c.layout import comment, laid_out, page
 from derive.emit.c.printer import C, list_of, member, number, text, type_of
-from derive.emit.c.program import (
-    Body,
-    arguments_read,
-    directions_of,
-    function_lines,
-    function_of,
-    of_search,
-    taken,
-)
+from derive.emit.c.program import Body, arguments_read, directions_of, function_lines, function_of, of_search, taken
 from derive.emit.c.refusal import Refusals
 from derive.emit.c.setup import constants_read, setup
 from derive.emit.interface import arguments_of, read_by, search_of, searches
@@ -51,7 +43,7 @@ _TAKEN = frozenset(
 
 
 def part(kinematics: Kinematics) -> Part | None:
-    """Header and source of one mechanism; None where it has more axes, branches or directions than the calls hold."""
+    """Header and source of one mechanism; None if it has more axes, branches or directions than the calls hold."""
     return _written(kinematics) if _fits(kinematics) else None
 
 

@@ -79,7 +79,7 @@ class Body(walk.Body):
 
     endless, numbering = "int pass = 0;", "_of_"
     read: Collection[str] | None = None
-    """The names that are read; None where that is not known."""
+    """The names that are read; None if that is not known."""
 
     def begin(self, state: Sequence[sp.Symbol], values: Sequence[str]) -> list[str]:
         """The variables of the state of a loop, with their first values."""

@@ -105,7 +105,7 @@ def _module(kin: Kinematics, module: str) -> str:
 
 
 def _parts(kin: Kinematics) -> Parts | None:
-    """The drawn parts of the machine; None where nothing can be drawn."""
+    """The drawn parts of the machine; None if nothing can be drawn."""
     try:
         return parts_of(kin)
     except Exception:  # whatever a drawing meets, the formulas are proven without it
@@ -113,7 +113,7 @@ def _parts(kin: Kinematics) -> Parts | None:
 
 
 def _drawn(kin: Kinematics) -> list[float] | None:
-    """The axis values of the pose that a picture shows, with nominal parameters; None where there is none."""
+    """The axis values of the pose that a picture shows, with nominal parameters; None if there is none."""
     try:
         return list(map(float, drawn_pose(nominal_machine(kin)).axes))
     except Exception:  # as above

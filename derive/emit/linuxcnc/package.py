@@ -40,7 +40,7 @@ _SEARCH = "/* ---- roots of a trial"
 
 
 def part(kinematics: Kinematics) -> Part | None:
-    """The source of one mechanism; None where a pose of LinuxCNC does not hold it."""
+    """The source of one mechanism; None if a pose of LinuxCNC does not hold it."""
     words, inner = words_of(kinematics), c.part(kinematics)
     if words is None or inner is None:
         return None

@@ -230,7 +230,7 @@ def _times(factors: Sequence[Row]) -> Row:
 
 
 def _over(numerator: Row, denominator: Row, above: int, below: int) -> Row:
-    """A fraction; where it is wide, with a slash."""
+    """A fraction; if it is wide, with a slash."""
     wide = max(_width(numerator), _width(denominator))
     if wide <= _SHORT:
         return (Token(f"<mfrac>{_grouped(numerator)}{_grouped(denominator)}</mfrac>", wide + 1),)

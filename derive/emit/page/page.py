@@ -59,7 +59,7 @@ def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = T
     """The page of a machine. kinematics: the result of the build, with the witness's measurements where it has any.
 
     has_pictures: with the drawing, the machine in its singular poses, and maps; without, the formulas alone.
-    viewer: the file that shows the machine in the browser, from where this page stands; empty where there is none.
+    viewer: the file that shows the machine in the browser, from where this page stands; empty if there is none.
     """
     derived, spelling = derived_of(kinematics.solution), spelling_of(kinematics)
     lines, plain = Lines(spelling, _numbered(derived)), Lines(spelling)

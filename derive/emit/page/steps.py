@@ -42,7 +42,7 @@ class ShownStep:
     only: str
     """The sign of the determinant, where the machine has one of the two solutions alone; else empty."""
     free: str
-    """The unknown that is free where a value vanishes; empty where there is none."""
+    """The unknown that is free where a value vanishes; empty if there is none."""
     free_where: tuple[str, ...]
     """The equation that says that this value is zero."""
     refused: tuple[tuple[str, ...], ...]

@@ -120,10 +120,7 @@ def _lines(one: Object, path: str) -> Iterator[str]:
         yield from (
             ("GET" + _BESIDE, *_lines(member, path))
             if member.kind == "GET"
-            else (
-                "",
-                *_lines(member, f"{path}.{member.name}"),
-            )
+            else ("", *_lines(member, f"{path}.{member.name}"))
         )
     if one.implementation:
         yield _ruler(f" {one.kind} {path}: implementation ")

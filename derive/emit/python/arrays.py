@@ -11,15 +11,7 @@ from derive.emit.python.control_flow import array_arm_lines, fixed
 from derive.emit.python.layout import note_lines
 from derive.emit.python.loops import array_end, array_head
 from derive.emit.python.printer import ArrayPrinter, words
-from derive.emit.python.program import (
-    Method,
-    binding_lines,
-    constants_of,
-    has_search,
-    step_lines,
-    unpacked,
-    values_of,
-)
+from derive.emit.python.program import Method, binding_lines, constants_of, has_search, step_lines, unpacked, values_of
 from derive.ir.primitives import FUNCTIONS, KEYS, NearestPeriod
 from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve
 from derive.ir.symbols import START_POSITION, START_ROTATION

@@ -13,15 +13,7 @@ from derive.emit.python.printer import ScalarPrinter, literal, spelled
 from derive.emit.python.refusal import PLAIN, Refusals, conjunction
 from derive.ir.constants import EDGE
 from derive.ir.primitives import NearestPeriod, Select, ToReal
-from derive.ir.program import (
-    Call,
-    FindRoot,
-    Iterate,
-    Let,
-    Program,
-    Require,
-    Solve,
-)
+from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve
 from derive.ir.tree import If, Item, grouped
 from derive.lowering.decided import decided
 from derive.lowering.passes import NOTHING, UNCONVERTED, applied, structured
@@ -38,7 +30,7 @@ class Argument:
     """Its type: `Axes`, `Vector`, `Rotation`, `Signs`, `Turns`."""
     shape: tuple[Shape, ...]
     default: str = ""
-    """The value in place of None; empty where a value is required."""
+    """The value in place of None; empty if a value is required."""
 
     @property
     def declared(self) -> str:
@@ -60,7 +52,7 @@ class Method:
     program: Program
     arguments: tuple[Argument, ...]
     kind: str
-    """The type of the result, where the status is OK; empty where there is none."""
+    """The type of the result, where the status is OK; empty if there is none."""
     result: Shape
     is_shared: bool = False
     """Whether other programs call it: then, on arrays, it writes the statuses of its caller."""
@@ -186,7 +178,7 @@ def constants_of(method: Method) -> list[str]:
 
 
 def values_of(method: Method, printer: ScalarPrinter) -> str:
-    """The values that a method returns where nothing refuses, in its shape; empty where it returns nothing."""
+    """The values that a method returns where nothing refuses, in its shape; empty if it returns nothing."""
     values = {o.name: printer.print(o.value) for o in method.program.outputs}
 
     def text(shape: Shape) -> str:

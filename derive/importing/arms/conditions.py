@@ -62,7 +62,7 @@ class Motions:
 
 
 def _distances(columns: Array) -> Array:
-    """The distance of each column from the span of the others; zero where the columns are dependent."""
+    """The distance of each column from the span of the others; zero if the columns are dependent."""
     if np.linalg.matrix_rank(columns, tol=1e-9) < columns.shape[1]:
         return np.zeros(columns.shape[1])
     return np.asarray(1.0 / np.linalg.norm(np.linalg.pinv(columns), axis=1))

@@ -53,7 +53,7 @@ def _reductions(element: Element, joints: list[str]) -> Iterator[str]:
 
 
 def _number(text: str) -> float | None:
-    """The number of a text; None where it is none: kinematics needs no reduction."""
+    """The number of a text; None if it is none: kinematics needs no reduction."""
     try:
         value = float(text)
     except ValueError:

@@ -61,7 +61,7 @@ class Assignment:
 def assign(
     mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool = False
 ) -> tuple[Assignment, ...]:
-    """Find the step of every branch. Raises `DescriptionError` where there is not exactly one.
+    """Find the step of every branch. Raises `DescriptionError` if there is not exactly one.
 
     optional_zero: compare on a machine without its optional lengths. The steps of the offset problem correspond to the
     branches of the machine only where the point is the flange itself.
@@ -108,9 +108,10 @@ def _assigned(
 def _steps_of(
     branch: Branch, indicator: np.ndarray, determinants: Sequence[StepDeterminant], sampled: Sequence[np.ndarray]
 ) -> list[tuple[StepDeterminant, int]]:
-    """The steps whose determinants have the sign of an indicator, or the opposite one. Where several steps have equal
-    signs because of the assembly of a loop, those count whose unknown the indicator reads; where they have because of
-    long links, the step counts whose determinant is proportional to the indicator.
+    """The steps whose determinants have the sign of an indicator, or the opposite one. Several steps may agree.
+
+    If the assembly of a loop is the reason, the indicator means the step whose unknown it reads. If long links are the
+    reason, it means the step to whose determinant it is proportional.
     """
     agreeing = [
         (s, o, row)

@@ -1,7 +1,7 @@
 """Lost digits: a closed form may refuse a pose that the machine has; then steps on the closure meet it.
 
 A two-root step near its fold, and a step whose conditioning nearly vanishes, know their angle to a few digits. If a
-later step refuses there, this is not final: the branch calls the program of `closure_steps`. Where no earlier step is
+later step refuses there, this is not final: the branch calls the program of `closure_steps`. If no earlier step is
 near its singularity the refusal is final, and the branch does nothing more.
 """
 
@@ -18,14 +18,7 @@ from derive.ir.passes import depending_on, normalise
 from derive.ir.primitives import Select
 from derive.ir.program import Call, Let, Program, Require, Statement, Status
 from derive.ir.symbols import BOUND_OF, Flag, cosine, flag, names_in, real, sine
-from derive.kinematics.lost_digits.closure_steps import (
-    MET,
-    Machine,
-    given_name,
-    meet_program,
-    started,
-    varying,
-)
+from derive.kinematics.lost_digits.closure_steps import MET, Machine, given_name, meet_program, started, varying
 from derive.kinematics.lost_digits.starts import GOAL, LOST
 
 _EXACTLY = {1 + BOUNDARY / 2: sp.Integer(1), BOUNDARY / 2: sp.Integer(0)}

@@ -73,7 +73,7 @@ def _of_the_tool(name: str, last: Line, tip: Array, size: float) -> _Change:
 
 def fitting_task(mechanism: Mechanism) -> str:
     """Another task for which these joints are solved, the last of them held where it commands fewer quantities; in
-    words, empty where none is found.
+    words, empty if none is found.
     """
     joints = mechanism.solved_joints
     for turning, commanded in _QUANTITIES.items():

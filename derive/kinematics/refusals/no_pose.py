@@ -76,7 +76,7 @@ def _open_loop(mechanism: Mechanism, machine: Samples, missed: NDArray[np.float6
 
 
 def _not_positive(mechanism: Mechanism, values: Mapping[str, Array]) -> str | None:
-    """The message about quantities that must be positive and never are; None where that is not the reason."""
+    """The message about quantities that must be positive and never are; None if that is not the reason."""
     quantities = [f"{q}" for q in mechanism.positive]
     found = [evaluate(sp.sympify(q), values) for q in mechanism.positive]
     for text, value in zip(quantities, found, strict=True):
@@ -110,7 +110,7 @@ def _anywhere(mechanism: Mechanism, machine: Samples) -> dict[str, Array]:
 def near_home(
     mechanism: Mechanism, derivation: Sequence[Statement], signs: Sequence[sp.Symbol], machine: Samples, seed: int
 ) -> Samples:
-    """`samples_near_home`; where there are none, raises `DescriptionError` with the errors of the legs."""
+    """`samples_near_home`; if there are none, raises `DescriptionError` with the errors of the legs."""
     try:
         return samples_near_home(mechanism, derivation, signs, machine, seed)
     except NoPoseAtHome:

@@ -55,7 +55,7 @@ class Signs:
         return self.taken[-1]
 
     def others(self) -> Signs | None:
-        """The next signs to try; None where all have been tried."""
+        """The next signs to try; None if all have been tried."""
         left = list(self.taken)
         while left and left[-1] < 0:
             left.pop()

@@ -91,17 +91,6 @@ def refusing(*body: Statement) -> Program:
     return normalise("branch", body, [Output("a", A), Output("b", B)])
 
 
-def test_choices_on_both_sides_of_a_refusal_are_one_where_the_first_stands() -> None:
-    """In a program whose conditions may move, choices on both sides of a refusal become one IF."""
-    program = refusing(
-        Let(A, Select(REGULAR, X, Y)),
-        Require(sp.Gt(A, 0), Status.UNREACHABLE),
-        Let(C, sp.sin(X)),
-        Let(B, Select(REGULAR, Y, C)),
-    )
-    assert shape(structured(program)) == [(REGULAR, [A, B], [A, B]), "require"]
-
-
 def test_a_choice_waits_for_what_it_needs() -> None:
     """B needs the solution of an equation, which stays behind the refusal."""
     first, refused, last = (

@@ -8,7 +8,7 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.ir.primitives import Root, Select
+from derive.ir.primitives import Select
 from derive.ir.program import Let
 from derive.ir.symbols import names_in, real
 from derive.ir.tree import If, Item
@@ -46,26 +46,6 @@ def bound_for_sure(items: Iterable[Item], known: frozenset[sp.Symbol]) -> frozen
             assert names_in(item.value) <= known, f"{item.name} reads what one side of a choice alone binds"
             known |= {item.name}
     return known
-
-
-def names(items: Iterable[Item]) -> list[sp.Symbol]:
-    return [item.name for item in items if isinstance(item, Let)]
-
-
-def test_the_first_side_binds_nothing_for_second_sides_alone() -> None:
-    """A value that only the second side of a later choice reads is bound on the second side alone, as that choice."""
-    body = [
-        Let(P, Select(REGULAR, X, sp.sin(Y))),
-        Let(Q, Select(REGULAR, -X, sp.cos(Y))),
-        Let(A, Root(P)),
-        Let(B, Select(REGULAR, A + 1, Root(Q))),
-        Let(C, Select(REGULAR, A + 2, Root(Q) + Q)),
-    ]
-    (only,) = joined(scheduled(body, [A, B, C]), [A, B, C])
-    assert isinstance(only, If)
-    assert names(only.holds) == [P, A, B, C]
-    assert set(names(only.fails)) == {P, Q, A, B, C} and len(names(only.fails)) == 5
-    assert set(only.names) == {A, B, C}
 
 
 def test_another_branch_has_values_of_its_own() -> None:

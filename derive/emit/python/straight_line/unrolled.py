@@ -20,15 +20,7 @@ from derive.emit.interface import POSITION, ROTATION
 from derive.emit.python.layout import assigned, repeated, tuple_of
 from derive.emit.python.methods import branch
 from derive.emit.python.printer import ScalarPrinter, primitives_in, spelled
-from derive.emit.python.program import (
-    Argument,
-    Method,
-    constant_lines,
-    constants_of,
-    item_lines,
-    let_lines,
-    unpacked,
-)
+from derive.emit.python.program import Argument, Method, constant_lines, constants_of, item_lines, let_lines, unpacked
 from derive.emit.python.refusal import Refusals, status_of
 from derive.emit.python.straight_line.finish import Function, finish
 from derive.ir.passes import without_reasons
@@ -82,18 +74,14 @@ def is_trusted(kin: Kinematics) -> bool:
 
 
 def unrolled(kin: Kinematics) -> Unrolled:
-    """The functions on plain numbers. Where digits may be lost they have no answer and return an empty tuple: there the
+    """The functions on plain numbers. If digits may be lost they have no answer and return an empty tuple: there the
     branches are solved one after the other.
     """
     lines_of, kin = straight_lines(kin), without_doubts(kin)
     methods, parts = _methods(kin, lines_of), lines_of.parts
     known = (*kin.setup.lets(), *parts)
     last = finish(kin, lines_of.trusted)
-    functions = (
-        _directions(kin, methods[0], known),
-        _direction(kin, methods[1], known),
-        *((last,) if last else ()),
-    )
+    functions = (_directions(kin, methods[0], known), _direction(kin, methods[1], known), *((last,) if last else ()))
     read = {c for f in functions for c in f.constants} | {s.name for p in parts for s in symbols_of(p.value)}
     taken = sorted(read - {p.name.name for p in parts})
     lines = [line for part in parts for line in let_lines(part, _SCALAR)]
@@ -126,14 +114,7 @@ def _methods(kin: Kinematics, found: StraightLines) -> tuple[Method, Method]:
 def _single(kin: Kinematics, program: Program) -> Method:
     sign_values = next(a for a in branch(kin).arguments if a.name == "signs")
     text = "One branch, the axes in some turn, of input that is trusted."
-    return Method(
-        "branch",
-        text,
-        program,
-        (_FRAME, sign_values, _optional(kin)),
-        "Reals | None",
-        (),
-    )
+    return Method("branch", text, program, (_FRAME, sign_values, _optional(kin)), "Reals | None", ())
 
 
 def _optional(kin: Kinematics) -> Argument:
@@ -158,7 +139,7 @@ def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Functi
 
 
 def _direction(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
-    """One branch; where all offsets are zero, a second return statement leaves them out."""
+    """One branch; if all offsets are zero, a second return statement leaves them out."""
     written = _Written.of(method, known)
     lines = item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)
     zero = {joint.offset: sp.Integer(0) for joint in kin.mechanism.joints}

@@ -31,7 +31,7 @@ def with_small_entries(
     """The factors 1 - cosine and 1 + cosine, times a scale, and the statements that bind the names in them. A factor
     that is a multiple of one less an entry is computed from the other entries of its column.
 
-    square: the square of the arm with which the entry is compared, by sines and cosines alone; None where it has none.
+    square: the square of the arm with which the entry is compared, by sines and cosines alone; None if it has none.
     """
     column = equation.column
     if column is None:
@@ -51,7 +51,7 @@ def with_small_entries(
 
 
 def _ends(column: Column, factors: Factors) -> tuple[Factors, Factors] | None:
-    """(h, entry) for h - entry and (h, -entry) for h + entry, or the reverse; None where the factors are others."""
+    """(h, entry) for h - entry and (h, -entry) for h + entry, or the reverse; None if the factors are others."""
     less, more = (sp.expand(f) for f in factors)
     arm, known_entry = (more + less) / 2, (more - less) / 2
     if known_entry not in (column.entry, -column.entry) or column.entry.free_symbols & arm.free_symbols:
@@ -68,7 +68,7 @@ def _with_arm(column: Column, missing: sp.Expr, arm: sp.Expr, known_entry: sp.Ex
 
 
 def _less_than_one(problem: Problem, square: sp.Expr) -> sp.Expr | None:
-    """One less the square of an arm as a sum of squares, which keeps its digits near zero; None where it is none."""
+    """One less the square of an arm as a sum of squares, which keeps its digits near zero; None if it is none."""
     less = problem.reduce(1 - square)
     number, rest = sp.expand(less).as_coeff_Add()
     units = [cosine(a) ** 2 + sine(a) ** 2 for a in problem.units if less.free_symbols & {cosine(a), sine(a)}]
