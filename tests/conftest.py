@@ -86,13 +86,7 @@ SWEEPS = (
     "unit/solver/test_solve.py::test_the_same_text",
 )
 """Tests that cost more than all others of their path together: `make test` runs them."""
-SHARED_BY_A_FILE = (
-    "codesys/",
-    "text/selftest/",
-    "text/test_portable.py",
-    "text/test_second_grammar.py",
-    "unit/",
-)
+SHARED_BY_A_FILE = ("codesys/", "text/selftest/", "text/test_portable.py", "text/test_second_grammar.py", "unit/")
 """Tests that share more with those of their file than with those of their mechanism: all units compiled together, a
 grammar."""
 SHARED_BY_A_FOLDER = ("text/contract/",)

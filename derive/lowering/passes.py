@@ -177,13 +177,8 @@ WRITTEN_SHORT: OnTrees = (
     _SCHEDULED,
     Pass("joined", lambda tree, _: tree.with_items(joined(tree.items, tree.wanted))),
     Pass("inlined", lambda tree, _: tree.with_items(*inlined(tree.items, tree.wanted))),
-    Pass("coalesced", lambda tree, given: _coalesced(tree, given.signs)),
+    Pass("coalesced", lambda t, given: t.with_items(*coalesced(t.items, t.wanted, given.signs)) if given.signs else t),
 )
-
-
-def _coalesced(tree: Tree, signs: Sequence[Sign]) -> Tree:
-    """Of one branch no name has the words of signs behind it."""
-    return tree.with_items(*coalesced(tree.items, tree.wanted, signs)) if signs else tree
 
 
 @kept_by_identity(400)

@@ -28,16 +28,6 @@ def lets_of(one: Program) -> dict[str, sp.Expr]:
     return {let.name.name: let.value for let in one.lets()}
 
 
-def test_a_constant_that_is_bound_elsewhere_is_read_by_its_name() -> None:
-    """Or by its negative; what is computed from it and other constants is hoisted all the same."""
-    known = [Let(real("gap"), D - C), Let(real("square"), C * C)]
-    one = program(Let(F, X * (C - D)), Let(G, Y + C * C * D), outputs=(F, G))
-    (shorter,), hoisted = lowered([one], (*CONSTANTS, "gap", "square"), known=known)
-    assert lets_of(shorter)["f"] == -X * real("gap")
-    assert {let.name for let in hoisted}.isdisjoint({let.name for let in known})
-    assert {s.name for s in shorter.inputs} <= {"x", "y", "gap", *(let.name.name for let in hoisted)}
-
-
 def test_two_programs_share_what_is_hoisted() -> None:
     """Equal constants of two programs are hoisted once."""
     first, second = program(Let(F, C * D * X), outputs=(F,)), program(Let(G, C * D * Y), outputs=(G,))
@@ -66,25 +56,6 @@ def test_a_factor_takes_the_sign_that_leaves_no_minus_in_front() -> None:
     lets = (Let(F, -X * A - Y * B), Let(G, Y * A - X * B), Let(H, (F * Y - G * X) * A))
     (shorter,), _ = lowered([program(*lets, outputs=(F, G, H))], ())
     assert lets_of(shorter)["h"] == A * (F * Y - G * X)
-
-
-def test_an_equal_value_under_another_name_is_not_computed_again() -> None:
-    """A value and its negative under two names are computed once."""
-    one = program(Let(F, X - Y), Let(G, Y - X), Let(H, G * F), outputs=(F, G, H))
-    (shorter,), _ = lowered([one], ())
-    assert [let.name for let in shorter.lets()] == [F, H] and shorter.outputs[1].value == -F
-
-
-def test_a_condition_stays_where_it_was_and_tells_what_it_told() -> None:
-    """Lowering keeps the status and the note of a condition, and rewrites its expression."""
-    refusal = Require(sp.Gt(X * C * D, Y), Status.UNREACHABLE, "too far")
-    one = program(refusal, Let(F, X / Y), outputs=(F,))
-    (shorter,), _ = lowered([one], CONSTANTS)
-    (kept,) = shorter.requires()
-    assert kept.condition == sp.Gt(X * real("c_times_d"), Y) and (kept.otherwise, kept.note) == (
-        Status.UNREACHABLE,
-        "too far",
-    )
 
 
 def test_a_loop_keeps_what_moves_inside_and_what_stays_outside() -> None:

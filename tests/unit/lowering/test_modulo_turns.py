@@ -63,17 +63,3 @@ def test_minus_signs_that_meet_are_not_written() -> None:
     """S is read by its name, which is the negative of the product, and so is the angle."""
     program = of(Let(S, -X * Y), Let(ANGLE, Atan2(S, C)), Let(A, ANGLE + P), Let(B, S + 1), outputs=(A, B))
     assert values(shorter(program))["angle"] == Atan2(S, C)
-
-
-def test_an_opposite_has_no_name_of_its_own() -> None:
-    """The negative of a sum is read from the sum, and gets no name."""
-    program = of(Let(A, X - Y), Let(B, X - Y + P), Let(C, Y - X + Q), outputs=(A, B, C))
-    found = shorter(program)
-    assert cost_of(found).additions == 3
-    same(program, found)
-
-
-def test_a_division_is_as_good_as_a_product() -> None:
-    """Divisions of the trusted functions are not replaced by products with an inverse."""
-    program = of(Let(A, X / L), Let(B, Y / L), Let(C, P / L), outputs=(A, B, C))
-    assert cost_of(shorter(program)).divisions == 3

@@ -5,13 +5,12 @@ from __future__ import annotations
 import sympy as sp
 
 from derive.ir.passes import normalise
-from derive.ir.primitives import Root, Select
+from derive.ir.primitives import Select
 from derive.ir.program import Let, Output, Program, Require, Solve, Statement, Status
 from derive.ir.symbols import real
 from derive.ir.tree import If, Item
 from derive.lowering.passes import structured
 from derive.lowering.scheduling import scheduled
-from derive.report.cost import cost_of
 
 A, B, C, D, E, F, R, X, Y = (real(n) for n in "abcdefrxy")
 REGULAR, NEAR = sp.Gt(R, 1), sp.Lt(X, 2)
@@ -26,13 +25,6 @@ def shape(items: tuple[Item, ...]) -> list[object]:
         else:
             found.append(item.name if isinstance(item, Let) else "require")
     return found
-
-
-def test_a_result_is_no_copy_of_what_its_side_computes() -> None:
-    """A side binds a result directly, without an intermediate name."""
-    body = [Let(A, sp.sin(X)), Let(B, Select(REGULAR, A, Y)), Let(C, Select(REGULAR, A + 1, X))]
-    (choice,) = scheduled(body, [B, C])
-    assert isinstance(choice, If) and choice.holds == (Let(B, sp.sin(X)), Let(C, B + 1))
 
 
 def test_a_choice_that_a_number_decides_is_decided_with_it() -> None:
@@ -81,12 +73,6 @@ def test_what_only_second_sides_read_is_bound_on_each_of_them() -> None:
     assert shape(scheduled(body, [A, B, C, E])) == [(REGULAR, [A, B], [D, A, B]), (NEAR, [C, E], [D, C, E])]
 
 
-def test_a_single_choice_stays_an_expression() -> None:
-    """A single choice stays an expression, and is no IF."""
-    body = [Let(A, Root(X)), Let(B, Select(REGULAR, A, Y))]
-    assert scheduled(body, [B]) == tuple(body)
-
-
 def refusing(*body: Statement) -> Program:
     return normalise("branch", body, [Output("a", A), Output("b", B)])
 
@@ -112,12 +98,3 @@ def test_what_a_later_choice_needs_does_not_go_before_an_earlier_one() -> None:
         Let(E, Select(REGULAR, D, C + 1)),
     ]
     assert shape(scheduled(body, [A, B, D, E])) == [(NEAR, [A, D], [A, D]), (REGULAR, [B, E], [B, E])]
-
-
-def test_a_side_runs_alone() -> None:
-    """The tree gives what the program gives, and computes less."""
-    program = refusing(Let(C, sp.sin(Y)), Let(A, Select(REGULAR, X, C)), Let(B, Select(REGULAR, Y, C + 1)))
-    assert cost_of(program).trigonometric == 1
-    (choice,) = structured(program)
-    assert isinstance(choice, If) and choice.fails == (Let(A, sp.sin(Y)), Let(B, A + 1))
-    assert choice.holds == (Let(A, X), Let(B, Y))

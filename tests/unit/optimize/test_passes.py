@@ -39,12 +39,6 @@ def test_a_circle_is_refused() -> None:
         normalise("p", [Let(A, B + 1), Let(B, A + 1)], [Output("o", A)])
 
 
-def test_inputs_are_what_is_free_in_the_order_of_their_names() -> None:
-    """The inputs are the names that no statement binds, in alphabetical order."""
-    program = normalise("p", [Let(D, C + X)], [Output("o", D + A * DEGREE)])
-    assert program.inputs == (A, C, X)
-
-
 def test_a_name_is_a_name_whatever_is_known_of_its_sign() -> None:
     """Symbols with the same name are one name, whatever their assumptions."""
     long = sp.Symbol("a", positive=True)
@@ -82,14 +76,6 @@ def test_hoisting_moves_what_depends_on_constants_alone() -> None:
     assert lowered_second.outputs == (Output("o", A),)
     assert lowered_first.inputs == (A, X)
     assert lowered_second.inputs == (A, X, Y)
-
-
-def test_hoisting_goes_through_lets_and_conditions() -> None:
-    """Hoisting follows chains of values, and leaves conditions where they are."""
-    program = normalise("p", [Let(A, C * 2), Let(B, A + 1), Require(sp.Gt(B, 0), Status.OK)], [Output("o", B + X)])
-    (lowered,), hoisted = hoist([program], ["c"])
-    assert [let.name for let in hoisted] == [A, B]
-    assert body(lowered) == [sp.Gt(B, 0)]
 
 
 def test_a_hoisted_name_makes_way_for_others() -> None:

@@ -40,14 +40,6 @@ def conditions(program: Program) -> list[sp.Basic]:
     return [r.condition for r in program.requires()]
 
 
-def test_what_nothing_needs_is_not_asked() -> None:
-    """The condition of a choice that stands on a second side alone."""
-    inner = Select(sp.Gt(Y, 0), Y, -Y)
-    one = normalise("p", [Let(AXIS, Select(sp.Gt(X, 1), X, inner))], [Output("axis", AXIS)])
-    found = regular(one, ())
-    assert found is not None and conditions(found) == [sp.Gt(X, 1)] and found.outputs[0].value in (X, AXIS)
-
-
 def test_a_choice_of_the_machine_stays() -> None:
     """It does not depend on the pose."""
     lies = flag("lies")

@@ -23,7 +23,7 @@ from derive.lowering.writing import written
 from tests.unit.answers import same
 from tests.unit.passes.reading import BECOMES, Case
 
-FOLDER = Path(__file__).parent
+CASES = sorted(Path(__file__).parent.glob("*/*.txt"))
 ON_PROGRAMS: list[Pass[Program, Given]] = [
     Pass("normalise", lambda program, _: normalise(program.name, program.body, program.outputs)),
     *passes.DERIVED, *passes.UNCONVERTED, *passes.ANY_TURN, *passes.TRUSTED, *passes.WITHOUT_SQUARES, passes.REGULAR,
@@ -67,23 +67,13 @@ def text_behind(case: Case) -> str:
     return "    the same\n" if text == before else text.split("\n", 1)[1]
 
 
-def name_of(path: Path) -> str:
-    """The name of a case, behind its pass."""
-    return f"{path.parent.name}-{path.stem}"
-
-
-def cases() -> list[Path]:
-    """All golden files."""
-    return sorted(FOLDER.glob("*/*.txt"))
-
-
-@pytest.mark.parametrize("path", cases(), ids=name_of)
+@pytest.mark.parametrize("path", CASES, ids=str)
 def test_a_pass_makes_what_stands_there(path: Path) -> None:
     case = Case(path)
     assert text_behind(case) == case.after, "if that is meant: python -m tests.unit.passes.test_golden"
 
 
-@pytest.mark.parametrize("path", [p for p in cases() if p.parent.name in KEEPING], ids=name_of)
+@pytest.mark.parametrize("path", [p for p in CASES if p.parent.name in KEEPING], ids=str)
 def test_the_answers_stay_the_same(path: Path) -> None:
     """Run with random numbers, in front of the pass and behind it."""
     case = Case(path)
@@ -94,10 +84,10 @@ def test_the_answers_stay_the_same(path: Path) -> None:
 
 def test_every_pass_has_golden_files_and_every_folder_a_pass() -> None:
     """A new pass of the list brings a folder; a pass that goes takes its folder along."""
-    assert {path.parent.name for path in cases()} == NAMES
+    assert {path.parent.name for path in CASES} == NAMES
 
 
 if __name__ == "__main__":
-    for written_path in cases():
+    for written_path in CASES:
         one_case = Case(written_path)
         written_path.write_text(one_case.before + BECOMES + text_behind(one_case), encoding="utf-8")
