@@ -46,7 +46,7 @@ class Cache:
         """Entries that were found but had a wrong hash."""
 
     def read(self, key: str) -> Any | None:
-        """The entry under a key; None where there is none, or only a damaged one."""
+        """The entry under a key; None if there is none, or only a damaged one."""
         path = self._path(key)
         try:
             head, _, content = path.read_bytes().partition(b"\n")
@@ -84,7 +84,7 @@ def key_of(*parts: str) -> str:
 
 
 def entry_key(foundation: str, entry: Entry) -> str | None:
-    """The key of one mechanism; None where its description holds an object that has no text."""
+    """The key of one mechanism; None if its description holds an object that has no text."""
     path, mechanism = entry
     try:
         return key_of("mechanism", foundation, path.read_text(encoding="utf-8"), canonical(mechanism))

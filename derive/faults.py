@@ -51,7 +51,7 @@ class Failure:
 
     message: str
     trace: str = ""
-    """The traceback of a mistake of the compiler; empty where the description is at fault."""
+    """The traceback of a mistake of the compiler; empty if the description is at fault."""
 
     @property
     def error(self) -> GenerationError:

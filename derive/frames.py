@@ -2,17 +2,4 @@
 
 from derive.geometry.frames import Chain, Factor, Motion, Rx, Ry, Rz, Tx, Txyz, Ty, Tz, denavit_hartenberg, flip_x
 
-__all__ = [
-    "Chain",
-    "Factor",
-    "Motion",
-    "Rx",
-    "Ry",
-    "Rz",
-    "Tx",
-    "Txyz",
-    "Ty",
-    "Tz",
-    "denavit_hartenberg",
-    "flip_x",
-]
+__all__ = ["Chain", "Factor", "Motion", "Rx", "Ry", "Rz", "Tx", "Txyz", "Ty", "Tz", "denavit_hartenberg", "flip_x"]

@@ -75,7 +75,7 @@ def _folder() -> Path:
 def _runtime() -> ModuleType:
     """The package `softkin`, which then finds live modules: the installed one, or else that of this compiler.
 
-    Raises `GenerationError` where the installed one is not of this compiler.
+    Raises `GenerationError` if the installed one is not of this compiler.
     """
     files = formatted(package.texts((), package.PACKAGE))
     if importlib.util.find_spec(package.PACKAGE) is None:

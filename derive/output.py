@@ -30,7 +30,7 @@ def differences(folder: Path, files: Mapping[str, bytes]) -> Iterator[str]:
 
 
 def replace_beside_others(folder: Path, files: Mapping[str, bytes]) -> None:
-    """Replace the folder, or the folders in it that the files are in where it holds what other commands have written.
+    """Replace the output folder. If other commands have written into it, replace only the folders of these files.
 
     Raises `ForeignFolder` for one that holds anything else.
     """

@@ -32,21 +32,15 @@ from derive.work import STEPS, TooMuchWork, at_most
 PROCESSES = 2
 WRITTEN = (python.name, StructuredTextFiles.name)
 """The languages that are written unless others are asked for."""
-LANGUAGES = (*WRITTEN, javascript.name, c.name, linuxcnc.name)
-_LANGUAGES = {
-    python.name: "Python", StructuredTextFiles.name: "Structured Text", javascript.name: "JavaScript", c.name: "C",
-    linuxcnc.name: "LinuxCNC",
-}  # fmt: skip
-_BOUNDS = {
-    StructuredTextFiles.name: "no block: it has {axes} axes, and SoftMotion knows six",
-    c.name: f"no C: its calls hold {c.MOST_AXES} axes and {c.MOST_BRANCHES} branches",
-    linuxcnc.name: f"no module for LinuxCNC: it has {{axes}} axes, a pose there 1 to {linuxcnc.MOST_AXES}, or no C",
+_OTHERS: tuple[Language, ...] = (javascript, c, linuxcnc)
+LANGUAGES = (*WRITTEN, *(language.name for language in _OTHERS))
+_TITLES = {python.name: python.title, StructuredTextFiles.name: StructuredTextFiles.title} | {
+    language.name: language.title for language in _OTHERS
 }
-"""Why a language does not hold a machine."""
 _MOST_STEPS = 1_200_000
 """The work of the measurement of one machine, of all its stages (`derive.work`): some ten seconds."""
-Told = Callable[[str, str], None]
-"""What is told about a stage: its name, and its result, which is empty at its begin."""
+Report = Callable[[str, str], None]
+"""A listener for stages: it gets the name of a stage, and its result, which is empty when the stage begins."""
 
 
 @dataclass(frozen=True)
@@ -58,13 +52,13 @@ class Built:
     measured: str
     """What the witness measured, for the same line."""
     seconds: float | None
-    """How long it took; None where it was kept from an earlier run."""
+    """How long it took; None if it was kept from an earlier run."""
     parts: Mapping[str, Part]
     """What every language writes of it, by the name of the language."""
     pictures: Mapping[str, bytes]
     """Path below the output folder → bytes. They are made where the mechanism is derived: drawing takes as long."""
     evidence: Evidence | None = None
-    """What the witness found; None where it was kept from an earlier run."""
+    """What the witness found; None if it was kept from an earlier run."""
     undrawn: str = ""
     """Why there is no picture: a drawing is no part of the proof, and a machine without one is whole."""
 
@@ -74,7 +68,7 @@ class Built:
         wanted: their names; without one, those that are always written.
         """
         parts = ((name, part) for name, part in self.parts.items() if name in (wanted or WRITTEN))
-        return tuple(f"{_LANGUAGES.get(name, name)}: {n}" for name, part in parts for n in part["notes"])
+        return tuple(f"{_TITLES[name]}: {n}" for name, part in parts for n in part["notes"])
 
     def as_plain(self) -> dict[str, Any]:
         """What JSON can hold."""
@@ -145,23 +139,23 @@ def _load() -> None:
 
 
 def derive_one(
-    mechanism: Mechanism, profile: str | None = None, told: Told = _nobody, wanted: Sequence[str] = LANGUAGES
+    mechanism: Mechanism, profile: str | None = None, report: Report = _nobody, wanted: Sequence[str] = LANGUAGES
 ) -> Built:
     """Derive one mechanism, measure it, draw it, and write it in the languages that are wanted.
 
-    told: called at the begin of each of these stages with its name and "", at its end with its name and the result.
+    report: called at the begin of each of these stages with its name and "", at its end with its name and the result.
     """
     # Not loaded where nothing is derived: CasADi and matplotlib take longer to start than the rest of such a run.
     start = time.perf_counter()
-    whole = derive_and_measure(mechanism, told)
+    whole = derive_and_measure(mechanism, report)
     outputs = languages(profile, wanted=wanted)
     drawn: Mapping[str, bytes] = {}
     if StructuredTextFiles.name in wanted:  # the pictures stand beside the blocks
-        told("draw", "")
+        report("draw", "")
         if len(mechanism.joints) <= most_axes(profile):
             drawn, undrawn = _pictures(whole)
             whole = replace(whole, undrawn=undrawn)
-        told("draw", whole.undrawn or ", ".join(drawn) or "nothing: it has no block")
+        report("draw", whole.undrawn or ", ".join(drawn) or "nothing: it has no block")
     found = ((language.name, language.part(whole)) for language in outputs)
     parts = {name: part for name, part in found if part is not None}
     pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in drawn.items()}
@@ -169,7 +163,7 @@ def derive_one(
     return Built(_derived(whole), measured, seconds, parts, pictures, whole.evidence, whole.undrawn)
 
 
-def derive_and_measure(mechanism: Mechanism, told: Told = _nobody) -> Kinematics:
+def derive_and_measure(mechanism: Mechanism, report: Report = _nobody) -> Kinematics:
     """Derive one mechanism and measure it. Raises what `faults.UNFIT` lists, where one of them fails."""
     from derive.kinematics.build import build
     from derive.kinematics.refusals.no_pose import why_no_pose
@@ -178,15 +172,15 @@ def derive_and_measure(mechanism: Mechanism, told: Told = _nobody) -> Kinematics
     from derive.solver.unsolved import Exhausted
     from derive.witness import Disagreement, NoPose, witness
 
-    told("derive", "")
+    report("derive", "")
     derived = build(mechanism)
     try:
         with at_most(_MOST_STEPS, unit=STEPS):
             derived = with_meanings(derived)
-            told("derive", _derived(derived).removeprefix(mechanism.name).strip())
-            told("measure", "")
+            report("derive", _derived(derived).removeprefix(mechanism.name).strip())
+            report("measure", "")
             whole = replace(derived, evidence=witness(derived, mechanism))
-            told("measure", _measured(whole))
+            report("measure", _measured(whole))
             return replace(whole, self_test=self_test(derived))
     except NoPose:
         raise Disagreement(f"{mechanism.name}: {why_no_pose(derived.mechanism)}") from None
@@ -218,9 +212,7 @@ def languages(
         every: tuple[Language, ...] = (
             python if package == python.PACKAGE else NamedPackage(package),
             StructuredTextFiles(profile),
-            javascript,
-            c,
-            linuxcnc,
+            *_OTHERS,
         )
     except ValueError as problem:
         raise GenerationError(str(problem)) from None
@@ -229,9 +221,9 @@ def languages(
 
 def unwritten(built: Built, outputs: Sequence[Language], mechanism: Mechanism) -> Iterator[str]:
     """Why a language that is asked for does not have this machine, a sentence each."""
-    for name in (language.name for language in outputs):
-        if name not in built.parts:
-            yield _BOUNDS[name].format(axes=len(mechanism.joints))
+    for language in outputs:
+        if language.name not in built.parts:
+            yield language.bound.format(axes=len(mechanism.joints))
 
 
 def files_of(

@@ -2,6 +2,4 @@
 
 from derive.description.reach import discs_meet
 
-__all__ = [
-    "discs_meet",
-]
+__all__ = ["discs_meet"]

@@ -2,11 +2,4 @@
 
 from derive.geometry.vectors import Vector, cross, dot, minus, triple, vector
 
-__all__ = [
-    "Vector",
-    "cross",
-    "dot",
-    "minus",
-    "triple",
-    "vector",
-]
+__all__ = ["Vector", "cross", "dot", "minus", "triple", "vector"]

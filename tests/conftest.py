@@ -66,13 +66,7 @@ LONG_OF_THE_SEARCH = (
     "unit/witness/test_exact.py::test_what_cannot_be_asked_is_said",
 )
 """Those that are long."""
-SHARED_BY_A_FILE = (
-    "codesys/",
-    "text/selftest/",
-    "text/test_portable.py",
-    "text/test_second_grammar.py",
-    "unit/",
-)
+SHARED_BY_A_FILE = ("codesys/", "text/selftest/", "text/test_portable.py", "text/test_second_grammar.py", "unit/")
 """Tests that share more with those of their file than with those of their mechanism: all units compiled together, a
 grammar."""
 SHARED_BY_A_FOLDER = ("text/contract/",)

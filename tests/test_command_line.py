@@ -64,11 +64,7 @@ BROKEN: dict[str, tuple[str, str, str]] = {
         "left=+1",
         r"broken\.py:\d+: branch 'elbow' needs two names with the signs \+1 and -1",
     ),
-    "a branch that no root has": (
-        "sin(A2), right",
-        "sin(A1), right",
-        r"broken\.py:\d+: branch 'elbow': ",
-    ),
+    "a branch that no root has": ("sin(A2), right", "sin(A1), right", r"broken\.py:\d+: branch 'elbow': "),
     "a joint that moves nothing": (
         "Tz(A3 - P * A4 / TURN)",
         "Tz(-P * A4 / TURN)",

@@ -40,7 +40,7 @@ def positive_first(terms: Terms) -> Terms:
 
 
 def terms_of(argument: sp.Expr, angles: Sequence[sp.Symbol]) -> Terms | None:
-    """The angles of an argument with their signs; None where it is no sum of angles with coefficients ±1."""
+    """The angles of an argument with their signs; None if it is no sum of angles with coefficients ±1."""
     found = tuple((a, int(argument.coeff(a))) for a in angles if argument.coeff(a) in (1, -1))
     rebuilt = sp.Add(*[a * s for a, s in found])
     return found if found and sp.expand(argument - rebuilt) == 0 else None

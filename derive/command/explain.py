@@ -1,11 +1,12 @@
-"""`explain`: the derivation of a machine, step by step, in plain text or as a page; for unnamed branches it shows how
-to name them.
+"""`explain`: the derivation of a machine, step by step, in plain text or as a page, or its programs as plain text; for
+unnamed branches it shows how to name them.
 """
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import sympy as sp
@@ -16,7 +17,9 @@ from derive.command.stages import Stages
 from derive.description.catalogue import load
 from derive.description.mechanism import Mechanism
 from derive.faults import error
+from derive.ir.text import text_of
 from derive.kinematics.branches.derived import in_words
+from derive.kinematics.build import build
 from derive.kinematics.shared_names import with_free_names
 from derive.kinematics.solution import prepared, solve_machine
 from derive.report.derived import FORMS, Derived, ExplainedStep, Route, derived_of, unfinished
@@ -28,22 +31,30 @@ _LONGEST = 160
 def explain(options: argparse.Namespace) -> int:
     """Print the derivation of every machine, or write its page; 2 where one of them cannot be derived."""
 
-    def told(path: Path, stages: Stages) -> None:
+    def explained(path: Path, stages: Stages) -> None:
         mechanism = load(path)
         if options.html:
             opened(written(path, mechanism, options.out, stages))
             return
         try:
-            for line in explanation(mechanism):
+            for line in programs(mechanism) if options.programs else explanation(mechanism):
                 stages.line(line)
         except Exception as problem:
             raise error(path, problem) from None
 
-    return each(described(options.files), told, keep_going=True, with_trace=options.traceback)
+    return each(described(options.files), explained, keep_going=True, with_trace=options.traceback)
+
+
+def programs(mechanism: Mechanism) -> Iterator[str]:
+    """The programs of one machine as text: the inverse as it was derived, then all programs as languages get them."""
+    kin = build(mechanism)
+    derived = replace(kin.derived_branch, name="branch, as it was derived")
+    for program in (derived, kin.setup, *kin.shared, *kin.programs):
+        yield from text_of(program).split("\n")
 
 
 def explanation(mechanism: Mechanism) -> Iterator[str]:
-    """The lines of one machine. Raises `Unsolved` or `DescriptionError` where it cannot be derived."""
+    """The lines of one machine. Raises `Unsolved` or `DescriptionError` if it cannot be derived."""
     try:
         solution = with_free_names(mechanism, lambda further: solve_machine(prepared(mechanism, further)))
     except Unsolved as stuck:

@@ -59,12 +59,12 @@ def derive(options: argparse.Namespace) -> int:
         package, folder = targets[path]
         refuse_another(folder, package)
         data = _derived(path, package, options, stages)
-        stages.told("write", "")
+        stages.report("write", "")
         if options.language:
             replace_parts(folder, data)
         elif any(differences(folder, data)):
             replace_beside_others(folder, data)
-        stages.told("write", f"{len(data)} files in {folder}")
+        stages.report("write", f"{len(data)} files in {folder}")
 
     return each(files, written, options.keep_going, options.traceback)
 
@@ -92,7 +92,7 @@ def described(given: Sequence[Path]) -> list[Path]:
 
 
 def package_of(path: Path, wanted: str | None) -> str:
-    """The name of the package: that of the file, in small letters. Raises `GenerationError` where it cannot be one."""
+    """The name of the package: that of the file, in small letters. Raises `GenerationError` if it cannot be one."""
     name = wanted or re.sub(r"\W+", "_", path.stem, flags=re.ASCII).strip("_").lower()
     name = f"machine_{name}" if not wanted and name[:1].isdigit() else name
     if not (name.isidentifier() and name.isascii()) or iskeyword(name):
@@ -145,7 +145,7 @@ def _derived(path: Path, package: str, options: argparse.Namespace, stages: Stag
     mechanism = load(path)
     stages.line(f"  {_described(mechanism)}")
     try:
-        built = derive_one(mechanism, profile, stages.told, [language.name for language in outputs])
+        built = derive_one(mechanism, profile, stages.report, [language.name for language in outputs])
         files = files_of([built], [one for one in outputs if one.name in built.parts])
     except Exception as problem:
         raise error(path, problem) from None

@@ -19,7 +19,7 @@ from derive.command.stages import Stages
 from derive.description.catalogue import Entry, catalogue
 from derive.description.mechanism import Mechanism
 from derive.faults import Failure, GenerationError, error, failure
-from derive.pipeline import PROCESSES, Told, derive_and_measure
+from derive.pipeline import PROCESSES, Report, derive_and_measure
 from derive.progress import Progress
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def report(options: argparse.Namespace) -> int:
 def written(path: Path, mechanism: Mechanism, folder: Path, stages: Stages) -> Path:
     """Write the page of a machine, and name its file. Raises `GenerationError` with file, line and remedy."""
     try:
-        page = _page(mechanism, stages.told, _viewer(path) if _is_beside_viewer(folder) else "")
+        page = _page(mechanism, stages.report, _viewer(path) if _is_beside_viewer(folder) else "")
     except Exception as problem:
         raise error(path, problem) from None
     target = _write(folder, page.file, page.text)
@@ -80,21 +80,21 @@ def _is_beside_viewer(folder: Path) -> bool:
 
 
 def _viewer(path: Path) -> str:
-    """The page that `view` writes of a machine; empty where its file has a name that no package can have."""
+    """The page that `view` writes of a machine; empty if its file has a name that no package can have."""
     try:
         return f"../{package_of(path, None)}.html"
     except GenerationError:
         return ""
 
 
-def _page(mechanism: Mechanism, told: Told, viewer: str) -> Page:
+def _page(mechanism: Mechanism, stage: Report, viewer: str) -> Page:
     from derive.emit.page.page import page_of
 
-    kinematics = derive_and_measure(mechanism, told)
-    told("page", "")
+    kinematics = derive_and_measure(mechanism, stage)
+    stage("page", "")
     page = page_of(mechanism, kinematics, viewer=viewer)
     ElementTree.fromstring(page.text)  # some readers show a page that is not well-formed only in part
-    told("page", f"{len(page.text.encode()) // 1000} kB")
+    stage("page", f"{len(page.text.encode()) // 1000} kB")
     return page
 
 

@@ -27,7 +27,7 @@ class Stages:
     def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
         self._patience.end()
 
-    def told(self, stage: str, found: str) -> None:
+    def report(self, stage: str, found: str) -> None:
         """Note that a stage has begun (`found` is then empty), or has ended."""
         if not found:
             self._start, self._stage = self._clock(), stage

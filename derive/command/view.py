@@ -57,7 +57,7 @@ def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[
     """The page of one machine of a user."""
     mechanism = load(path)
     package = own.package_of(path, None)
-    built = derive_one(mechanism, None, stages.told, [_LANGUAGE, "python"])
+    built = derive_one(mechanism, None, stages.report, [_LANGUAGE, "python"])
     files = files_of([built], languages(None, package, [_LANGUAGE]))
     content = Content(
         f"{mechanism.name}: Softkin",

@@ -24,7 +24,7 @@ def new_token() -> str:
 
 
 def refusal_of_host(host: str | None, local: str) -> str | None:
-    """The reason why a request is refused because of the host that it names; None where it is accepted.
+    """The reason why a request is refused because of the host that it names; None if it is accepted.
 
     local: the address of this computer at which the request came in. A name that an attacker may point to this address
     (DNS rebinding) is refused: only the address itself, `localhost`, and the name of this computer are accepted.
@@ -37,7 +37,7 @@ def refusal_of_host(host: str | None, local: str) -> str | None:
 
 
 def refusal(host: str | None, origin: str | None, protocols: str | None, local: str, token: str) -> str | None:
-    """The reason why a WebSocket is refused, from three headers of its handshake; None where it is accepted."""
+    """The reason why a WebSocket is refused, from three headers of its handshake; None if it is accepted."""
     wrong_host = refusal_of_host(host, local)
     if wrong_host:
         return wrong_host

@@ -49,7 +49,7 @@ def of_entry(axis: str, given: object, where: str) -> Channel:
 
 
 def checked_scale(scale: object, where: str) -> float:
-    """The scale as a number. Raises `Refused` where it is not finite, or 0."""
+    """The scale as a number. Raises `Refused` if it is not finite, or 0."""
     read = judged(scale, 1.0, 0.0)
     if not read.value:
         raise Refused(f"{where}: a scale is a number other than 0, not {shown(scale)}")

@@ -25,7 +25,7 @@ def are_given() -> bool:
 
 
 def credentials(place: str) -> Credentials:
-    """The credentials of the environment; missing ones are asked for. Raises `Refused` where there is no terminal."""
+    """The credentials of the environment; missing ones are asked for. Raises `Refused` if there is no terminal."""
     user, password = os.environ.get(USER), os.environ.get(PASSWORD)
     if (not user or password is None) and not sys.stdin.isatty():
         raise Refused(f"{place} wants a user and a password: set {USER} and {PASSWORD}, or run it at a terminal")

@@ -37,9 +37,9 @@ class Reading:
     """The last answer about an axis."""
 
     value: float | None
-    """In degrees or units of length of the machine; None where the answer is unusable."""
+    """In degrees or units of length of the machine; None if the answer is unusable."""
     reason: str
-    """The reason why the answer is unusable; empty where it is usable."""
+    """The reason why the answer is unusable; empty if it is usable."""
     at: float
     """The time of the answer, in seconds of the clock of the feed."""
 

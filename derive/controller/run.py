@@ -63,7 +63,7 @@ async def live(
 ) -> None:
     """Serve until it is cancelled. say: gets the address to open, then each change of the connection.
 
-    Raises `Refused` where the page cannot be served, or the source refuses, after the page has been told.
+    Raises `Refused` if the page cannot be served, or the source refuses, after the page has been told.
     """
     try:
         from derive.controller.server import serving
@@ -96,14 +96,14 @@ def _named(host: str) -> str:
 
 def _teller(say: Callable[[str], None]) -> Callable[[Condition], None]:
     """A function that reports each new condition once, so that a lasting loss is not reported at every try."""
-    said: list[str] = []
+    printed: list[str] = []
 
     def hear(condition: Condition) -> None:
         text = condition.status.value + (f": {condition.message}" if condition.message else "")
         is_another_try = condition.status is Status.CONNECTING and bool(condition.message)
-        if not is_another_try and said[-1:] != [text]:
-            said.append(text)
-            del said[:-1]
+        if not is_another_try and printed[-1:] != [text]:
+            printed.append(text)
+            del printed[:-1]
             say(text)
 
     return hear

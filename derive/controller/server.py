@@ -38,7 +38,7 @@ async def serving(
 ) -> AsyncIterator[tuple[str, int]]:
     """Serve the page and the messages of a stream; gives the address and the port, chosen by the system where it is 0.
 
-    Raises `Refused` where there is no such address, or the port is taken.
+    Raises `Refused` if there is no such address, or the port is taken.
     """
     application = web.Application()
     pages: set[web.WebSocketResponse] = set()

@@ -70,19 +70,19 @@ def settings_of(
         given.get("machine", {}), *(_path(given.get(name), folder, name) for name in ("description", "package"))
     )
     entry = given.get("source", {})
-    said = {"address": entry} if isinstance(entry, str) else entry
-    if not isinstance(said, Mapping) or not set(said) <= _OF_SOURCE:
-        what = sorted(set(said) - _OF_SOURCE)[0] if isinstance(said, Mapping) else type(said).__name__
+    from_file = {"address": entry} if isinstance(entry, str) else entry
+    if not isinstance(from_file, Mapping) or not set(from_file) <= _OF_SOURCE:
+        what = sorted(set(from_file) - _OF_SOURCE)[0] if isinstance(from_file, Mapping) else type(from_file).__name__
         raise Refused(f"{path}: source is an address, or an object of {', '.join(sorted(_OF_SOURCE))}; not {what!r}")
-    told = {name: value for name, value in (source or {}).items() if value is not None}
-    address = _address(told, said, folder)
-    merged = {**said, **told}
+    from_command = {name: value for name, value in (source or {}).items() if value is not None}
+    address = _address(from_command, from_file, folder)
+    merged = {**from_file, **from_command}
     axes = given.get("axes", {})
     if not isinstance(axes, Mapping):
         raise Refused(f'{path}: axes is an object, {{"A1": node, ...}}, not {axes!r}')
     channels = [of_entry(str(axis), node, str(path)) for axis, node in axes.items()] + [of_argument(n) for n in nodes]
     kept = security or Security()
-    ca = kept.ca or _path(said.get("ca"), folder, "ca")
+    ca = kept.ca or _path(from_file.get("ca"), folder, "ca")
     return Settings(
         machine=machine,
         channels=in_order(channels, machine.axis_names, named=address.is_named),
@@ -131,9 +131,9 @@ def _finite(text: str) -> float:
     return float(text)
 
 
-def _address(told: Mapping[str, Any], said: Mapping[str, Any], folder: Path) -> Address:
+def _address(from_command: Mapping[str, Any], from_file: Mapping[str, Any], folder: Path) -> Address:
     """The source: a path of the command line starts where the command runs, one of the JSON beside the JSON."""
-    for entries, start in ((told, Path()), (said, folder)):
+    for entries, start in ((from_command, Path()), (from_file, folder)):
         if isinstance(entries.get("address"), str):
             return address_of(entries["address"], start)
     raise Refused("where do the values come from? --source opc.tcp://host:4840, https://host, recording.csv, or -")

@@ -76,9 +76,9 @@ def _strange(mechanism: Mechanism, amount: sp.Expr) -> sp.Basic | None:
 
 def _wrong_turn(mechanism: Mechanism, factor: Factor) -> Iterator[str]:
     number, place = number_in(factor.amount), written(factor)
-    told = sp.sstr(number, full_prec=False)
+    literal = sp.sstr(number, full_prec=False)
     if not number.has(sp.pi, DEGREE) and abs(in_radians(number)) > 2 * float(sp.pi):
-        yield f"{place} of the chain turns by {told} radians, more than a full turn: write {told}*DEGREE"
+        yield f"{place} of the chain turns by {literal} radians, more than a full turn: write {literal}*DEGREE"
     for parameter in mechanism.parameters:
         if parameter.symbol not in factor.amount.free_symbols:
             continue
@@ -113,14 +113,14 @@ def _with_exact_angle(factor: Factor) -> Factor:
 
 
 def almost_right_angles(mechanism: Mechanism) -> str:
-    """The message about angles of a chain that are almost multiples of 90°; empty where there are none."""
+    """The message about angles of a chain that are almost multiples of 90°; empty if there are none."""
     factors = mechanism.chain.factors if mechanism.chain is not None else ()
     turns = (number_in(f.amount) for f in factors if f.motion is Motion.TURN)
-    return "; ".join(dict.fromkeys(told for n in turns if (told := almost_right(n)) is not None))
+    return "; ".join(dict.fromkeys(text for n in turns if (text := almost_right(n)) is not None))
 
 
 def as_right_angles(number: sp.Expr) -> sp.Expr | None:
-    """The exact multiple of 90° that a number stands for; None where it stands for none."""
+    """The exact multiple of 90° that a number stands for; None if it stands for none."""
     exact = sp.nsimplify(number.subs(DEGREE, sp.pi / 180) / _RIGHT) if not number.has(sp.Float) else None
     if exact is not None and exact.is_Integer:
         return exact * _RIGHT
@@ -148,5 +148,5 @@ def almost_right(number: sp.Expr) -> str | None:
     side = "short of" if off < 0 else "more than"
     many = "a right angle" if abs(nearest) == 1 else f"{abs(nearest)} right angles"
     exact = sp.sstr(sp.sign(value) * abs(nearest) * _RIGHT)
-    told = sp.sstr(number, full_prec=False)
-    return f"{told} is {abs(off):.1g} rad {side} {many}; write {exact} or {90 * nearest}*DEGREE"
+    literal = sp.sstr(number, full_prec=False)
+    return f"{literal} is {abs(off):.1g} rad {side} {many}; write {exact} or {90 * nearest}*DEGREE"

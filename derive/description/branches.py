@@ -34,7 +34,7 @@ class Branch:
 
     @property
     def home_flag(self) -> str:
-        """The parameter that is true where the machine is on the second side of this branch at its home pose."""
+        """The parameter that is true if the machine is on the second side of this branch at its home pose."""
         return f"home_{self.name}_{self.names[1]}"
 
 
@@ -51,7 +51,7 @@ class Assembly:
     signs: tuple[int, int]
     margin: str
     handedness: sp.Expr = sp.Integer(1)
-    """An expression of parameters. Where it is negative (legs numbered the other way round) the indicator changes its
+    """An expression of parameters. If it is negative (legs numbered the other way round) the indicator changes its
     sign."""
     meanings: tuple[str, str] = ("", "")
     """The meanings of both names, where the mode was named by the derivation and not by a description."""

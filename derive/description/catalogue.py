@@ -32,7 +32,7 @@ def catalogue(folder: Path = MECHANISMS) -> tuple[Entry, ...]:
 
 def catalogue_and_faults(folder: Path) -> tuple[tuple[Entry, ...], list[str]]:
     """The mechanisms of a folder that can be read, and what is wrong with the other files. Raises `DescriptionError`
-    where there is no file.
+    if there is no file.
     """
     files = sorted(p for p in folder.glob("*.py") if not p.name.startswith("_"))
     if not files:

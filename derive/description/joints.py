@@ -47,7 +47,7 @@ class Joint(Quantity):
     ratio: sp.Expr = sp.Integer(1)
     """The joint's turn per turn of its motor, or its travel per unit: a number, or made of parameters; never zero."""
     pitch: sp.Expr = sp.Integer(0)
-    """Where this is not zero, the joint is always limited (to `limit_range` where no limit is given)."""
+    """If this is not zero, the joint is always limited (to `limit_range` where no limit is given)."""
     domain: Interval | None = None
     """The range that the closure allows (degrees or length), which is documented for the axis; None: any value."""
     nominal: float = 0.0

@@ -21,26 +21,26 @@ def expression(what: str, given: object) -> sp.Expr:
     try:
         found = sp.sympify(given)
     except (sp.SympifyError, TypeError):
-        raise DescriptionError(f"{what} holds {told(given)}, which is no expression") from None
+        raise DescriptionError(f"{what} holds {described(given)}, which is no expression") from None
     if not isinstance(found, sp.Expr):
         raise DescriptionError(f"{what} holds {given}, which is true or false: state the quantity whose sign tells")
     return found
 
 
 def number(what: str, given: object) -> str | None:
-    """The message where a part should be a number and is none; None where it is one."""
+    """The message where a part should be a number and is none; None if it is one."""
     if not isinstance(given, Real) or isinstance(given, bool):
-        return f"{what} is {told(given)}, and no number"
+        return f"{what} is {described(given)}, and no number"
     return None if not math.isnan(float(given)) else f"{what} is not a number (NaN)"
 
 
 def pair(what: str, given: object) -> str | None:
-    """The message where a part should be the two ends of a range; None where it is."""
+    """The message where a part should be the two ends of a range; None if it is."""
     is_pair = isinstance(given, tuple | list) and len(given) == 2 and not any(number("", end) for end in given)
-    return None if is_pair else f"its {what} is {told(given)}, and not two numbers: as in {what}=(-90.0, 90.0)"
+    return None if is_pair else f"its {what} is {described(given)}, and not two numbers: as in {what}=(-90.0, 90.0)"
 
 
-def told(given: object) -> str:
+def described(given: object) -> str:
     """A part as a message quotes it."""
     text = " ".join(repr(given).split())
     return f"{text if len(text) <= _LONGEST else text[:_LONGEST] + '…'} (a {type(given).__name__})"

@@ -46,58 +46,12 @@ COORDINATE_NAMES_OF_A_PLANE = "xy"
 
 
 __all__ = [
-    "COORDINATE_NAMES",
-    "ROTATION",
-    "ROTATION_ENTRIES",
-    "TURN",
-    "Assembly",
-    "Bound",
-    "Branch",
-    "Constraint",
-    "DescriptionError",
-    "Interval",
-    "Joint",
-    "Kind",
-    "Limited",
-    "Mechanism",
-    "Parameter",
-    "Plane",
-    "Rod",
-    "Search",
-    "Role",
-    "Task",
-    "Turning",
-    "Vendor",
-    "X",
-    "Y",
-    "Z",
-    "angle",
-    "arc",
-    "assembly",
-    "bound",
-    "branch",
-    "crossing",
-    "coordinate",
-    "coupling",
-    "distance",
-    "flag",
-    "gear",
-    "guide",
-    "helical",
-    "length",
-    "limited",
-    "linear",
-    "on_plate",
-    "optional_length",
-    "pitch",
-    "radians",
-    "rod",
-    "rotary",
-    "search",
-    "sign",
-    "signed_length",
-    "transmission",
-]
+    "COORDINATE_NAMES", "ROTATION", "ROTATION_ENTRIES", "TURN", "Assembly", "Bound", "Branch", "Constraint",
+    "DescriptionError", "Interval", "Joint", "Kind", "Limited", "Mechanism", "Parameter", "Plane", "Rod", "Search",
+    "Role", "Task", "Turning", "Vendor", "X", "Y", "Z", "angle", "arc", "assembly", "bound", "branch", "crossing",
+    "coordinate", "coupling", "distance", "flag", "gear", "guide", "helical", "length", "limited", "linear", "on_plate",
+    "optional_length", "pitch", "radians", "rod", "rotary", "search", "sign", "signed_length", "transmission",
+]  # fmt: skip
 
 
 class Vendor(Enum):
@@ -115,7 +69,7 @@ class Search:
 
     joint: Joint
     where: Parameter | None = None
-    """The parameter without which the closure has a closed form; None where it has none for any machine."""
+    """The parameter without which the closure has a closed form; None if it has none for any machine."""
 
 
 class Turning(Enum):
@@ -163,9 +117,9 @@ class Mechanism:
     family: str = "own"
     """The folder of its block, beside those of other families."""
     source: str = ""
-    """Where the geometry is published; empty where it is published nowhere."""
+    """Where the geometry is published; empty if it is published nowhere."""
     summary: str = ""
-    """One sentence that says what machine this is; where it is empty, the names of the axes take its place."""
+    """One sentence that says what machine this is; if it is empty, the names of the axes take its place."""
     parameters: tuple[Parameter, ...] = ()
     chain: Chain | None = None
     drawn: Chain | None = None
@@ -239,9 +193,9 @@ class Mechanism:
         if not names:
             return self.notes
         them = "it" if len(names) == 1 else "them"
-        told = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} held"
+        held = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} held"
         return (
-            f"{told}: inverse kinematics leaves {them} where the reference has {them} (aRef in a block), and solves "
+            f"{held}: inverse kinematics leaves {them} where the reference has {them} (aRef in a block), and solves "
             "for the other axes. Margins tell how far these are from a singular pose; "
             "the Jacobian has a column for every axis.",
             *self.notes,
@@ -332,5 +286,5 @@ def _axes_in_words(joints: Sequence[Joint]) -> str:
 
 
 def search(joint: Joint, *, where: Parameter) -> Search:
-    """Scan a joint for roots where the parameter is not zero; where it is zero, the closure has a closed form."""
+    """Scan a joint for roots where the parameter is not zero; if it is zero, the closure has a closed form."""
     return Search(joint, where)

@@ -19,7 +19,7 @@ def discs_meet(centres: Sequence[Vector], radii: Sequence[sp.Expr], message: str
 
     centres: x and y; radii: not negative; message: the condition in words. Every two discs must intersect. Then all
     three do, unless the radical centre (the point with equal powers to the circles) lies in the triangle of the centres
-    and outside the discs. Where the centres lie on a line there is no radical centre, and the pairs decide.
+    and outside the discs. If the centres lie on a line there is no radical centre, and the pairs decide.
     """
     corners = tuple(vector(*(real(f"reach_{c}_{i}") for c in "xy")) for i in (1, 2, 3))
     reaches = tuple(real(f"reach_{i}") for i in (1, 2, 3))

@@ -84,7 +84,7 @@ REMEDIES: tuple[tuple[str, str], ...] = (
 
 
 def remedy_of(problem: str) -> str:
-    """What to do about a refusal; empty where its sentence says it."""
+    """What to do about a refusal; empty if its sentence says it."""
     if (
         word := re.search(r"(?:(\w+)(?:\.__init__)?\(\) got an )?unexpected keyword argument '(\w+)'", problem)
     ) is not None:
@@ -114,7 +114,7 @@ def _another_field(owner: str, word: str) -> str:
 
 
 def _another_name(word: str) -> str:
-    """The word of the vocabulary that was meant, whatever its capital letters; empty where none is like it."""
+    """The word of the vocabulary that was meant, whatever its capital letters; empty if none is like it."""
     known = {name.lower(): name for name in (*mechanism.__all__, *_FRAMES, "sin", "cos", "sqrt", "pi")}
     close = get_close_matches(word.lower(), known, 1, 0.8)
     return f"did you mean {known[close[0]]!r}?" if close and known[close[0]] != word else ""

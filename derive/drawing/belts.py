@@ -66,7 +66,7 @@ def belt_of(layout: str, size: float, axes: Sequence[Array], drives: dict[sp.Sym
     """The belt on its frame.
 
     `axes` are the directions of the machine in which the carriage goes (first the one along the beam), `drives` how a
-    unit of each drive moves the carriage. Raises `DescriptionError` where a drive runs the belt past both motors.
+    unit of each drive moves the carriage. Raises `DescriptionError` if a drive runs the belt past both motors.
     """
     if layout not in _LAYOUTS:
         raise DescriptionError(f"belt must be one of {', '.join(map(repr, _LAYOUTS))}, not {layout!r}")

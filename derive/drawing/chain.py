@@ -22,7 +22,7 @@ _PARALLEL, _EXACT = 0.999, 1e-6
 def chain_scene(mechanism: Mechanism, values: Values, tool: Frame) -> Scene:
     """The scene of the chain of a mechanism; `values` has its parameters and joint values by name.
 
-    Raises `DescriptionError` where the chain does not end at the tool that forward kinematics computed.
+    Raises `DescriptionError` if the chain does not end at the tool that forward kinematics computed.
     """
     chain = mechanism.drawn or mechanism.chain
     assert chain is not None

@@ -47,7 +47,7 @@ class Choice:
     name: str
     names: tuple[str, str]
     scenes: tuple[Scene, Scene] | None
-    """None where both look alike, or no such pair was found."""
+    """None if both look alike, or no such pair was found."""
     assemblies: tuple[str, str] | None = None
     """The assembly mode of each pose, where in one mode no such pair was found."""
 
@@ -67,7 +67,7 @@ class Drawing:
 
 
 def drawing_of(kinematics: Kinematics) -> Drawing:
-    """Draw a mechanism. Raises `DescriptionError` where a bar has not the length that is stated, or nothing can be
+    """Draw a mechanism. Raises `DescriptionError` if a bar has not the length that is stated, or nothing can be
     drawn.
     """
     mechanism = kinematics.mechanism
@@ -113,13 +113,13 @@ def scene_at(machine: Machine, pose: Pose) -> Scene:
 
 
 def _choices(machine: Machine, drawn: Pose, other: Machine | None) -> Iterator[Choice]:
-    """The choice of every branch: both bytes at the same tool frame. Where one assembly mode has only one of them, the
+    """The choice of every branch: both bytes at the same tool frame. If one assembly mode has only one of them, the
     other byte is drawn in the other mode.
     """
     branches = machine.kinematics.mechanism.branches
-    told = [k for k, branch in enumerate(branches) if not branch.is_crossing]
-    found = _pairs(machine, drawn, told, machine)
-    missing = [k for k in told if k not in found]
+    shown_branches = [k for k, branch in enumerate(branches) if not branch.is_crossing]
+    found = _pairs(machine, drawn, shown_branches, machine)
+    missing = [k for k in shown_branches if k not in found]
     changed = {} if other is None or not missing else _pairs(machine, drawn, missing, other)
     for index, branch in enumerate(branches):
         scenes, is_first = (found | changed).get(index, (None, True))
@@ -127,11 +127,11 @@ def _choices(machine: Machine, drawn: Pose, other: Machine | None) -> Iterator[C
         yield Choice(branch.name, branch.names, scenes, modes if modes is None or is_first else modes[::-1])
 
 
-def _pairs(machine: Machine, drawn: Pose, told: list[int], other: Machine) -> dict[int, _Pair]:
+def _pairs(machine: Machine, drawn: Pose, shown_branches: list[int], other: Machine) -> dict[int, _Pair]:
     """Both bytes of these branches: a pose of the machine, and one of the other machine with the other byte."""
     found: dict[int, _Pair] = {}
     for axes in _candidates(machine, drawn):
-        missing = [k for k in told if k not in found]
+        missing = [k for k in shown_branches if k not in found]
         if missing and (pose := pose_at(machine, axes)) is not None:
             scene = cache(partial(scene_at, machine, pose))
             pairs = {k: _pair(scene, pose, k, other) for k in missing if pose.configuration[k] != 3}
@@ -140,7 +140,7 @@ def _pairs(machine: Machine, drawn: Pose, told: list[int], other: Machine) -> di
 
 
 def _reassembled(kinematics: Kinematics) -> Machine | None:
-    """The machine in its other assembly mode; None where it has one mode, or its home pose decides the mode."""
+    """The machine in its other assembly mode; None if it has one mode, or its home pose decides the mode."""
     assembly = kinematics.mechanism.assembly
     if assembly is None or kinematics.mechanism.is_platform:
         return None
@@ -165,7 +165,7 @@ def _candidates(machine: Machine, drawn: Pose) -> Iterator[Reals]:
 
 
 def _pair(scene: Callable[[], Scene], pose: Pose, index: int, into: Machine) -> _Pair | None:
-    """A pose with its scene, and one of a machine with the other byte of this branch; None where there is none."""
+    """A pose with its scene, and one of a machine with the other byte of this branch; None if there is none."""
     mechanism = into.kinematics.mechanism
     count = len(mechanism.branches)
     first = pose.configuration[index] == 1

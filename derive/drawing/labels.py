@@ -70,7 +70,7 @@ class Naming:
         return None
 
     def coordinates(self, entries: Sequence[Callable[[Values], float]]) -> tuple[sp.Expr, ...] | None:
-        """The parameters that equal the coordinates of a point; None where one of them is neither a
+        """The parameters that equal the coordinates of a point; None if one of them is neither a
         parameter nor zero.
         """
         found = [self._found(entry, magnitude=False) for entry in entries]

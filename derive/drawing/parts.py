@@ -38,7 +38,7 @@ class Parts:
 
 
 def parts_of(kinematics: Kinematics) -> Parts:
-    """The parts. Raises `DescriptionError` where nothing that is drawn moves with a joint."""
+    """The parts. Raises `DescriptionError` if nothing that is drawn moves with a joint."""
     mechanism = kinematics.mechanism
     values = _Values()
     shape = _chain(mechanism, values) if mechanism.chain is not None else _loop(mechanism, values)

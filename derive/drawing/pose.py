@@ -48,7 +48,7 @@ def nominal_machine(kinematics: Kinematics, **changed: float) -> Machine:
 
 
 def pose_at(machine: Machine, axes: Reals) -> Pose | None:
-    """The pose at these axis values; None where there is none."""
+    """The pose at these axis values; None if there is none."""
     status, frame, configuration = forward(machine, axes)
     return Pose(axes, frame, configuration) if status is Status.OK else None
 
@@ -56,7 +56,7 @@ def pose_at(machine: Machine, axes: Reals) -> Pose | None:
 def drawn_pose(machine: Machine) -> Pose:
     """The pose that is drawn: the first of its candidates inside the limits; if there is none, the first of them.
 
-    Raises `DescriptionError` where the nominal joint values of a closed loop fit no pose.
+    Raises `DescriptionError` if the nominal joint values of a closed loop fit no pose.
     """
     beyond: list[Pose] = []
     for found in filter(None, _candidates(machine)):
@@ -88,7 +88,7 @@ def _candidates(machine: Machine) -> Iterator[Pose | None]:
 
 
 def _most_regular(machine: Machine) -> Pose | None:
-    """The sampled pose that is farthest from singular ones; None where no pose is possible."""
+    """The sampled pose that is farthest from singular ones; None if no pose is possible."""
     mechanism = machine.kinematics.mechanism
     drawn = sample_axes(mechanism, dict(machine.values), _SAMPLES, _SEED)
     axes = np.stack([np.round(drawn[j.axis.name], _DECIMALS) for j in mechanism.joints], axis=1)

@@ -43,11 +43,11 @@ class Turn:
     """A rotary joint: its axis points where a positive turn is counter-clockwise seen against it."""
 
     label: sp.Expr
-    """Zero where bars turn the joint back: nothing drives it, and it has no arrow."""
+    """Zero if bars turn the joint back: nothing drives it, and it has no arrow."""
     at: Point
     axis: Point
     toward: Point | None = None
-    """The direction of the body that turns; None where it lies along the axis."""
+    """The direction of the body that turns; None if it lies along the axis."""
     zero: Point | None = None
     """The same direction at joint value zero, where the drawn pose is another."""
 
@@ -173,7 +173,7 @@ def _meetings(turns: tuple[Turn, ...]) -> Iterator[tuple[Point, tuple[sp.Expr, .
 
 
 def _crossing(one: Turn, other: Turn) -> Array | None:
-    """The point that two axes share; None where they are parallel or pass each other."""
+    """The point that two axes share; None if they are parallel or pass each other."""
     a, b, between = np.array(one.axis), np.array(other.axis), np.subtract(other.at, one.at)
     normal = np.cross(a, b)
     if np.linalg.norm(normal) < _APART or abs(between @ normal) > _APART * (1.0 + float(np.linalg.norm(between))):

@@ -21,7 +21,7 @@ def is_size_test(condition: sp.Basic) -> bool:
     return bool(condition.lhs.args[0].is_Symbol)
 
 
-def sized(conditions: Iterable[sp.Basic], least: int = 2) -> list[sp.Expr]:
+def magnitude_tests(conditions: Iterable[sp.Basic], least: int = 2) -> list[sp.Expr]:
     """The values, if the conditions test nothing but the size of this many values or more; else none."""
     parts = parts_of(conditions)
     return [part.lhs.args[0] for part in parts] if len(parts) >= least and all(map(is_size_test, parts)) else []

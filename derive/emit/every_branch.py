@@ -7,17 +7,15 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.ir.passes import untold
+from derive.ir.passes import without_reasons
 from derive.ir.program import Let, Program
 from derive.ir.symbols import Sign, branch_sign, symbols_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.lost_digits.doubts import without_meeting
-from derive.lowering.lower import lowered
+from derive.lowering.passes import ANY_TURN, NOTHING, STRAIGHT_LINE, TRUSTED, Given, applied, lowered
 from derive.lowering.unrolling import is_straight
-from derive.optimize.angle_addition import with_added_angles
-from derive.optimize.rotation_identities import with_rotation_identities
-from derive.optimize.without_periods import specialised, turns_that_count, without_chosen_turns
+from derive.optimize.without_periods import turns_that_count
 
 
 @dataclass(frozen=True)
@@ -49,7 +47,7 @@ def has_doubts(kin: Kinematics) -> bool:
 
 def without_doubts(kin: Kinematics) -> Kinematics:
     """The kinematics whose branch has no answer where digits may be lost, and refuses without a reason."""
-    return replace(kin, branch=untold(without_meeting(kin.derived_branch)))
+    return replace(kin, branch=without_reasons(without_meeting(kin.derived_branch)))
 
 
 def signs(kin: Kinematics) -> tuple[Sign, ...]:
@@ -58,9 +56,13 @@ def signs(kin: Kinematics) -> tuple[Sign, ...]:
 
 
 def trusted(kin: Kinematics) -> Program:
-    """One branch for trusted input, before the choice of its turns is removed. No turn is commanded."""
-    given = specialised(kin.branch, {j.turn: sp.Integer(0) for j in kin.period_joints})
-    return with_rotation_identities(with_added_angles(given, constants(kin)))
+    """One branch for trusted input, before the choice of its turns is removed."""
+    return applied(TRUSTED, kin.branch, given_to_branch(kin))
+
+
+def given_to_branch(kin: Kinematics) -> Given:
+    """What passes know of a branch: no turn is commanded."""
+    return Given(constants(kin), inputs={joint.turn: sp.Integer(0) for joint in kin.period_joints})
 
 
 def constants(kin: Kinematics) -> frozenset[str]:
@@ -91,12 +93,11 @@ class StraightLines:
 def straight_lines(kin: Kinematics) -> StraightLines:
     """Both programs, lowered together: C takes one of them, Python both."""
     one = trusted(without_doubts(kin))
-    program = without_chosen_turns(one)
+    program = applied(ANY_TURN, one, NOTHING)
     (every, single), parts = lowered(
         [replace(program, name="branches"), replace(program, name="branch")],
         constants(kin),
-        modulo_turns=True,
-        inverts=False,
+        STRAIGHT_LINE,
         branches={"branches": signs(kin)},
         known=known_constants(kin),
     )

@@ -15,22 +15,10 @@ import sympy as sp
 from sympy.core.relational import Relational
 
 from derive.ir.constants import DEGREE
-from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
+from derive.ir.primitives import KEYS, Atan2, Root, Select, ToReal, Wrap
 from derive.ir.symbols import is_condition, is_count, is_decided
 
 _OR, _AND, COMPARE, _SUM, PRODUCT, _UNARY, ATOM = range(7)
-
-FUNCTION_KEYS: dict[type[sp.Basic], str] = {
-    sp.sin: "sin",
-    sp.cos: "cos",
-    sp.Abs: "abs",
-    Root: "root",
-    Atan2: "atan2",
-    Select: "select",
-    NearestPeriod: "nearest_period",
-    NearestOnArc: "nearest_on_arc",
-}
-"""The neutral name of every primitive, by which a language looks up its own."""
 
 
 def is_never_negative(radicand: sp.Expr) -> bool:
@@ -52,35 +40,44 @@ class ExpressionPrinter(ABC):
     """Writes an expression in a language. Subclasses spell names, numbers, functions, choices and logical words."""
 
     functions: ClassVar[Mapping[str, str]] = {}
-    """The functions of the language, by the values of `FUNCTION_KEYS`; any other one has its neutral name."""
+    """The functions of the language, by their neutral names (`KEYS`)."""
+    shared_function: ClassVar[str] = "{snake}"
+    """The name of any other function, from its neutral name as `snake_case`, `camelCase` or `CapWords`."""
     square_root: ClassVar[str] = "sqrt"
     """The root of what is never negative; empty if it is the same function as any root."""
     radian: ClassVar[str] = "RADIAN"
     """The degrees of a radian, by which the language multiplies; empty if it divides by `DEGREE` instead."""
 
-    @abstractmethod
     def name(self, symbol: sp.Symbol) -> str:
         """The spelling of a symbol."""
+        return str(symbol.name)
 
-    @abstractmethod
     def number(self, value: float) -> str:
         """A real literal."""
+        return repr(value)
 
     @abstractmethod
     def choice(self, condition: str, first: str, second: str) -> str:
         """The first or the second of two printed values."""
 
     def call(self, key: str, arguments: Sequence[str]) -> str:
-        """A primitive applied to printed arguments; `key` is a value of `FUNCTION_KEYS`."""
-        return self.choice(*arguments) if key == "select" else f"{self.functions.get(key, key)}({', '.join(arguments)})"
+        """A primitive, by its neutral name, applied to printed arguments."""
+        return self.choice(*arguments) if key == "select" else f"{self.function(key)}({', '.join(arguments)})"
+
+    @classmethod
+    def function(cls, key: str) -> str:
+        """The name of the function of a primitive."""
+        words = "".join(word.capitalize() for word in key.split("_"))
+        made = cls.shared_function.format(snake=key, camel=words[:1].lower() + words[1:], words=words)
+        return cls.functions.get(key, made)
 
     def larger(self, first: str, second: str) -> str:
         """The larger of two printed numbers, the second where one is NaN; "" where it is written as a choice."""
         return ""
 
-    @abstractmethod
     def logic(self, word: str) -> str:
         """The spelling of "and", "or", "not", "true", "false"."""
+        return word
 
     def comparison(self, operator: str) -> str:
         """The spelling of a comparison, given as Python has it."""
@@ -140,8 +137,7 @@ class ExpressionPrinter(ABC):
             return text, ATOM
         if self.square_root and isinstance(node, Root) and is_never_negative(node.args[0]):
             return f"{self.square_root}({self.print(node.args[0])})", ATOM
-        key = FUNCTION_KEYS[type(node)]
-        return self.call(key, [self._text(a, _OR) for a in node.args]), ATOM
+        return self.call(KEYS[type(node)], [self._text(a, _OR) for a in node.args]), ATOM
 
     def _joined(self, node: sp.Basic, word: str, context: int) -> str:
         # Comparisons stand in parentheses, so that a reader need not know their precedence.

@@ -45,7 +45,7 @@ class Inputs:
     inner: Mapping[str, str]
     """The entries of `names` that differ from the name inside the derivation."""
 
-    def told(self, text: str) -> str:
+    def reworded(self, text: str) -> str:
         """A sentence about the derivation, in the names of the language."""
         return re.sub(r"[a-z]\w*", lambda found: self.inner.get(found.group(), found.group()), text)
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from derive.equations.limits import value_of
 from derive.equations.rotation_repair import rotation_program
 from derive.ir.passes import normalise
-from derive.ir.program import FindRoot, Output, Program, expressions, reason_expressions
+from derive.ir.program import FindRoot, Output, Program, reason_expressions
 from derive.ir.symbols import PLACE, branch_sign, symbols_of
 from derive.kinematics.kinematics import Kinematics
 
@@ -35,12 +35,12 @@ class Entry:
     """A program as a function."""
 
     key: str
-    """Its name among the programs of a machine; empty where only other programs call it."""
+    """Its name among the programs of a machine; empty if only other programs call it."""
     summary: str
     program: Program
     arguments: Arrays
     results: Arrays = ()
-    """Nothing where the program only refuses."""
+    """Nothing if the program only refuses."""
 
     @property
     def given(self) -> frozenset[str]:
@@ -64,7 +64,7 @@ def read_by(program: Program) -> set[str]:
 
 def names_in(program: Program) -> set[str]:
     """The names that stand in the expressions of a program."""
-    values = [e for s in program.body for e in (*expressions(s), *reason_expressions(s))] + [
+    values = [e for s in program.body for e in (*s.children(), *reason_expressions(s))] + [
         o.value for o in program.outputs
     ]
     given = {g.name for s in searches(program) for p in (s.trial, s.finish) for g in s.given(p)}

@@ -38,8 +38,16 @@ class Language(Protocol):
     def name(self) -> str:
         """The folder below `generated/`, `templates/` and `runtime/`."""
 
+    @property
+    def title(self) -> str:
+        """The name of the language in a message."""
+
+    @property
+    def bound(self) -> str:
+        """Why `part` has nothing of a machine with `{axes}` axes; empty if it holds every machine."""
+
     def part(self, kinematics: Kinematics) -> Part | None:
-        """The texts about one mechanism, which do not depend on the others. None where the language cannot express the
+        """The texts about one mechanism, which do not depend on the others. None if the language cannot express the
         mechanism.
         """
 
@@ -96,8 +104,8 @@ def runtime(language: str) -> dict[str, str]:
     found = {}
     for path in files_in(RUNTIME / language):
         place = path.relative_to(RUNTIME / language).as_posix()
-        told = _GENERATED.format(f"runtime/{language}/{place}")
-        first = f"{_COMMENTS[path.suffix].format(told)}\n" if path.suffix in _COMMENTS else ""
+        head = _GENERATED.format(f"runtime/{language}/{place}")
+        first = f"{_COMMENTS[path.suffix].format(head)}\n" if path.suffix in _COMMENTS else ""
         found[place] = first + path.read_text(encoding="utf-8")
     return found
 

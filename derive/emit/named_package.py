@@ -22,6 +22,8 @@ class NamedPackage:
 
     package: str
     name: ClassVar[str] = python.name
+    title: ClassVar[str] = python.title
+    bound: ClassVar[str] = python.bound
 
     def part(self, kinematics: Kinematics) -> Part:
         """The files of one mechanism, and its entries in the lists."""

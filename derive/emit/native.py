@@ -23,13 +23,13 @@ _DIGITS = 16
 
 
 def key(kin: Kinematics) -> str:
-    """The key that a class and its C have in common: the module with a digest of the C. Empty where there is no C."""
+    """The key that a class and its C have in common: the module with a digest of the C. Empty if there is no C."""
     found = c.part(kin)
     return "" if found is None else f"{found['index']['module']} {_digest(_sources(kin))}"
 
 
 def in_lanes(kin: Kinematics) -> list[str]:
-    """The functions that compute several poses at a time: of one branch, and of every branch; empty where none do."""
+    """The functions that compute several poses at a time: of one branch, and of every branch; empty if none do."""
     found = c.part(kin)
     return [] if found is None else [f"{found['index']['module']}_{one.name}" for one in lanes.in_lanes(kin)]
 
@@ -89,12 +89,7 @@ def _runtime() -> dict[str, str]:
 def _templates() -> Environment:
     found = environment(FOLDER)
     even, odd = horner("zz")
-    found.globals |= {
-        "generated": GENERATED,
-        "even": even,
-        "odd": odd,
-        "rotation": laid_out(lanes.rotation_lines()),
-    }
+    found.globals |= {"generated": GENERATED, "even": even, "odd": odd, "rotation": laid_out(lanes.rotation_lines())}
     return found
 
 

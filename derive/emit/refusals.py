@@ -13,7 +13,7 @@ import sympy as sp
 
 from derive.emit.braced import Braced
 from derive.emit.braces import block, indented
-from derive.emit.conditions import sized
+from derive.emit.conditions import magnitude_tests
 from derive.emit.inputs import Inputs
 from derive.emit.setup import refused_inputs
 from derive.ir.program import Call, Iterate, Require, Status
@@ -49,7 +49,7 @@ class Refusals(ABC):
     def lines(self, requires: Sequence[Require]) -> list[str]:
         """The lines that refuse if conditions about one subject do not all hold."""
         conditions = [r.condition for r in requires]
-        notes = [] if sized(conditions) else self.printer.comment(requires[0].comment)
+        notes = [] if magnitude_tests(conditions) else self.printer.comment(requires[0].comment)
         if any(r.reason is None for r in requires):  # callers get no reason
             return [*notes, *self._unless(conditions, self.refused(requires[0].otherwise))]
         return [*notes, *(line for check in self.reasons.checks(requires) for line in self._check(check))]
@@ -74,7 +74,7 @@ class Refusals(ABC):
     def _check(self, check: Check) -> list[str]:
         missing = "" if check.missing is None else self.printer.print(check.missing)
         turns = [line for turn, reason in check.turns for line in self._on_another(turn, check.status, reason, missing)]
-        values = [self.printer.print(value) for value in sized(check.conditions)]
+        values = [self.printer.print(value) for value in magnitude_tests(check.conditions)]
         head = self.reasonable(values) if values else f"({self.printer.conjunction(check.conditions)})"
         return block(f"if (!{head})", [*turns, f"return {self.refused(check.status, check.reason, missing)};"])
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from derive.description.mechanism import Parameter
 from derive.emit.inputs import Inputs
 from derive.equations.windows import Window, windows
-from derive.ir.program import Call, FindRoot, Iterate, Let, Output, Program, Require, Solve, Statement, binds, reads
+from derive.ir.program import Let, Output, Program, Require, Solve, Statement
 from derive.ir.symbols import symbols_of
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import ranges
@@ -29,7 +29,7 @@ class Setup:
         """The statements in their order; in place of the refusal of the limits of an axis, its range of motion."""
         by_refusal = {window.refusal: window for window in self.windows}
         for statement in self.program.body:
-            if isinstance(statement, Iterate | Call | FindRoot):
+            if not isinstance(statement, Require | Let | Solve):
                 raise TypeError("what depends on parameters alone is straight-line: it neither iterates nor calls")
             window = None
             if isinstance(statement, Require) and statement.reason is not None:
@@ -46,7 +46,7 @@ class Setup:
         values = [o.value for o in self.program.outputs]
         values += [e for window in self.windows for e in (window.turns, *(e for f in window.fallback for e in f))]
         symbols = {s for value in values for s in symbols_of(value)}
-        symbols |= {s for step in self.steps() if not isinstance(step, Window) for s in reads(step)}
+        symbols |= {s for step in self.steps() if not isinstance(step, Window) for s in step.reads()}
         names = {s.name for s in symbols}
         return [p for p in kin.parameters if p.name in names]
 
@@ -64,9 +64,9 @@ def _own_setup(kin: Kinematics, read: Collection[str]) -> Program:
     wanted = {s for o in outputs for s in symbols_of(o.value)}
     body: list[Statement] = []
     for statement in reversed(kin.setup.body):
-        bound = set(binds(statement))
+        bound = set(statement.bound())
         if statement.reason not in tested if isinstance(statement, Require) else bound & wanted - elsewhere:
-            wanted |= reads(statement)
+            wanted |= statement.reads()
             body.append(statement)
     return replace(kin.setup, body=tuple(reversed(body)), outputs=outputs)
 
@@ -75,4 +75,4 @@ def refused_inputs(require: Require, inputs: Inputs) -> tuple[str, list[str]]:
     """The sentence that refuses parameters, and their names in the language."""
     assert require.reason is not None
     read = {s.name for s in require.condition.free_symbols}
-    return inputs.told(require.reason.subject.name), [name for inner, name in inputs.names.items() if inner in read]
+    return inputs.reworded(require.reason.subject.name), [name for inner, name in inputs.names.items() if inner in read]

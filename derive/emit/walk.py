@@ -12,7 +12,7 @@ import sympy as sp
 from derive.emit.braced import Braced
 from derive.emit.braces import block, indented
 from derive.emit.refusals import Refusals
-from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve, binds
+from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve
 from derive.ir.tree import If, Item, grouped
 
 
@@ -92,7 +92,7 @@ class Body(ABC):
         head = [
             *self.printer.comment(loop.note),
             *self.begin(loop.state, self._values(loop, loop.start)),
-            *self._declarations([name for s in loop.step for name in binds(s)]),
+            *self._declarations([name for s in loop.step for name in s.bound()]),
         ]
         following = zip(self.printer.names(loop.state), self._values(loop, loop.following), strict=True)
         inner = [

@@ -149,8 +149,4 @@ def held_lets(joint: Joint) -> tuple[Let, ...]:
     value = Let(joint.symbol, reference_value(joint), f"{joint.name}: held at the reference")
     if not joint.is_angle:
         return (value,)
-    return (
-        value,
-        Let(cosine(joint.symbol), sp.cos(joint.symbol)),
-        Let(sine(joint.symbol), sp.sin(joint.symbol)),
-    )
+    return (value, Let(cosine(joint.symbol), sp.cos(joint.symbol)), Let(sine(joint.symbol), sp.sin(joint.symbol)))

@@ -77,7 +77,7 @@ class Split:
 def split_positions(chain: Chain, point: tuple[sp.Expr, ...], commanded: Commanded, unknowns: Unknowns) -> Split:
     """The position equations of a chain, at the split that isolates an unknown, else those of the whole chain.
 
-    point: the position of its end. Where no split isolates one, the chain is also taken from its flange, to the point
+    point: the position of its end. If no split isolates one, the chain is also taken from its flange, to the point
     in which its first joints intersect.
     """
     factors, target = chain.factors, Target(point)

@@ -70,7 +70,7 @@ def _chosen(value: sp.Basic, name: str) -> sp.Basic:
 
 
 def _asked(value: Relational, name: str) -> sp.Basic:
-    """A comparison; where the flag alone decides it, the flag itself or its negation."""
+    """A comparison; if the flag alone decides it, the flag itself or its negation."""
     holds, fails = (value.xreplace({real(name): sp.Integer(number)}) for number in (1, 0))
     if holds == fails or {holds, fails} == {sp.true, sp.false}:
         return holds if holds == fails else flag(name) if holds == sp.true else sp.Not(flag(name))

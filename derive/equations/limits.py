@@ -1,4 +1,4 @@
-"""The test of the limits. Where it refuses, it states which axes may be inside their limits on another turn."""
+"""The test of the limits. If it refuses, it states which axes may be inside their limits on another turn."""
 
 from __future__ import annotations
 

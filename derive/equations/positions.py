@@ -23,7 +23,7 @@ from derive.ir.symbols import COORDINATE_NAMES, real
 
 
 def positions(problem: Problem) -> tuple[Equation, ...]:
-    """The coordinates of L^-1 p = M; none where no joint at the base is known."""
+    """The coordinates of L^-1 p = M; none if no joint at the base is known."""
     links, point, side, lets = behind_known(problem, Side("from", "base"))
     if not side.joints:
         return ()

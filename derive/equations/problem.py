@@ -15,7 +15,7 @@ from derive.ir.symbols import cosine, names_in, real, sine
 from derive.work import spend
 
 _NUMBER = 1e-9
-"""A sum of numbers counts as zero where it is at most this share of its terms."""
+"""A sum of numbers counts as zero if it is at most this share of its terms."""
 
 
 @dataclass(frozen=True)
@@ -176,7 +176,7 @@ class Problem:
     turns: tuple[Factor, ...] = ()
     """The rotations whose product is the commanded one; they give further equations whenever angles become known."""
     rotation: tuple[sp.Symbol, ...] = ()
-    """The entries of the commanded rotation, by rows; none where it is not commanded."""
+    """The entries of the commanded rotation, by rows; none if it is not commanded."""
     columns: tuple[int, ...] = (0, 1, 2)
     """The columns of the commanded rotation that the task prescribes."""
     followed: int = 0

@@ -73,7 +73,7 @@ def _entry_equations(
 
 
 def _column(entries: sp.Matrix, row: int, lets: tuple[Let, ...]) -> Column | None:
-    """The column of an entry, with its other two entries; None where the entry has no name."""
+    """The column of an entry, with its other two entries; None if the entry has no name."""
     entry = entries[row] if entries[row].is_Symbol else -entries[row]
     others = sp.Add(*[entries[k] ** 2 for k in range(3) if k != row])
     return Column(entry, others, needed(lets, entry + others)) if entry.is_Symbol else None

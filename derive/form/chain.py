@@ -31,7 +31,7 @@ def with_normal_chain(mechanism: Mechanism) -> Mechanism:
     factors = [as_turn(f) for f in mechanism.chain.factors]
     end = next((k for k, f in enumerate(factors) if f.motion is Motion.FLIP), len(factors))
     if any(f.motion is not Motion.FLIP for f in factors[end:]):
-        return mechanism  # a flip before another factor is refused where flips are read
+        return mechanism  # a flip before another factor is refused if flips are read
     form = normal_factors(arm_of(factors[:end]), about_z=mechanism.task.turning is Turning.ABOUT_Z)
     return replace(mechanism, chain=Chain((*form, *factors[end:])), drawn=mechanism.chain)
 

@@ -29,7 +29,7 @@ _NUMBERS_ALONE = "state every angle by motors of earlier axes and its own, or gi
 def with_gears(mechanism: Mechanism) -> Mechanism:
     """The mechanism with its gears at the joints, where the chain turns by more or less than its joints.
 
-    Raises `DescriptionError` where an angle is no whole multiple of what the others turn by, or a gear may be zero.
+    Raises `DescriptionError` if an angle is no whole multiple of what the others turn by, or a gear may be zero.
     """
     symbols = tuple(j.symbol for j in mechanism.joints)
     arguments = _arguments(mechanism)
@@ -69,7 +69,7 @@ def _arguments(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
 
 
 def _form(argument: sp.Expr, symbols: Sequence[sp.Symbol]) -> sp.Expr | None:
-    """The joints in an angle, as a linear form; None where it has none, or is not linear."""
+    """The joints in an angle, as a linear form; None if it has none, or is not linear."""
     expanded = sp.expand(argument)
     own = sp.Add(*[expanded.coeff(s) * s for s in symbols])
     is_linear = not (expanded - own).free_symbols & set(symbols)
@@ -142,7 +142,7 @@ def _lattice(rows: list[list[sp.Expr]]) -> list[list[sp.Expr]]:
 
 
 def _triangular(basis: list[list[sp.Expr]]) -> list[list[sp.Expr]]:
-    """The rows in an order in which row k ends at motor k. Raises `DescriptionError` where there is no such order."""
+    """The rows in an order in which row k ends at motor k. Raises `DescriptionError` if there is no such order."""
     count = len(basis[0])
     ends = [max(k for k, c in enumerate(row) if c != 0) for row in basis]
     if sorted(ends) != list(range(count)):

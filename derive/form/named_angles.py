@@ -71,9 +71,9 @@ def of_degrees(degrees: sp.Expr) -> NamedAngle:
 def _of(number: sp.Expr) -> NamedAngle:
     """The angle that is left of a number without its right angles: 45° of 135°; a decimal in radians stays whole."""
     degrees = abs(in_radians(number)) * 180 / float(sp.pi)
-    told = sp.Rational(round(degrees * _THOUSANDTHS), _THOUSANDTHS)
-    if abs(degrees - float(told)) * float(sp.pi) / 180 < _SAME:
-        return of_degrees(told % 90)
+    rounded = sp.Rational(round(degrees * _THOUSANDTHS), _THOUSANDTHS)
+    if abs(degrees - float(rounded)) * float(sp.pi) / 180 < _SAME:
+        return of_degrees(rounded % 90)
     size = sp.Float(abs(in_radians(number)))
     return NamedAngle(real(f"angle_{_digits(size)}_rad"), size / DEGREE)
 

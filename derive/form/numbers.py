@@ -17,8 +17,7 @@ from derive.form.exact import is_right
 from derive.form.named_angles import NamedAngle, NamedAngles
 from derive.geometry.frames import Chain, Factor, Motion
 from derive.ir.constants import DEGREE
-from derive.ir.names import Names
-from derive.ir.symbols import cosine, sine
+from derive.ir.symbols import Names, cosine, sine
 
 _AXES = "xyz"
 

@@ -1,7 +1,7 @@
 """The point of every turn on its own line, which the shifts lead to.
 
 Two lines that are not parallel have a common perpendicular: the way leads along the first line, behind its turn, to
-the foot there, and from it to the foot on the second one. This is the convention of Denavit and Hartenberg; where the
+the foot there, and from it to the foot on the second one. This is the convention of Denavit and Hartenberg; if the
 lines meet, both feet are the point in which they do. On a line parallel to the one before the point is nearest to the
 point before. The way along the first line stands in front of its turn: the commanded point is then known from there.
 """
@@ -31,7 +31,7 @@ def points(lines: Sequence[Line], origin: Array) -> list[Array]:
 
 
 def _foot(line: Line, other: Line) -> Array | None:
-    """The point of a line nearest to another; None where they are (nearly) parallel."""
+    """The point of a line nearest to another; None if they are (nearly) parallel."""
     cosine = float(line.direction @ other.direction)
     determinant = 1.0 - cosine**2
     if determinant < _PARALLEL**2:

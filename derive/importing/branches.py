@@ -79,7 +79,7 @@ def _turned(passed: Sequence[tuple[int, sp.Expr]], vector: sp.Matrix) -> sp.Matr
 
 
 def branches(pieces: Sequence[Piece], amounts: Sequence[sp.Expr], task: Followed) -> tuple[Named, ...]:
-    """The branches of an arm; none where they have no usual names."""
+    """The branches of an arm; none if they have no usual names."""
     held = set(task.held)
     turns = [
         k
@@ -142,7 +142,7 @@ def _shoulder(arm: Skeleton, centre: int) -> Named:
 
 
 def _elbow(arm: Skeleton, before: int, at: int, end: int, names: tuple[str, str]) -> Named:
-    """The cross product of the links before and behind an axis: zero where they are stretched or folded."""
+    """The cross product of the links before and behind an axis: zero if they are stretched or folded."""
     letter = arm.letter(at)
     i, j = (letter + 1) % 3, (letter + 2) % 3
     first = _back(arm, arm.turns[before], arm.turns[at])

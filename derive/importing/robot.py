@@ -120,7 +120,7 @@ class Rods:
     plane: int | None
     """The axis x, y or z (0, 1, 2) of the base about which all joints turn; None in space."""
     drawn: Triple | None
-    """Where the file draws the tip; None where it draws the rods apart."""
+    """Where the file draws the tip; None if it draws the rods apart."""
 
 
 @dataclass(frozen=True)

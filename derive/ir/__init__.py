@@ -7,15 +7,15 @@ cells: the cells of a root scan, on arrays: how many roots a cell may hold, and 
 constants: the numerical constants of the product, except those of the root scan
 graph: values as a graph, in which equal values are one node
 interpret: the reference interpreter, which executes a program over arrays
-names: new names that differ from all names in use
 passes: passes over programs: aliases folded, statements in the order of their use, constants hoisted
 primitives: the functions that every language implements, and their values on arrays
 program: programs, their statements and their statuses
 reason: why a program refuses: what is at fault, what is wrong with it, and how much is missing
 roots: all roots of a trial along one joint, on arrays, found with `cells`
-symbols: every name that programs share, and the signs of branches
+statement: what all kinds of statements have in common
+symbols: every name that programs share, the signs of branches, and new names
+text: programs as plain text
 tree: a program as a structured tree, with choices of which only one side is run
-typed: the check of the types of a whole program
-types: the types of values, and the operations on each
+types: the types of values, the operations on each, and the check of a whole program
 verify: the verifier, which finds a broken program at once
 """

@@ -15,11 +15,9 @@ from functools import cache, partial
 import sympy as sp
 
 from derive.ir.constants import DEGREE
-from derive.ir.names import Names
 from derive.ir.primitives import Root
 from derive.ir.program import (
     Call,
-    FindRoot,
     Iterate,
     Let,
     Output,
@@ -27,13 +25,11 @@ from derive.ir.program import (
     Require,
     Solve,
     Statement,
-    binds,
-    reads,
     reason_expressions,
     rewritten,
 )
 from derive.ir.reason import Unit
-from derive.ir.symbols import POSITION, ROTATION_ENTRIES, called, is_decided, names_in, replaced, symbols_of
+from derive.ir.symbols import POSITION, ROTATION_ENTRIES, Names, called, is_decided, names_in, replaced, symbols_of
 from derive.ir.verify import RepeatedName, verify
 from derive.kept import kept_by_identity
 
@@ -80,16 +76,7 @@ def without_assumptions(statements: Iterable[Statement]) -> tuple[Statement, ...
 
 def renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> Statement:
     """The statement with the names that it binds changed."""
-    if isinstance(statement, Let):
-        other = name(statement.name)
-        return statement if other is statement.name else replace(statement, name=other)
-    if isinstance(statement, Solve):
-        determinant = None if statement.determinant is None else name(statement.determinant)
-        return replace(statement, names=tuple(map(name, statement.names)), determinant=determinant)
-    if isinstance(statement, Iterate):
-        step = tuple(s for s in (renamed(s, name) for s in statement.step) if isinstance(s, Let | Solve))
-        return replace(statement, state=tuple(map(name, statement.state)), step=step)
-    return replace(statement, names=tuple(map(name, statement.names))) if isinstance(statement, Call) else statement
+    return statement.with_names(name)
 
 
 def _fold(body: Sequence[Statement], outputs: Sequence[Output]) -> tuple[tuple[Statement, ...], tuple[Output, ...]]:
@@ -120,14 +107,14 @@ def _without_aliases(
             inner = _without_aliases(s.step, aliases, bound, names)
             s = replace(s, step=tuple(i for i in inner if isinstance(i, Let | Solve)))
         kept.append(_with_names(s, aliases))
-        names |= set(binds(s))
+        names |= set(s.bound())
     return kept
 
 
 def _order(body: Sequence[Statement], outputs: Sequence[Output]) -> tuple[Statement, ...]:
     ordered = [_with_ordered_step(s) if isinstance(s, Iterate) else s for s in body]
     needed = needed_for(ordered, [o.value for o in outputs])
-    read = {s for o in outputs for s in symbols_of(o.value)}.union(*map(reads, needed))
+    read = {s for o in outputs for s in symbols_of(o.value)}.union(*(s.reads() for s in needed))
     return tuple(replace(s, names=tuple(n for n in s.names if n in read)) if isinstance(s, Call) else s for s in needed)
 
 
@@ -140,7 +127,7 @@ def needed_for(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[S
     """The statements that the wanted expressions need, each just before its first use; a statement that may refuse is
     kept.
     """
-    sources = {name: s for s in body for name in binds(s)}
+    sources = {name: s for s in body for name in s.bound()}
     order = {name: place for place, name in enumerate(sources)}
     done: list[Statement] = []
     begun: set[int] = set()
@@ -149,7 +136,7 @@ def needed_for(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[S
         if id(statement) in begun:  # also in a cycle, which the verifier then refuses
             return
         begun.add(id(statement))
-        need(reads(statement))
+        need(statement.reads())
         done.append(statement)
 
     def need(symbols: set[sp.Symbol]) -> None:
@@ -157,7 +144,7 @@ def needed_for(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[S
             provide(sources[name])
 
     for s in body:
-        if isinstance(s, Require | Iterate | Call | FindRoot):
+        if not (s.is_straight and s.bound()):
             provide(s)
     for value in wanted:
         need(symbols_of(value))
@@ -187,13 +174,13 @@ def needed_lets(lets: Iterable[Let], values: Iterable[sp.Expr]) -> tuple[Let, ..
 
 
 def written_out(body: Sequence[Statement], known: Iterable[Statement]) -> tuple[Statement, ...]:
-    """The statements; where a reason reads a name that is bound only later, its value stands in place of the name."""
+    """The statements; if a reason reads a name that is bound only later, its value stands in place of the name."""
     values = {s.name: s.value for s in known if isinstance(s, Let)}
     found: list[Statement] = []
     bound: set[sp.Symbol] = set()
     for s in body:
         found.append(with_bound_reason(s, bound, values))
-        bound |= set(binds(s))
+        bound |= set(s.bound())
     return tuple(found)
 
 
@@ -217,7 +204,7 @@ def _in_full(value: sp.Basic, bound: Container[sp.Symbol], values: Mapping[sp.Sy
 
 
 @kept_by_identity(200)
-def untold(program: Program) -> Program:
+def without_reasons(program: Program) -> Program:
     """The program for callers that get a status but no reason: nothing is computed for reasons."""
     if not any(next(reason_expressions(s), None) is not None for s in program.body):
         return program
@@ -232,7 +219,7 @@ def untold(program: Program) -> Program:
 
 def is_read_once(program: Program, name: sp.Symbol) -> bool:
     """Whether exactly one statement or output reads a name, and no reason does."""
-    readers = sum(name in reads(s) for s in program.body) + sum(name in symbols_of(o.value) for o in program.outputs)
+    readers = sum(name in s.reads() for s in program.body) + sum(name in symbols_of(o.value) for o in program.outputs)
     return readers == 1 and not any(name in symbols_of(e) for s in program.body for e in reason_expressions(s))
 
 
@@ -253,7 +240,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
         body: list[Statement] = []
         for s in program.body:
             if not isinstance(s, Let):
-                body.append(_with_names(calling(s, lowered), names))
+                body.append(_with_names(s.calling(lowered), names))
                 continue
             value = replaced(s.value, names)
             if not {v.name for v in symbols_of(value)} <= known:
@@ -286,13 +273,6 @@ def _with_constants_before_loops(program: Program, constants: set[str]) -> Progr
             s = replace(s, step=tuple(one for one in s.step if one not in fixed))
         body.append(s)
     return replace(program, body=tuple(body))
-
-
-def calling(statement: Statement, programs: Mapping[str, Program]) -> Statement:
-    """The statement; a call then calls the current version of its program."""
-    if isinstance(statement, FindRoot):
-        return replace(statement, trial=programs[statement.trial.name], finish=programs[statement.finish.name])
-    return replace(statement, program=programs[statement.program.name]) if isinstance(statement, Call) else statement
 
 
 def _with_names(statement: Statement, names: Mapping[sp.Symbol, sp.Expr]) -> Statement:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import numpy as np
@@ -23,7 +24,7 @@ class Root(sp.Function):
     is_nonnegative = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """The derivative; zero where the root is zero."""
+        """The derivative; zero if the root is zero."""
         is_long = sp.Gt(self.args[0], 0)
         return Select(is_long, 1 / (2 * Select(is_long, self, sp.Integer(1))), sp.Integer(0))
 
@@ -106,20 +107,6 @@ def larger(first: sp.Expr, second: sp.Expr) -> Select:
     return Select(sp.Gt(first, second), first, second)
 
 
-PRIMITIVES: tuple[type[sp.Function], ...] = (
-    sp.sin,
-    sp.cos,
-    sp.Abs,
-    Root,
-    Atan2,
-    Select,
-    ToReal,
-    Wrap,
-    NearestPeriod,
-    NearestOnArc,
-)
-
-
 def nearest_period(value: Array, centre: Array) -> Array:
     """value + 360 k in [centre - 180 - EDGE, centre + 180 - EDGE)."""
     return value - 360.0 * np.floor((value - centre + _SHIFT) / 360.0)
@@ -136,7 +123,7 @@ def nearest_on_arc(angle: Array, centre: Array, half: Array) -> Array:
     return centre + np.clip(delta, -half, half)
 
 
-VALUES: dict[type[sp.Basic], Callable[..., Array]] = {
+_PRIMITIVES: dict[type[sp.Function], Callable[..., Array]] = {
     sp.sin: np.sin,
     sp.cos: np.cos,
     sp.Abs: np.abs,
@@ -147,6 +134,14 @@ VALUES: dict[type[sp.Basic], Callable[..., Array]] = {
     Wrap: wrap,
     NearestPeriod: nearest_period,
     NearestOnArc: nearest_on_arc,
+}
+PRIMITIVES = tuple(_PRIMITIVES)
+FUNCTIONS = tuple(primitive for primitive in PRIMITIVES if primitive not in (ToReal, Wrap))
+"""The primitives that a language calls: it writes the other two as arithmetic."""
+KEYS = {one: re.sub(r"(?<=[a-z\d])(?=[A-Z])", "_", one.__name__).lower() for one in PRIMITIVES}
+"""Their neutral names, from which a language makes its own: `nearest_on_arc`."""
+VALUES: dict[type[sp.Basic], Callable[..., Array]] = {
+    **_PRIMITIVES,
     sp.Le: np.less_equal,
     sp.Lt: np.less,
     sp.Ge: np.greater_equal,

@@ -15,11 +15,14 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 from math import isqrt
+from operator import is_
+from typing import Self
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from derive.ir.reason import Reason
+from derive.ir.statement import Common
 from derive.ir.symbols import PLACE, is_decided, names_in
 
 
@@ -35,15 +38,16 @@ class Status(Enum):
 
 
 @dataclass(frozen=True)
-class Let:
+class Let(Common):
     """Bind `name` to `value`. `note` names the step of the derivation, for the reader."""
 
+    expression_fields, name_fields = ("value",), ("name",)
     name: sp.Symbol
     value: sp.Basic
     """The value of a number, or the condition of a flag."""
     note: str = ""
     turn_of: str = ""
-    """The axis whose whole turns the value chooses; empty where it chooses none."""
+    """The axis whose whole turns the value chooses; empty if it chooses none."""
 
     @property
     def comment(self) -> str:
@@ -53,14 +57,15 @@ class Let:
 
 
 @dataclass(frozen=True)
-class Require:
+class Require(Common):
     """Set the status `otherwise` where `condition` does not hold. Conditions are positive: NaN fails them."""
 
+    expression_fields, refuses = ("condition",), True
     condition: Boolean
     otherwise: Status
     note: str = ""
     reason: Reason | None = None
-    """The reason that a caller gets; None where it gets the status alone."""
+    """The reason that a caller gets; None if it gets the status alone."""
 
     @property
     def comment(self) -> str:
@@ -69,16 +74,17 @@ class Require:
 
 
 @dataclass(frozen=True)
-class Solve:
+class Solve(Common):
     """Bind `names` to matrix^-1 right, by LU decomposition with partial pivoting.
 
-    Total: determinant and solution are zeros where the matrix is singular, or a number is NaN or larger than
+    Total: determinant and solution are zeros if the matrix is singular, or a number is NaN or larger than
     `SOLVABLE`.
 
     All three are given by rows. The matrix is square; `names` and `right` have a column for each right-hand side, and
-    none where only the determinant is wanted.
+    none if only the determinant is wanted.
     """
 
+    expression_fields, name_fields = ("matrix", "right"), ("names", "determinant")
     names: tuple[sp.Symbol, ...]
     matrix: tuple[sp.Expr, ...]
     right: tuple[sp.Expr, ...] = ()
@@ -97,7 +103,7 @@ class Solve:
 
 
 @dataclass(frozen=True)
-class Iterate:
+class Iterate(Common):
     """Repeat `step` from `start` until `done` holds, at most `limit` times; else the status is `otherwise`, if there is
     one.
 
@@ -105,6 +111,7 @@ class Iterate:
     the step are bound behind the loop, too, and belong to the final state.
     """
 
+    expression_fields, name_fields, is_straight = ("start", "step", "done", "following"), ("state", "step"), False
     state: tuple[sp.Symbol, ...]
     start: tuple[sp.Expr, ...]
     step: tuple[Let | Solve, ...]
@@ -117,16 +124,26 @@ class Iterate:
     reason: Reason | None = None
     """The reason given to a caller where `done` never holds; it has no amount."""
 
+    @property
+    def refuses(self) -> bool:
+        """Whether it has a status for the case that `done` never holds."""
+        return self.otherwise is not None
+
+    def reads(self) -> set[sp.Symbol]:
+        """The names that it reads and does not bind itself: the step reads what it binds."""
+        return super().reads() - set(self.bound())
+
 
 @dataclass(frozen=True)
-class Call:
-    """Run a program that several programs share, and bind names of its outputs; where it refuses, so does the caller.
+class Call(Common):
+    """Run a program that several programs share, and bind names of its outputs; if it refuses, so does the caller.
 
     given: the values of the arguments. The other inputs of the shared program are constants of the machine, which are
     inputs of the caller, too. Where `wanted` does not hold the program is not run, and the names are bound to false
     and zeros.
     """
 
+    name_fields, program_fields, is_straight, refuses = ("names",), ("program",), False, True
     program: Program
     given: tuple[tuple[sp.Symbol, sp.Expr], ...]
     names: tuple[sp.Symbol, ...]
@@ -158,23 +175,38 @@ class Call:
         arguments = {name for name, _ in self.given}
         return tuple(s for s in self.program.inputs if s not in arguments)
 
+    def children(self) -> tuple[sp.Basic, ...]:
+        """The condition, and the values of the arguments."""
+        return (self.wanted, *(value for _, value in self.given))
+
+    def with_children(self, values: Iterable[sp.Basic]) -> Self:
+        """The same call with another condition and other arguments."""
+        rest = iter(values)
+        return replace(self, wanted=next(rest), given=tuple((name, next(rest)) for name, _ in self.given))
+
+    def reads(self) -> set[sp.Symbol]:
+        """The names that it reads, those of constants among them."""
+        return super().reads() | set(self.constants)
+
 
 @dataclass(frozen=True)
-class FindRoot:
+class FindRoot(Common):
     """Bind `names` to true and the outputs of `finish` at the root of `trial` that fits and is nearest to `start` on
     the circle.
 
     A trial is a function of `TRIED`, with the two-root step on the wanted side (`SIDE` = 1) or the other (-1), and the
     angle of the step with the number `FREED` set to `FREED_ANGLE` (-1: no step). Its outputs are the residual with its
-    slope, the guard, which is negative where there is no solution, with its slope, then cosine and sine of every angle
+    slope, the guard, which is negative if there is no solution, with its slope, then cosine and sine of every angle
     that may be free. `finish` has the same arguments; its first output tells whether the root is on the wanted
-    branch. `roots` says how roots are found. Where there is none, or `wanted` is false, the names are bound to false
+    branch. `roots` says how roots are found. If there is none, or `wanted` is false, the names are bound to false
     and zeros.
 
     Where candidates for the roots are known in closed form, nothing is tried: `trial` lists them. Its outputs are, for
     each of `sides`, a joint value, and whether it is a candidate on this side.
     """
 
+    expression_fields, name_fields, program_fields = ("start", "wanted"), ("names",), ("trial", "finish")
+    is_straight = False
     trial: Program
     finish: Program
     start: sp.Expr
@@ -184,7 +216,7 @@ class FindRoot:
     """The arguments of both programs besides the place; their other inputs are constants of the machine."""
     note: str = ""
     sides: tuple[int, ...] = ()
-    """The side of each listed candidate; empty where a trial is scanned."""
+    """The side of each listed candidate; empty if a trial is scanned."""
 
     @property
     def is_listed(self) -> bool:
@@ -194,6 +226,10 @@ class FindRoot:
     def given(self, program: Program) -> tuple[sp.Symbol, ...]:
         """The arguments of one of the programs, in the order of its inputs."""
         return tuple(s for s in program.inputs if s in self.arguments or s in PLACE)
+
+    def reads(self) -> set[sp.Symbol]:
+        """The names that it reads, and those that its programs read besides the place."""
+        return super().reads() | {s for p in self.programs() for s in p.inputs}.difference(PLACE)
 
 
 Statement = Let | Require | Solve | Iterate | Call | FindRoot
@@ -228,13 +264,13 @@ class Program:
 
     def bound(self) -> tuple[sp.Symbol, ...]:
         """Every name that a statement binds, in order."""
-        return tuple(name for s in self.body for name in binds(s))
+        return tuple(name for s in self.body for name in s.bound())
 
     def reads(self) -> frozenset[sp.Symbol]:
         """Every free symbol that a statement, its reason or an output reads."""
         used: set[sp.Symbol] = set()
         for statement in self.body:
-            used |= reads(statement).union(*map(names_in, reason_expressions(statement)))
+            used |= statement.reads().union(*map(names_in, reason_expressions(statement)))
         for output in self.outputs:
             used |= names_in(output.value)
         return frozenset(used) - set(self.bound())
@@ -242,38 +278,12 @@ class Program:
     @property
     def refuses(self) -> bool:
         """Whether a statement may end the program."""
-        loops = (s for s in self.body if isinstance(s, Iterate))
-        return any(isinstance(s, Require | Call) for s in self.body) or any(s.otherwise is not None for s in loops)
+        return any(s.refuses for s in self.body)
 
 
 def binds(statement: Statement) -> tuple[sp.Symbol, ...]:
-    """The names a statement binds, in order."""
-    if isinstance(statement, Let):
-        return (statement.name,)
-    if isinstance(statement, Solve):
-        return statement.names + (() if statement.determinant is None else (statement.determinant,))
-    if isinstance(statement, Iterate):
-        return (*statement.state, *(name for s in statement.step for name in binds(s)))
-    return statement.names if isinstance(statement, Call | FindRoot) else ()
-
-
-def expressions(statement: Statement) -> Iterator[sp.Basic]:
-    """The expressions of a statement, in the order of their evaluation, without those of its reason."""
-    if isinstance(statement, Let):
-        yield statement.value
-    elif isinstance(statement, Require):
-        yield statement.condition
-    elif isinstance(statement, Solve):
-        yield from (*statement.matrix, *statement.right)
-    elif isinstance(statement, Call):
-        yield from (statement.wanted, *(value for _, value in statement.given))
-    elif isinstance(statement, FindRoot):
-        yield from (statement.start, statement.wanted)
-    else:
-        yield from statement.start
-        for inner in statement.step:
-            yield from expressions(inner)
-        yield from (statement.done, *statement.following)
+    """The names that a statement binds, in order."""
+    return statement.bound()
 
 
 def reason_expressions(statement: Statement) -> Iterator[sp.Expr]:
@@ -282,51 +292,20 @@ def reason_expressions(statement: Statement) -> Iterator[sp.Expr]:
         yield from statement.reason.expressions
 
 
-def reads(statement: Statement) -> set[sp.Symbol]:
-    """The symbols that a statement reads and does not bind itself, without those of its reason."""
-    if isinstance(statement, Let):
-        return set(names_in(statement.value))
-    found = set[sp.Symbol]().union(*map(names_in, expressions(statement)))
-    if isinstance(statement, Call):
-        return found | set(statement.constants)
-    if isinstance(statement, FindRoot):
-        return found | {s for p in (statement.trial, statement.finish) for s in p.inputs}.difference(PLACE)
-    return found - set(binds(statement)) if isinstance(statement, Iterate) else found
-
-
 def shared(programs: Iterable[Program]) -> tuple[Program, ...]:
     """The shared programs that the given programs call, each once and before its callers."""
     found: dict[str, Program] = {}
-    for statement in (s for program in programs for s in program.body):
-        called = [statement.program] if isinstance(statement, Call) else []
-        called += [statement.trial, statement.finish] if isinstance(statement, FindRoot) else []
-        found |= {inner.name: inner for program in called for inner in (*shared([program]), program)}
+    for called in (p for program in programs for statement in program.body for p in statement.programs()):
+        found |= {inner.name: inner for inner in (*shared([called]), called)}
     return tuple(found.values())
 
 
 def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> Statement:
     """The statement with every expression changed, in its reason as well; the names that it binds stay."""
-    if isinstance(statement, Let):
-        value = change(statement.value)
-        return statement if value is statement.value else replace(statement, value=value)
-    if isinstance(statement, Require):
-        reason = None if statement.reason is None else statement.reason.rewritten(change)
-        condition = change(statement.condition)
-        is_same = condition is statement.condition and reason is statement.reason
-        return statement if is_same else replace(statement, condition=condition, reason=reason)
-    if isinstance(statement, Solve):
-        return replace(
-            statement, matrix=tuple(map(change, statement.matrix)), right=tuple(map(change, statement.right))
-        )
-    if isinstance(statement, Call):
-        given = tuple((name, change(value)) for name, value in statement.given)
-        return replace(statement, given=given, wanted=change(statement.wanted))
-    if isinstance(statement, FindRoot):
-        return replace(statement, start=change(statement.start), wanted=change(statement.wanted))
-    return replace(
-        statement,
-        start=tuple(map(change, statement.start)),
-        step=tuple(s for s in (rewritten(s, change) for s in statement.step) if isinstance(s, Let | Solve)),
-        following=tuple(map(change, statement.following)),
-        done=change(statement.done),
-    )
+    before = statement.children()
+    after = [change(value) for value in before]
+    found = statement if all(map(is_, before, after)) else statement.with_children(after)
+    if not isinstance(found, Require) or found.reason is None:
+        return found
+    reason = found.reason.rewritten(change)
+    return found if reason is found.reason else replace(found, reason=reason)

@@ -120,7 +120,7 @@ class Reason:
     subject: Subject
     why: Why
     amount: sp.Expr | None = None
-    """How much is missing where the condition does not hold; None where that is no quantity."""
+    """How much is missing where the condition does not hold; None if that is no quantity."""
     unit: Unit = Unit.NONE
     turns: tuple[OtherTurn, ...] = ()
     """The axes that may be inside on another turn, where a limit refuses: the first that is gives the reason."""

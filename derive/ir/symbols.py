@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
+from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean, BooleanAtom
 
 from derive.ir.constants import DEGREE
+
+if TYPE_CHECKING:
+    from derive.ir.program import Program
 
 
 class Flag(sp.Symbol):
@@ -135,7 +139,7 @@ POSITION = tuple(map(real, COORDINATE_NAMES))
 HOME_ROTATION = tuple(real(f"home_{r.name}") for r in ROTATION_ENTRIES)
 
 FLANGE_AXIS = tuple(real(f"flange_axis_{c}") for c in COORDINATE_NAMES)
-"""The line about which the carrying flange turns, in the frame of the flange; zero where the flange turns freely."""
+"""The line about which the carrying flange turns, in the frame of the flange; zero if the flange turns freely."""
 BASE_AXIS = tuple(real(f"base_axis_{c}") for c in COORDINATE_NAMES)
 """The line of `FLANGE_AXIS` as the base sees it."""
 
@@ -183,3 +187,35 @@ def without_words(name: str, signs: Sequence[Sign]) -> tuple[str, tuple[str, ...
         if word is not None:
             name, found = name.removesuffix(f"_{word}"), [word, *found]
     return name, tuple(found)
+
+
+_LONGEST = 80
+"""The most letters of a new name, without its number."""
+
+
+class Names:
+    """The names in use, also if a language joins the words of a name. A new name is in use as soon as it is made."""
+
+    def __init__(self, taken: Iterable[str]) -> None:
+        """taken: the names in use, written as a program writes them, with underscores between words."""
+        self._joined = {name.replace("_", "") for name in taken}
+
+    @classmethod
+    def of(cls, program: Program) -> Names:
+        """The names that a program reads or binds."""
+        return cls(s.name for s in (*program.inputs, *program.bound()))
+
+    def fresh(self, proposal: str, like: sp.Symbol | None = None) -> sp.Symbol:
+        """The proposed name, shortened if it is too long, and followed by a number if it is in use.
+
+        like: a symbol whose type the new name gets; without it the new name is a real number.
+        """
+        if len(proposal) > _LONGEST:  # its begin says what the value is, its end where it belongs
+            begin, end = proposal[: _LONGEST // 2], proposal[-_LONGEST // 2 :]
+            proposal = f"{begin.rpartition('_')[0] or begin}_{end.partition('_')[2] or end}"
+        number, name = 1, proposal
+        while name.replace("_", "") in self._joined:
+            number += 1
+            name = f"{proposal}_{number}"
+        self._joined.add(name.replace("_", ""))
+        return real(name) if like is None else called(name, like)

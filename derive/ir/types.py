@@ -1,4 +1,4 @@
-"""The types of the intermediate representation, and the operations on each.
+"""The types of the intermediate representation, the operations on each, and the check of a whole program.
 
     Real     a number
     Bool     a condition, or a name made by `flag`
@@ -14,7 +14,7 @@ is an angle if an angle is bound to it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import Enum
 from functools import cache
 
@@ -22,8 +22,8 @@ import sympy as sp
 from sympy.core.relational import Relational
 
 from derive.ir.constants import DEGREE
-from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
-from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Statement
+from derive.ir.primitives import PRIMITIVES, Atan2, NearestOnArc, NearestPeriod, Select, ToReal, Wrap
+from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, Statement
 from derive.ir.symbols import Flag, is_count, is_decided, names_in
 
 
@@ -71,8 +71,8 @@ def _type_of(value: sp.Basic, angles: frozenset[tuple[sp.Symbol, Type]]) -> Type
         return Type.WRITTEN if value.is_Integer else Type.REAL
     if is_decided(value):
         return Type.BOOL
-    rule = next((rule for kind, rule in _RULES.items() if isinstance(value, kind)), None)
-    if rule is None:
+    rule = next((rule for kind, rule in _RULES.items() if isinstance(value, kind)), _reals)
+    if rule is _reals and not isinstance(value, PRIMITIVES):
         raise IllTypedError(f"{type(value).__name__} is not a primitive")
     return rule(value, [type_of(part, known) for part in value.args])
 
@@ -113,6 +113,74 @@ def output_types(program: Program) -> dict[str, Type]:
     """The types of the outputs of a program."""
     known = angles_in(program.body)
     return {output.name: type_of(output.value, known) for output in program.outputs}
+
+
+def check_types(program: Program) -> None:
+    """Raise `IllTypedError` for a statement or an output that mixes types."""
+    known: dict[sp.Symbol, Type] = {}
+    for statement in program.body:
+        known |= check_statement(statement, known)
+    for output in program.outputs:
+        type_of(output.value, known)
+
+
+def check_statement(statement: Statement, known: Known) -> dict[sp.Symbol, Type]:
+    """The names that a statement binds to angles, given the `known` ones; raises `IllTypedError` if it mixes types."""
+    if isinstance(statement, Let):
+        return _check_let(statement, known)
+    bound = angles_of(statement, known)
+    if isinstance(statement, Iterate):
+        _check_loop(statement, known, {**known, **bound})
+        return bound
+    for value, wanted in _wanted(statement):
+        _check(value, type_of(value, known), wanted)
+    if isinstance(statement, Call):
+        types = output_types(statement.program)
+        for name in statement.names:
+            _check(name, types[name.name], type_of(name, bound))
+    if isinstance(statement, FindRoot):
+        found = list(output_types(statement.finish).values())
+        for name, kind in zip(statement.names, found, strict=True):
+            _check(name, kind, type_of(name, bound))
+        _check(statement.names[0], found[0], Type.BOOL)
+    return bound
+
+
+def _check_let(let: Let, known: Known) -> dict[sp.Symbol, Type]:
+    found = type_of(let.value, known)
+    bound = {let.name: found} if found in TURNING else {}
+    wanted = type_of(let.name, bound)
+    if found is not wanted:
+        _check(let.value, found, wanted)
+    return bound
+
+
+def _wanted(statement: Statement) -> Iterator[tuple[sp.Basic, Type]]:
+    """The values of a statement other than a `Let`, with the types that they must have."""
+    if isinstance(statement, Require):
+        yield statement.condition, Type.BOOL
+    elif isinstance(statement, Solve):
+        yield from ((value, Type.REAL) for value in (*statement.matrix, *statement.right))
+    elif isinstance(statement, Call):
+        yield from ((value, type_of(name)) for name, value in statement.given)
+        yield statement.wanted, Type.BOOL
+    elif isinstance(statement, FindRoot):
+        yield from ((statement.start, Type.REAL), (statement.wanted, Type.BOOL))
+
+
+def _check_loop(loop: Iterate, known: Known, inside: Known) -> None:
+    """known, inside: the names that are angles in front of the loop, and in it."""
+    for inner in loop.step:
+        check_statement(inner, inside)
+    for name, start, following in zip(loop.state, loop.start, loop.following, strict=True):
+        _check(start, type_of(start, known), type_of(name, inside))
+        _check(following, type_of(following, inside), type_of(name, inside))
+    _check(loop.done, type_of(loop.done, inside), Type.BOOL)
+
+
+def _check(value: sp.Basic, found: Type, wanted: Type) -> None:
+    if not fits(found, wanted):
+        raise IllTypedError(f"{value} is {found.value}, and {wanted.value} is wanted")
 
 
 def _same(value: sp.Basic, found: Sequence[Type], *among: Type) -> Type:
@@ -216,7 +284,6 @@ _RULES: dict[type[sp.Basic], Callable[[sp.Basic, Sequence[Type]], Type]] = {
     sp.Abs: _numbers,
     sp.sin: _of_angle,
     sp.cos: _of_angle,
-    Root: _reals,
     Atan2: _direction,
     Wrap: _of_angle,
     NearestPeriod: _period,
@@ -228,4 +295,5 @@ _RULES: dict[type[sp.Basic], Callable[[sp.Basic, Sequence[Type]], Type]] = {
     sp.Or: _logic,
     sp.Not: _opposite,
 }
-"""For each operation, the function from the types of its parts to the type of its result."""
+"""For each operation, the function from the types of its parts to the type of its result; any other primitive makes a
+Real of Reals."""

@@ -9,10 +9,9 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import PRIMITIVES
-from derive.ir.program import Call, Iterate, Program, Solve, Statement, binds, expressions, reason_expressions
+from derive.ir.program import Call, Iterate, Program, Solve, Statement, reason_expressions
 from derive.ir.symbols import is_decided, names_in, symbols_of
-from derive.ir.typed import check_types
-from derive.ir.types import IllTypedError
+from derive.ir.types import IllTypedError, check_types
 
 _PORTABLE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _ARITHMETIC = (sp.Add, sp.Mul, sp.Pow, sp.Symbol, sp.Rational, sp.Float, sp.Integer)
@@ -62,9 +61,9 @@ def _check_statement(program: Program, statement: Statement, bound: dict[str, sp
             raise BrokenProgram(f"{program.name}: the matrix, the right-hand sides and the names do not fit together")
     if isinstance(statement, Call):
         _check_call(program, statement)
-    for value in (*expressions(statement), *reason_expressions(statement)):
+    for value in (*statement.children(), *reason_expressions(statement)):
         _check_expression(program, value, bound)
-    bound |= {name.name: name for name in binds(statement)}
+    bound |= {name.name: name for name in statement.bound()}
 
 
 def _check_call(program: Program, call: Call) -> None:
@@ -110,7 +109,7 @@ def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:
 
 @cache
 def _joined(name: str) -> str:
-    """A name as Structured Text compares it, with its words joined and without case; empty where it is not portable."""
+    """A name as Structured Text compares it, with its words joined and without case; empty if it is not portable."""
     return name.replace("_", "") if _PORTABLE.match(name) else ""
 
 
@@ -136,7 +135,7 @@ def _refuse_name(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol])
 
 @cache
 def _strange_part(value: sp.Basic) -> str:
-    """A description of the part of an expression that no language can print; empty where every part can be printed."""
+    """A description of the part of an expression that no language can print; empty if every part can be printed."""
     for node in sp.preorder_traversal(value):
         if isinstance(node, sp.Pow) and not _is_power_printable(node):
             return f"power {node} is not an integer power"

@@ -18,12 +18,7 @@ from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.program import Let, Output, Program, Statement
 from derive.ir.symbols import OFFSET, real
-from derive.kinematics.branches.assembly import (
-    Assembled,
-    assembly_checks,
-    bound_checks,
-    mirror_checks,
-)
+from derive.kinematics.branches.assembly import Assembled, assembly_checks, bound_checks, mirror_checks
 from derive.kinematics.branches.assignment import Assignment, assign, margin_lets, with_branch_signs
 from derive.kinematics.bundle import bundle_of
 from derive.kinematics.coupling import coupling_programs
@@ -43,12 +38,7 @@ from derive.kinematics.scan.derivations import Scanned, from_joints, trial_on_br
 from derive.kinematics.scan.inverse import branch_statements, search_given
 from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements
 from derive.kinematics.scan.programs import names_of_search
-from derive.kinematics.shared_names import (
-    SharedName,
-    refuse_names,
-    refuse_shared_names,
-    with_free_names,
-)
+from derive.kinematics.shared_names import SharedName, refuse_names, refuse_shared_names, with_free_names
 from derive.kinematics.solution import Solved, prepared, solve_machine
 from derive.plate.newton import found_again
 from derive.plate.turning import joints_at_home
@@ -56,15 +46,15 @@ from derive.solver.unsolved import Unsolved
 
 
 def build(mechanism: Mechanism) -> Kinematics:
-    """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` where they cannot be derived."""
-    told = almost_right_angles(mechanism)
+    """Derive all programs of a mechanism. Raises `Unsolved` or `DescriptionError` if they cannot be derived."""
+    warning = almost_right_angles(mechanism)
     try:
-        noted = replace(mechanism, notes=(*mechanism.notes, f"{told}.")) if told else mechanism
+        noted = replace(mechanism, notes=(*mechanism.notes, f"{warning}.")) if warning else mechanism
         found = with_free_names(noted, lambda further: replace(_built(prepared(noted, further)), further=dict(further)))
         return with_share(found)
     except (Unsolved, DescriptionError) as problem:
-        if told:
-            raise type(problem)(f"{problem}; {told}") from None
+        if warning:
+            raise type(problem)(f"{problem}; {warning}") from None
         raise
 
 

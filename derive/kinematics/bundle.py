@@ -27,7 +27,7 @@ from derive.kinematics.kinematics import Kinematics, Margin
 from derive.kinematics.parameters import constants_of, machine_parameters, setup_program
 from derive.kinematics.shared_names import refuse_names
 from derive.kinematics.solution import Solution
-from derive.lowering.lower import lowered
+from derive.lowering.passes import lowered
 from derive.work import stage
 
 

@@ -16,7 +16,7 @@ from derive.kinematics.kinematics import Freedom
 
 
 def projection_program(mechanism: Mechanism) -> Program:
-    """The rotation of the flange nearest to the commanded one; where it follows a direction, with any twist about it.
+    """The rotation of the flange nearest to the commanded one; if it follows a direction, with any twist about it.
 
     The rotation of a pitch depends on the position, too, so there is no projection before the position is known.
     """

@@ -33,8 +33,8 @@ from derive.ir.reason import Unit, Why, about, about_machine
 from derive.ir.symbols import HEADING, OFFSET, POSITION, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.kinematics.scan.guards import without_wrist
 from derive.kinematics.scan.machine_checks import MachineCheck, apart
-from derive.optimize.simplify import shorter
-from derive.plate.passive import commanded, passive_statements, spelled
+from derive.lowering.passes import DERIVED, NOTHING, applied
+from derive.plate.passive import commanded, passive_statements, renamed_in
 from derive.solver.solve import Derivation, solve
 from derive.work import counted
 
@@ -174,7 +174,7 @@ def heading_parts(behind: sp.Matrix) -> tuple[sp.Expr, sp.Expr]:
 
 
 def heading_lets(behind: sp.Matrix) -> tuple[Statement, ...]:
-    """The heading of the commanded rotation; there is none where the tool points exactly the opposite way."""
+    """The heading of the commanded rotation; there is none if the tool points exactly the opposite way."""
     along, across = real("heading_along"), real("heading_across")
     length, divisor = real("heading_length"), real("heading_divisor")
     determined = sp.Or(sp.Gt(sp.Abs(along), FREE_ANGLE), sp.Gt(sp.Abs(across), FREE_ANGLE))
@@ -219,11 +219,11 @@ def inverse_program(
         if let.name not in resolved
     )
     outputs = [Output(j.axis.name, j.axis) for j in mechanism.joints]
-    body = spelled((*inverse.naming, *in_plane, *statements, *last, *axes, *of_axes), commanded(mechanism))
+    body = renamed_in((*inverse.naming, *in_plane, *statements, *last, *axes, *of_axes), commanded(mechanism))
     draft = normalise(name, body, outputs)
     groups = (POSITION, OFFSET, tuple(j.reference for j in mechanism.joints))
     checks = tuple(check for group in groups for check in finite([s for s in group if s in draft.inputs]))
-    return shorter(normalise(name, (*checks, *draft.body), draft.outputs))
+    return applied(DERIVED, normalise(name, (*checks, *draft.body), draft.outputs), NOTHING)
 
 
 def _in_plane(mechanism: Mechanism, name: str, value: sp.Expr) -> Require:

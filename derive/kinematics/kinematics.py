@@ -106,13 +106,13 @@ class Kinematics:
     setup_less_windows   as setup, without `lowest_a1` `highest_a1` `single_a1` `mid_a1` of the axes: drives may hand
                          over limits of their own, so `windows.limits_of_axis` computes these
     forward          axis_* → x y z r11…r33, and `branch_<name>` per branch: the signed margin, positive = byte 1, at
-                     most 1e-11 in size = byte 3 (the branches coincide). Where it iterates, it and all other programs
+                     most 1e-11 in size = byte 3 (the branches coincide). If it iterates, it and all other programs
                      of axis_* begin at the pose start_x … start_z, start_r11 … start_r33: outputs of `setup`, which
                      a caller may replace
     orientation      axis_* → r11…r33
     branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*: one branch, with periods, without
                      limits
-    search_given     as branch → the arguments of the root scan of that branch; None where there is a closed form
+    search_given     as branch → the arguments of the root scan of that branch; None if there is a closed form
     from_joints      angles and lengths of the joints, turn_*, ref_* → axis_*; None without a root scan
     derived_branch   as branch, step by step as it was derived; the optimiser unrolls it
     limits           axis_* → no outputs; its conditions are the axis limits and the limits of coupled quantities
@@ -120,7 +120,7 @@ class Kinematics:
                      of a margin that has one
     jacobian         axis_* → j11, j12, … (row, column from 1): rows are `rows`, columns the axes; per radian
     image            no inputs → zero_r11…zero_r33, rot_x rot_y rot_z (base), u_x u_y u_z (flange): R·u = rot
-    projection       r11…r33 → the nearest rotation that the flange can take; None where the task has no rotation
+    projection       r11…r33 → the nearest rotation that the flange can take; None if the task has no rotation
     offset_branch    x y z of the point, point_*, sigma_*, turn_*, ref_* → axis_*; None without the offset interface
     offset_configuration   axis_*, point_* → `branch_<name>`; None likewise
     twist            axis_* → j11 … of all six rows, x y z turn x turn y turn z; None where `jacobian` has all six, and
@@ -172,7 +172,7 @@ class Kinematics:
     self_test: SelfTest | None = None
     """The cases of the self-test on the controller; None until they are made."""
     undrawn: str = ""
-    """The reason why there is no drawing; empty where there is one."""
+    """The reason why there is no drawing; empty if there is one."""
     further: Mapping[str, int] = field(default_factory=dict)
     """The inputs that got another name inside because the derivation uses theirs: see `with_inner_names`."""
 
@@ -235,7 +235,7 @@ class Kinematics:
     @property
     def distance_joints(self) -> tuple[Joint, ...]:
         """The axes whose squared differences decide an automatic choice: the rotary ones, or all
-        where there is none.
+        if there is none.
         """
         angles = tuple(j for j in self.mechanism.joints if j.is_angle)
         return angles or self.mechanism.joints

@@ -81,10 +81,7 @@ def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:
         return []
     name, chosen = mechanism.assembly.parameter, mechanism.assembly.names[1]
     meaning = f"assembly mode: {chosen} instead of {mechanism.assembly.names[0]}"
-    return [
-        Parameter(real(name), name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, 0.0),
-        _least_margin(),
-    ]
+    return [Parameter(real(name), name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, 0.0), _least_margin()]
 
 
 def _at_home(branch: Branch) -> Parameter:
@@ -167,8 +164,8 @@ def _of_machine(
             body += window.ends
             outputs += window.outputs
     outputs += [Output(let.name.name, let.name) for let in numbers]
-    sized, constants = _size(mechanism, at_home)
-    body += sized
+    sizes, constants = _size(mechanism, at_home)
+    body += sizes
     outputs += constants
     if chooses_by_lengths(mechanism):
         body.append(Let(TIE_OF_LENGTHS, TIE_SHARE**2 * SCALE**2, "squared distances that differ by less are equal"))
@@ -207,7 +204,7 @@ def chooses_by_lengths(mechanism: Mechanism) -> bool:
 
 
 def machine_scale(mechanism: Mechanism) -> sp.Expr:
-    """The sum of the lengths of the description, given as parameters or as numbers; where there is none, one unit of
+    """The sum of the lengths of the description, given as parameters or as numbers; if there is none, one unit of
     length and all distances, which may be zero.
     """
     if not has_length(mechanism):

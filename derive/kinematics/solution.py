@@ -42,8 +42,8 @@ class Solved:
     @property
     def factors(self) -> tuple[Factor, ...]:
         """The factors of the determinants of the two Jacobians, one for each kind of singularity."""
-        told: list[Assignment | Conditioning] = [*self.assignments, *self.inverse.derivation.conditionings]
-        found = [factor_of(self.mechanism, one) for one in told]
+        steps: list[Assignment | Conditioning] = [*self.assignments, *self.inverse.derivation.conditionings]
+        found = [factor_of(self.mechanism, one) for one in steps]
         if self.mechanism.passive:
             found.append(Factor(GUIDES, guides_determinant(self.mechanism)))
         if self.closed.margin is not None:

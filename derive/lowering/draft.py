@@ -14,7 +14,7 @@ import sympy as sp
 
 from derive.ir.graph import PRODUCT, Graph, Node, Value
 from derive.ir.primitives import Root
-from derive.ir.program import Iterate, Let, Program, Statement, expressions, reason_expressions
+from derive.ir.program import Iterate, Let, Program, Statement, reason_expressions
 
 _ONE = sp.Integer(1)
 
@@ -115,7 +115,7 @@ class _Reading:
             yield self._effect(statement)
 
     def _bind(self, let: Let, order: int) -> Node | None:
-        """Name a value and return its node; None where the value has a name already, or needs none."""
+        """Name a value and return its node; None if the value has a name already, or needs none."""
         value = self.value(let.value)
         self._bound[let.name] = value
         if value.node.is_leaf or value.node in self.names:
@@ -124,10 +124,8 @@ class _Reading:
         return value.node
 
     def _effect(self, statement: Statement) -> Effect:
-        read, refused = (
-            tuple((e, self.value(e)) for e in found(statement)) for found in (expressions, reason_expressions)
-        )
-        return Effect(statement, read, refused)
+        found = statement.children(), reason_expressions(statement)
+        return Effect(statement, *(tuple((e, self.value(e)) for e in expressions) for expressions in found))
 
     def _loop(self, loop: Iterate, order: int) -> Loop:
         start = tuple(map(self.value, loop.start))
@@ -163,7 +161,7 @@ class _Reading:
 
 
 def changed(draft: Draft, change: Callable[[Value], Value]) -> Draft:
-    """The draft with every value changed. Where two values become one, so do their names."""
+    """The draft with every value changed. If two values become one, so do their names."""
     names: dict[Node, Named] = {}
     for node, named in draft.names.items():
         value = change(Value(node, 1))

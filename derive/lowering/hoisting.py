@@ -12,11 +12,11 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE
 from derive.ir.graph import PRODUCT, SUM, Graph, Node, Value, reached
-from derive.ir.names import Names
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Output, Program
+from derive.ir.symbols import Names
 from derive.lowering.draft import Draft, Named, Rewriting, values_of
-from derive.lowering.wording import said
+from derive.lowering.wording import name_for
 from derive.lowering.writing import is_condition, written
 
 
@@ -29,20 +29,20 @@ class Constant:
 
     def __call__(self, node: Node) -> bool:
         """Whether a node is a constant, but no number."""
-        return self._look(node) == (True, True)
+        return self._classified(node) == (True, True)
 
     def allows(self, node: Node) -> bool:
         """Whether a node is a constant or a number."""
-        return self._look(node)[0]
+        return self._classified(node)[0]
 
-    def _look(self, node: Node) -> tuple[bool, bool]:
+    def _classified(self, node: Node) -> tuple[bool, bool]:
         known = self._known.get(node)
         if known is None:
             if node.is_leaf:
                 is_name = isinstance(node.head, sp.Symbol) and node.head != DEGREE
                 known = (not is_name or str(node.head) in self._names, is_name)
             else:
-                inner = [self._look(n) for n in node.read]
+                inner = [self._classified(n) for n in node.read]
                 known = (all(i[0] for i in inner), any(i[1] for i in inner))
             self._known[node] = known
         return known
@@ -107,7 +107,7 @@ def hoisted(
         if named is not None:
             names[node] = replace(named, name=free.fresh(named.name.name, named.name), order=order)
             continue
-        proposal = said(Value(node, 1), called, readers.get(node, ""))
+        proposal = name_for(Value(node, 1), called, readers.get(node, ""))
         names[node] = Named(free.fresh(proposal), 1, "", order)
     own = {node: named for node, named in names.items() if node not in elsewhere}
     outputs = tuple(Output(named.name.name, named.name) for named in own.values())

@@ -41,7 +41,7 @@ class _Opening(Rewriting):
         return self.graph.sum(terms)
 
     def _opened(self, term: Value, reader: Node) -> list[Value]:
-        """The terms of a part, with the sign of the part; none where the part stays."""
+        """The terms of a part, with the sign of the part; none if the part stays."""
         if not self._is_sum(term.node) or len(self._readers.get(term.node, ())) != 1:  # a named part may be unread
             return []
         inner = [Value(t.node, t.sign * term.sign) for t in term.node.parts]

@@ -13,36 +13,27 @@ where it is needed, because a program is total.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import sympy as sp
 
 from derive.ir.passes import with_bound_reason
 from derive.ir.primitives import Select
-from derive.ir.program import Let, Program, Statement, binds, reads
+from derive.ir.program import Let, Program, Require, Statement
 from derive.ir.symbols import names_in
 from derive.ir.tree import If, Item, bound_behind, read_in
-from derive.kept import kept_by_identity
-from derive.lowering.decided import decided
 from derive.lowering.stretches import gathered
 
 
-@kept_by_identity(400)
-def structured(program: Program) -> tuple[Item, ...]:
-    """A program for a language that returns at the first refusal, and executes only one side of a choice."""
-    program = decided(replace(program, body=_together(program.body)))
-    return with_reasons_on_sides(scheduled(program.body, [o.value for o in program.outputs]), program)
-
-
-def _together(body: Sequence[Statement]) -> tuple[Statement, ...]:
-    """The statements with choices by the same condition, and the values that they need, moved to the first such choice.
+def together(program: Program) -> Program:
+    """Move choices by the same condition, and the values that they need, to the first such choice.
 
     They move across refusals, because a program is total. A value that needs a statement of another kind stays.
     """
     stretches: list[list[Let]] = [[]]
     others: list[Statement] = []
-    for statement in body:
+    for statement in program.body:
         if isinstance(statement, Let):
             stretches[-1].append(statement)
         else:
@@ -54,20 +45,40 @@ def _together(body: Sequence[Statement]) -> tuple[Statement, ...]:
             if isinstance(let.value, Select):
                 _advance(let, place, first.setdefault(let.value.args[0], place), stretches, others)
     ends: list[list[Statement]] = [[other] for other in others]
-    return tuple(s for lets, end in zip(stretches, [*ends, []], strict=True) for s in (*lets, *end))
+    body = tuple(s for lets, end in zip(stretches, [*ends, []], strict=True) for s in (*lets, *end))
+    return replace(program, body=body)
 
 
 def _advance(let: Let, place: int, target: int, stretches: list[list[Let]], others: Sequence[Statement]) -> None:
     """Move a statement and all that it needs to the end of an earlier stretch, if everything can be computed there."""
     between = [s for lets in stretches[target + 1 : place + 1] for s in lets]
-    needed = set(reads(let)) | {let.name}
+    needed = set(let.reads()) | {let.name}
     for other in reversed(between):
-        needed |= reads(other) if other.name in needed else set()
-    if not any(needed & set(binds(s)) for s in others[target:place]):
+        needed |= other.reads() if other.name in needed else set()
+    if not any(needed & set(s.bound()) for s in others[target:place]):
         moved = [s for s in between if s.name in needed]
         stretches[target] += moved
         for lets in stretches[target + 1 : place + 1]:
             lets[:] = [s for s in lets if s.name not in needed]
+
+
+def refused_late(body: Iterable[Statement]) -> tuple[Statement, ...]:
+    """Move the conditions behind the values, for arrays: all rows are computed in any case, and values that stand
+    together can share a choice.
+
+    The first conditions check the inputs and stay in front. No condition moves across an iteration, a search or a call:
+    these skip refused rows.
+    """
+    found: list[Statement] = []
+    waiting: list[Statement] = []
+    for statement in body:
+        if isinstance(statement, Require) and not all(isinstance(s, Require) for s in found):
+            waiting.append(statement)
+            continue
+        if not statement.is_straight:
+            found, waiting = [*found, *waiting], []
+        found.append(statement)
+    return (*found, *waiting)
 
 
 def scheduled(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:

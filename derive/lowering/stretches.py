@@ -188,7 +188,7 @@ class _Choice:
 
 
 def _simplified(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:
-    """The bindings without aliases and unused ones; where the negative of a value is computed already, it is used."""
+    """The bindings without aliases and unused ones; if the negative of a value is computed already, it is used."""
     aliases: dict[sp.Basic, sp.Basic] = {}
     known: dict[sp.Basic, sp.Symbol] = {}
     kept: list[Let] = []

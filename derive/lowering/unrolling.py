@@ -19,11 +19,10 @@ from itertools import groupby
 import sympy as sp
 
 from derive.ir.graph import Graph, Node, Value, reached
-from derive.ir.names import Names
 from derive.ir.passes import renamed
 from derive.ir.primitives import Select
-from derive.ir.program import Call, FindRoot, Iterate, Output, Program, Require, Solve, Status, binds
-from derive.ir.symbols import REFUSAL, Choice, Sign, choices, count, suffixed
+from derive.ir.program import Output, Program, Require, Solve, Status
+from derive.ir.symbols import REFUSAL, Choice, Names, Sign, choices, count, suffixed
 from derive.ir.verify import BrokenProgram
 from derive.lowering.draft import Draft, Effect, Named, Reader, Rewriting
 from derive.lowering.writing import written
@@ -35,7 +34,7 @@ def is_straight(program: Program) -> bool:
     """Whether a program can be unrolled: one with an iteration cannot, which takes longer on some branches; nor can a
     program with a call, whose names belong to the shared program.
     """
-    return not any(isinstance(s, Iterate | Call | FindRoot) for s in program.body)
+    return all(s.is_straight for s in program.body)
 
 
 def unroll(program: Program, signs: Sequence[Sign]) -> Program:
@@ -96,7 +95,7 @@ class _Unrolling:
 
     def draft(self) -> Draft:
         """The draft of all branches."""
-        places = [place for place, s in enumerate(self.source.program.body) if binds(s) == () or isinstance(s, Solve)]
+        places = [place for place, s in enumerate(self.source.program.body) if s.bound() == () or isinstance(s, Solve)]
         found = [(place, i) for place, i in zip(places, self.source.items, strict=True) if isinstance(i, Effect)]
         for _, effect in (e for e in found if isinstance(e[1].statement, Solve)):
             self._solve(effect)
@@ -143,13 +142,13 @@ class _Unrolling:
         """Linear equations, once for every assignment of their signs, with names of their own for the solutions."""
         support = self._support(effect.values)
         for _, slot, choice in self._slots_of(support):
-            names = {name: self._called(name, support, choice) for name in binds(effect.statement)}
+            names = {name: self._called(name, support, choice) for name in effect.statement.bound()}
             equations = renamed(effect.statement, names.__getitem__)
             self.items.append(replace(effect.changed(self.at[slot]), statement=equations))
             for other in self.slots:
                 if tuple(other[i] for i in support) == choice:
                     self.at[other].values |= {name: self.graph.leaf(new) for name, new in names.items()}
-        self._of_names |= dict.fromkeys(binds(effect.statement), frozenset(support))
+        self._of_names |= dict.fromkeys(effect.statement.bound(), frozenset(support))
 
     def _name_values(self) -> None:
         """Name the values that have a name in the source; of a value and its negative, name the one without a minus."""

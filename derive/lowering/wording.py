@@ -32,10 +32,10 @@ Called = Callable[[Node], sp.Expr | None]
 """The name of a node, with a minus sign where it is that of the negative."""
 
 
-def said(value: Value, called: Called, reader: str) -> str:
-    """A value in words; where there would be too many, its operation and the name of the first value that reads it.
+def name_for(value: Value, called: Called, reader: str) -> str:
+    """Make a name from the formula of a value; if it is too long, from the operation and the reader of the value.
 
-    called: the names of nodes; reader: the name of the value that reads it, "" where none has a name.
+    called: the names of nodes; reader: the name of the value that reads it, "" if none has a name.
     """
     text = _words(value, called)
     if text is not None and _READABLE.match(text):

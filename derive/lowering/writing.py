@@ -15,14 +15,13 @@ from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
 from derive.ir.graph import ODD, PRODUCT, SUM, Node, Value, reached
-from derive.ir.names import Names
 from derive.ir.passes import with_inputs
 from derive.ir.primitives import Atan2, Select
-from derive.ir.program import Let, Output, Program, Solve, Statement, binds, rewritten
-from derive.ir.symbols import count, is_count
+from derive.ir.program import Let, Output, Program, Solve, Statement, rewritten
+from derive.ir.symbols import Names, count, is_count
 from derive.lowering.cutting import LONGEST, SHORT, letters
 from derive.lowering.draft import Draft, Effect, Item, Named, read_values
-from derive.lowering.wording import said
+from derive.lowering.wording import name_for
 
 _WHOLE = count("whole")
 """A representative of all integers, from which the type of a computed value is found."""
@@ -67,7 +66,7 @@ class _Writer:
         first: dict[Node, Node | None] = {}
         seen: set[Node] = set()
 
-        def look(values: Iterable[Value], reader: Node | None) -> None:
+        def count_readers(values: Iterable[Value], reader: Node | None) -> None:
             pending = [(value.node, reader) for value in reversed(tuple(values))]
             while pending:
                 node, user = pending.pop()
@@ -82,8 +81,8 @@ class _Writer:
                 pending += [(source, above) for source in reversed(node.read)]
 
         for item in self.draft.items:
-            look(read_values(item), None)
-        look(self.draft.outputs, None)
+            count_readers(read_values(item), None)
+        count_readers(self.draft.outputs, None)
         for node in sorted((n for n, times in readers.items() if times > 1), key=lambda n: n.place):
             if node not in self.names and not is_condition(node) and not _is_slight(node, self.names):
                 self.names[node] = self._new_name(node, first[node])
@@ -107,7 +106,7 @@ class _Writer:
         """A new name for a value, or for its negative where that has fewer minus signs."""
         known = None if reader is None else self.names.get(reader) or self.constants.get(reader)
         value = Value(node, self._better_sign(node))
-        proposal = said(value, self._called, "" if known is None else known.name.name)
+        proposal = name_for(value, self._called, "" if known is None else known.name.name)
         order = len(self.draft.program.body) if known is None else known.order
         has_whole_sides = node.head is Select and known is not None and is_count(known.name)
         return Named(
@@ -137,7 +136,7 @@ class _Writer:
             yield from self._effect(item)
             return
         yield from self._bindings(item.start)
-        inside = set(binds(item.statement))
+        inside = set(item.statement.bound())
         outside = [n for n in self._needed(read_values(item)) if not any(r.head in inside for r in reached([n]))]
         yield from self._let(outside)
         step: list[Statement] = []

@@ -19,11 +19,10 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.ir.constants import DEGREE
-from derive.ir.names import Names
 from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, Select
-from derive.ir.program import Let, Program, Statement, reads, rewritten
-from derive.ir.symbols import angle_of, angle_word, is_branch_sign, real, symbols_of
+from derive.ir.program import Let, Program, Statement, rewritten
+from derive.ir.symbols import Names, angle_of, angle_word, is_branch_sign, real, symbols_of
 from derive.ir.symbols import cosine as cosine_of
 from derive.ir.symbols import sine as sine_of
 from derive.optimize.directions import Pair, lengths_of, products
@@ -104,10 +103,7 @@ def _angle(pair: Pair, known: _Known) -> sp.Expr | None:
     if condition != same or not isinstance(sine_else, sp.sin) or cosine_else != sp.cos(sine_else.args[0]):
         return None
     for length in [1 / f for f in sp.Mul.make_args(along) if 1 / f in known.lengths]:
-        across, along = (
-            across * length,
-            along * length,
-        )  # a divisor of only one of the two would be left
+        across, along = (across * length, along * length)  # a divisor of only one of the two would be left
     first = _turned(known.values.get(across, across), known.values.get(along, along), known)
     return None if first is None else Select(condition, first, sine_else.args[0])
 
@@ -163,7 +159,7 @@ def _readers(program: Program, pair: Pair) -> set[sp.Symbol | None]:
     found: set[sp.Symbol | None] = set()
     for statement in program.body:
         plain = rewritten(statement, lambda e: e.xreplace({Atan2(*pair): sp.Integer(0)}))
-        if reads(plain) & set(pair):
+        if plain.reads() & set(pair):
             found.add(statement.name if isinstance(statement, Let) else None)
     return found | {None for o in program.outputs if symbols_of(o.value) & set(pair)}
 

@@ -17,20 +17,14 @@ from itertools import permutations, product
 import sympy as sp
 
 from derive.ir.constants import DEGREE
-from derive.ir.names import Names
 from derive.ir.passes import is_read_once, normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select
-from derive.ir.program import Let, Output, Program, reads, reason_expressions, rewritten
-from derive.ir.symbols import angle_of, angle_word, is_condition, symbols_of
+from derive.ir.program import Let, Output, Program, reason_expressions, rewritten
+from derive.ir.symbols import Names, angle_of, angle_word, is_condition, symbols_of
 
 _AXES = {"cos": "x", "sin": "y"}
 Pair = tuple[sp.Symbol, sp.Symbol]
 """Two names that are the sine and the cosine of an angle, or are proportional to them."""
-
-
-def plain_directions(program: Program) -> Program:
-    """The program in which the angles of axes are computed from such directions."""
-    return _unscaled(_added(program))
 
 
 @dataclass(frozen=True)
@@ -49,7 +43,7 @@ class _Amount:
         return _Amount((*self.terms, *other.terms), self.is_opposite != other.is_opposite)
 
 
-def _added(program: Program) -> Program:
+def added(program: Program) -> Program:
     """The program with the angle of a rotated direction as a sum of angles, where this needs no more of them."""
     axes = {let.name: pair for let in program.lets() for pair in [direction_of(let)] if pair is not None}
     values = {let.name: let.value for let in program.lets()}
@@ -103,7 +97,7 @@ def direction_of(let: Let) -> Pair | None:
 
 def _readers(program: Program, symbol: sp.Symbol) -> list[sp.Symbol | None]:
     """The readers of a name: the names that they bind, None for other statements."""
-    lets = [s.name if isinstance(s, Let) else None for s in program.body if symbol in reads(s)]
+    lets = [s.name if isinstance(s, Let) else None for s in program.body if symbol in s.reads()]
     return lets + [None for o in program.outputs if symbol in symbols_of(o.value)]
 
 
@@ -138,7 +132,7 @@ def products(sine: sp.Expr, cosine: sp.Expr) -> Iterator[tuple[bool, tuple[int, 
                 yield k < 0, (m1, (p1, c1)), (m2, (p2, c2))
 
 
-def _unscaled(program: Program) -> Program:
+def unscaled(program: Program) -> Program:
     """The program without divisions by a length, where only the direction of the quotients is needed."""
     for names, length in _divided(program):
         graded = _graded(program, names)
@@ -169,14 +163,14 @@ def lengths_of(program: Program) -> frozenset[sp.Symbol]:
 
 
 def _graded(program: Program, names: frozenset[sp.Symbol]) -> frozenset[sp.Symbol] | None:
-    """All names that are proportional to the given ones; None where any other value depends on them, or a reason reads
+    """All names that are proportional to the given ones; None if any other value depends on them, or a reason reads
     them.
     """
     graded = set(names)
     for statement in program.body:
         if any(symbols_of(value) & graded for value in reason_expressions(statement)):
             return None
-        if not reads(statement) & graded:
+        if not statement.reads() & graded:
             continue
         if not isinstance(statement, Let) or statement.name in names:
             return None

@@ -16,7 +16,7 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.ir.primitives import Root
-from derive.ir.program import Let, Require, Statement, binds
+from derive.ir.program import Let, Require, Statement
 from derive.ir.symbols import symbols_of
 from derive.ir.tree import If, Item
 
@@ -55,7 +55,7 @@ def _root_of(require: Require, later: Sequence[Statement], known: Mapping[sp.Bas
         bound = bound.xreplace(known)
     if not _is_never_positive(bound):
         return None
-    unknown = {name for statement in later for name in binds(statement)}
+    unknown = {name for statement in later for name in statement.bound()}
     takers = [s for s in later if isinstance(s, Let) and s.value.has(Root(condition.lhs))]
     if not takers or symbols_of(takers[0].value) & unknown:
         return None

@@ -20,10 +20,11 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.ir.passes import with_inputs
-from derive.ir.primitives import NearestPeriod, Root, Select
-from derive.ir.program import Let, Program, expressions, rewritten
+from derive.ir.primitives import NearestPeriod, Root, Select, ToReal
+from derive.ir.program import Let, Program, rewritten
 from derive.ir.symbols import replaced
 from derive.ir.tree import If, Item, bindings_in, expressions_in
+from derive.ir.verify import verify
 
 LONGEST = 5
 """A value that reads more names than this keeps its own."""
@@ -49,6 +50,17 @@ def squares_where_read(program: Program) -> Program:
     ]
     outputs = tuple(replace(o, value=replaced(o.value, squares)) for o in program.outputs)
     return with_inputs(replace(program, body=tuple(body), outputs=outputs))
+
+
+def without_conversions(program: Program) -> Program:
+    """The program without conversions of whole numbers: where they multiply, Python converts them by itself."""
+    own = {
+        let.name: let.value for let in program.lets() if isinstance(let.value, ToReal) and let.value.args[0].is_Symbol
+    }
+    others = (s for s in program.body if not (isinstance(s, Let) and s.name in own))
+    body = [rewritten(s, lambda e: replaced(e, own)) for s in others]
+    outputs = tuple(replace(o, value=replaced(o.value, own)) for o in program.outputs)
+    return verify(replace(program, body=tuple(body), outputs=outputs)) if own else program
 
 
 def inlined(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[tuple[Item, ...], Mapping[sp.Basic, sp.Basic]]:
@@ -90,7 +102,7 @@ def _read(items: Sequence[Item]) -> Counter[sp.Basic]:
         if isinstance(item, If):
             found += _written(item.condition) + _written(item.condition) + (_read(item.holds) | _read(item.fails))
         else:
-            for value in expressions(item):
+            for value in item.children():
                 found += _written(value)
     return found
 

@@ -54,7 +54,7 @@ def _unneeded(choice: If, rest: Sequence[Item], later: set[sp.Symbol]) -> dict[s
 
 
 def _last_second_side(name: sp.Symbol, condition: sp.Basic, rest: Sequence[Item], later: set[sp.Symbol]) -> int | None:
-    """The place of the last choice whose second side reads a name; None where anything else reads it, or nothing does.
+    """The place of the last choice whose second side reads a name; None if anything else reads it, or nothing does.
 
     A name may be bound once more, for another branch: then it is another value.
     """

@@ -5,7 +5,7 @@ where that is wrong.
     cos_c = select(radius > 1e-11, x/length, cos(free))    →   cos_c = x/radius
 
 The first side of a choice by a comparison of numbers is the regular one. A choice by a flag of the machine stays, and
-so does the choice of a status: a refused branch is not singular. Where the result refuses, the whole program decides.
+so does the choice of a status: a refused branch is not singular. If the result refuses, the whole program decides.
 So it serves where many poses are computed by the same instructions, and a few of them once more.
 """
 
@@ -16,7 +16,7 @@ from collections.abc import Collection
 import sympy as sp
 
 from derive.ir.constants import EDGE
-from derive.ir.passes import normalise, untold
+from derive.ir.passes import normalise, without_reasons
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, ToReal
 from derive.ir.program import Let, Program, Require, Statement, Status
 from derive.ir.symbols import is_count, names_in
@@ -27,7 +27,7 @@ _PLAIN = (Root, Atan2, Select, ToReal, NearestPeriod, sp.Abs)
 
 
 def regular(program: Program, constants: Collection[str]) -> Program | None:
-    """The program for regular poses; None where it has more than arithmetic, roots and angles. constants: the names of
+    """The program for regular poses; None if it has more than arithmetic, roots and angles. constants: the names of
     constants of the machine.
     """
     if not all(isinstance(s, Let | Require) for s in program.body):
@@ -38,7 +38,7 @@ def regular(program: Program, constants: Collection[str]) -> Program | None:
     lets = {let.name: let for let in program.lets()}
     found = _needed(lets, wanted, own)
     body: list[Statement] = []
-    for statement in untold(program).body:
+    for statement in without_reasons(program).body:
         body += found.get(statement.name, ()) if isinstance(statement, Let) else (statement,)
     done = normalise(program.name, body, program.outputs)
     return done if all(map(_is_plain, done.lets())) else None

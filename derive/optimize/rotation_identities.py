@@ -3,7 +3,7 @@
     dx = -r33', dy = r23   (or a free direction)          y = select(radius > known, r12' * …, dx * r21 + dy * r31')
     y = dx * r21 + dy * r31'                         →    with r12' = cos * r12 + sin * r32, of the same rotation
 
-(dx, dy) is the part of a column at right angles to the axis, divided by its length. Where this length is far from zero,
+(dx, dy) is the part of a column at right angles to the axis, divided by its length. If this length is far from zero,
 the turned value equals an entry of the third column times a factor, which is as exact and shorter.
 """
 
@@ -74,7 +74,7 @@ class _Product:
 
 
 def _third(value: sp.Expr, values: Mapping[sp.Symbol, sp.Expr], rotations: Sequence[_Entries]) -> sp.Expr | None:
-    """The choice between an entry of the third column and the value; None where the value is no such product."""
+    """The choice between an entry of the third column and the value; None if the value is no such product."""
     entries = {e for rotation in rotations for row in rotation for e in row if e.is_Symbol}
     terms = [_product(term, values, entries) for term in sp.Add.make_args(value)]
     if len(terms) != 2 or terms[0] is None or terms[1] is None:

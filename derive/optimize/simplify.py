@@ -15,12 +15,6 @@ from derive.ir.passes import is_read_once, normalise
 from derive.ir.primitives import Root
 from derive.ir.program import Let, Program, Statement
 from derive.ir.symbols import is_condition, symbols_of
-from derive.optimize.directions import plain_directions
-
-
-def shorter(program: Program) -> Program:
-    """The program with fewer operations, and the same results but for rounding."""
-    return plain_directions(_without_signs(_turned_back(program)))
 
 
 @dataclass(frozen=True)
@@ -60,7 +54,8 @@ class _Turned:
         return share * self.length if share.is_number else sp.cancel(coefficient)
 
 
-def _turned_back(program: Program) -> Program:
+def turned_back(program: Program) -> Program:
+    """Replace values of a turned direction by those of the direction before the turn, if that is shorter."""
     body = list(program.body)
     for turned in _turns(program.lets()):
         body = [turned.undone_in(s) for s in body]
@@ -83,13 +78,13 @@ def _turns(lets: Iterable[Let]) -> Iterable[_Turned]:
                     yield _Turned(frozenset(both), both, (x, y), length, square)
 
 
-def _without_signs(program: Program) -> Program:
-    """The program in which a name that is read only with a minus sign is bound to its negative."""
+def without_signs(program: Program) -> Program:
+    """Bind a name that is read only with a minus sign to its negative."""
     values = {let.name: let for let in program.lets()}
     for let in program.lets():
         source = values.get(-let.value) if not is_condition(let.value) and (-let.value).is_Symbol else None
         if source is not None and is_read_once(program, source.name):
             changed = Let(let.name, sp.expand(-source.value), let.note or source.note)
             body = [changed if s == let else s for s in program.body if s != source]
-            return _without_signs(normalise(program.name, body, program.outputs))
+            return without_signs(normalise(program.name, body, program.outputs))
     return program

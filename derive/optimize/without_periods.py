@@ -15,15 +15,14 @@ import sympy as sp
 
 from derive.ir.passes import normalise
 from derive.ir.primitives import NearestPeriod, Wrap
-from derive.ir.program import Let, Output, Program, Require, Statement, Status, expressions, reads, rewritten
+from derive.ir.program import Let, Output, Program, Require, Statement, Status, rewritten
 from derive.ir.symbols import replaced, symbols_of
-from derive.ir.typed import check_statement
-from derive.ir.types import IllTypedError, Type, angles_in, angles_of
+from derive.ir.types import IllTypedError, Type, angles_in, angles_of, check_statement
 
 
 def angles_modulo_turns(program: Program) -> frozenset[sp.Symbol]:
     """The names of angles whose whole turns nothing reads."""
-    values = [*(e for s in program.body for e in expressions(s)), *(o.value for o in program.outputs)]
+    values = [*(e for s in program.body for e in s.children()), *(o.value for o in program.outputs)]
     wrapped = {s for value in values for node in value.atoms(Wrap) for s in symbols_of(node)}
     answered = {s for output in program.outputs for s in symbols_of(output.value)}
     return frozenset(n for n, kind in angles_in(program.body).items() if kind is Type.ANGLE) - wrapped - answered
@@ -72,7 +71,7 @@ def _read_as_numbers(body: list[Statement], counted: frozenset[sp.Symbol]) -> se
             check_statement(statement, known)
             known |= angles_of(statement, known)
         except IllTypedError:
-            found = (_behind(body, reads(statement)) & chosen) - counted
+            found = (_behind(body, statement.reads()) & chosen) - counted
             if not found:
                 raise
             return found

@@ -18,7 +18,7 @@ from derive.ir.primitives import Select, angle_of_cosine
 from derive.ir.program import Let, Output, Require, Statement, Status
 from derive.ir.reason import Unit, Why, about_leg
 from derive.ir.symbols import real
-from derive.plate.legs import names, of, rotation_of, turned, vector_word
+from derive.plate.legs import leg_symbol, names, rotation_of, turned, vector_word
 
 _HOME, _SEEN, _TURNED = "home_along", "plate_axis", "cone_axis"
 """Words for the rod's direction at home: in the frame of the base, in that of the plate, and turned with the plate."""
@@ -62,7 +62,7 @@ def _inside(
             name, Select(narrow, sp.cos(cone) - BOUNDARY, sp.Integer(-2)), f"least cosine of a leg's lean on the {side}"
         )
     for rod, cone in cones:
-        ahead = of(f"along_{side}_cone", rod)
+        ahead = leg_symbol(f"along_{side}_cone", rod)
         note = f"leg {rod.name}: how far it reaches along the axis of its cone on the {side}"
         yield Let(ahead, sp.Add(*[a * b for a, b in zip(vectors[rod.name], names(axis, rod), strict=True)]), note)
         beyond = angle_of_cosine(ahead, rod.length) - angle_of_cosine(least[cone])

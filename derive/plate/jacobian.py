@@ -11,7 +11,7 @@ from derive.ir.constants import FREE_ANGLE
 from derive.ir.program import Require, Solve, Statement, Status
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import DETERMINANT, real
-from derive.plate.legs import RADIUS, Leg, legs_of, names, rotation_of, rows, spins
+from derive.plate.legs import RADIUS, Leg, legs_of, names, rotation_axes, rotation_of, rows
 
 
 def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
@@ -20,7 +20,7 @@ def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[St
     driven = sp.Matrix([_driven(mechanism, leg).jacobian(joints) for leg in legs_of(mechanism)]) * motors
     lets, named = named_trigonometry(mechanism, list(driven))
     width, shifts = len(joints), len(mechanism.motion.position)
-    words = (*(f"v{c}" for c in mechanism.motion.position), *(f"w{c}" for c in spins(mechanism)))
+    words = (*(f"v{c}" for c in mechanism.motion.position), *(f"w{c}" for c in rotation_axes(mechanism)))
     entries = [real(f"column_{column}_{word}") for word in words for column in range(1, width + 1)]
     held = Require(sp.Gt(sp.Abs(DETERMINANT), FREE_ANGLE), Status.IMPOSSIBLE, reason=about_machine(Why.UNCONTROLLED))
     system = Solve(

@@ -31,7 +31,7 @@ NORMAL = "normal"
 """The word for the vector of a plane."""
 
 
-def spins(mechanism: Mechanism) -> tuple[str, ...]:
+def rotation_axes(mechanism: Mechanism) -> tuple[str, ...]:
     """The axes about which the platform turns."""
     return COORDINATE_NAMES if mechanism.motion.turning is Turning.FULL else ("z",)
 
@@ -48,7 +48,7 @@ def home_angles(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def position_of(mechanism: Mechanism) -> Vector:
-    """The position of the platform: zero where the task commands none."""
+    """The position of the platform: zero if the task commands none."""
     return tuple(real(c) if c in mechanism.motion.position else sp.Integer(0) for c in COORDINATE_NAMES)
 
 
@@ -74,7 +74,7 @@ def names(word: str, leg: Leg) -> tuple[sp.Symbol, ...]:
     return tuple(real(f"{word}_{leg.key}_{c}") for c in COORDINATE_NAMES[: len(leg.plate)])
 
 
-def of(word: str, leg: Leg) -> sp.Symbol:
+def leg_symbol(word: str, leg: Leg) -> sp.Symbol:
     """The name of a leg's number: `length_1`."""
     return real(f"{word}_{leg.key}")
 
@@ -131,7 +131,7 @@ def span(
 
 def length(rod: Rod, word: str = "span") -> Let:
     """The length of the span."""
-    return Let(of("length", rod), Root(sp.Add(*[c**2 for c in names(word, rod)])))
+    return Let(leg_symbol("length", rod), Root(sp.Add(*[c**2 for c in names(word, rod)])))
 
 
 def row(
@@ -164,27 +164,24 @@ def plane_row(
     """
     normal = names(NORMAL, plane)
     values = values or tuple(with_fixed_names(mechanism, v) for v in plane.normal)
-    lets = (
-        *(Let(n, v) for n, v in zip(normal, values, strict=True)),
-        *_moment(mechanism, plane, arm, normal),
-    )
+    lets = (*(Let(n, v) for n, v in zip(normal, values, strict=True)), *_moment(mechanism, plane, arm, normal))
     return with_note(lets, f"guide {plane.name}: its normal, and the moment of this about the platform's origin")
 
 
 def _moment(mechanism: Mechanism, leg: Leg, arm: Sequence[sp.Expr], vector: Sequence[sp.Expr]) -> tuple[Let, ...]:
     padded = [sp.Matrix([*v, *[0] * (3 - len(v))]) for v in (arm, vector)]
     moment = dict(zip(COORDINATE_NAMES, padded[0].cross(padded[1]) / RADIUS, strict=True))
-    return tuple(Let(n, moment[c]) for n, c in zip(moments(mechanism, leg), spins(mechanism), strict=True))
+    return tuple(Let(n, moment[c]) for n, c in zip(moments(mechanism, leg), rotation_axes(mechanism), strict=True))
 
 
 def moments(mechanism: Mechanism, leg: Leg) -> tuple[sp.Symbol, ...]:
     """The names of the moments in a row of A."""
-    return tuple(real(f"moment_{leg.key}_{c}") for c in spins(mechanism))
+    return tuple(real(f"moment_{leg.key}_{c}") for c in rotation_axes(mechanism))
 
 
 def divisor(rod: Rod, measured: sp.Expr) -> Let:
     """The length of a leg; 1 where the leg is too short to have a direction."""
-    return Let(of("divisor", rod), Select(sp.Gt(measured, SHORTEST_LINK * SCALE), measured, sp.Integer(1)))
+    return Let(leg_symbol("divisor", rod), Select(sp.Gt(measured, SHORTEST_LINK * SCALE), measured, sp.Integer(1)))
 
 
 def with_note(lets: Iterable[Let], note: str) -> tuple[Let, ...]:

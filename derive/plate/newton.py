@@ -46,18 +46,18 @@ from derive.plate.legs import (
     angles,
     by_angles,
     home_angles,
+    leg_symbol,
     legs_of,
     length,
     names,
-    of,
     plane_row,
     point_of,
     position_of,
+    rotation_axes,
     rotation_of,
     row,
     rows,
     span,
-    spins,
     turned,
     vector_word,
     with_note,
@@ -91,7 +91,7 @@ def at_home(mechanism: Mechanism) -> Start:
 
 
 def at_given(mechanism: Mechanism) -> Start:
-    """Start at the pose that is a constant of the machine, and that a caller may replace. Where the platform turns
+    """Start at the pose that is a constant of the machine, and that a caller may replace. If the platform turns
     about z alone, the start is the nearest rotation about z.
     """
     position = _position(mechanism, "start_")
@@ -193,10 +193,7 @@ def search_program(mechanism: Mechanism) -> Program:
     joints = {j.symbol for j in mechanism.joints}
     positive = [sp.Gt(v, 0) for v in mechanism.positive if v.free_symbols <= joints]
     mirror = Require(sp.And(*positive), Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_MIRROR))
-    checks: tuple[Statement, ...] = (
-        *joint_lets(mechanism),
-        *([mirror] if positive else []),
-    )
+    checks: tuple[Statement, ...] = (*joint_lets(mechanism), *([mirror] if positive else []))
     search = normalise(SEARCH, (*checks, *_newton(mechanism)), outputs)
     return replace(
         search, summary="The pose of the platform at its axis values, the rows of A there, and their determinant"
@@ -208,20 +205,12 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
     pose = (*_position(mechanism), *map(real, angles(mechanism)))
     within = real("within")
     bases = _bases(mechanism)
-    fits = sp.And(*[sp.Le(sp.Abs(of("error", leg)), within) for leg in legs_of(mechanism)])
+    fits = sp.And(*[sp.Le(sp.Abs(leg_symbol("error", leg)), within) for leg in legs_of(mechanism)])
     fit, fitted = flag("fit"), flag("fitted")
     loop = Iterate(
         state=(*pose, fitted),
-        start=(
-            *_position(mechanism, "begin_"),
-            *[sp.Integer(0)] * len(angles(mechanism)),
-            sp.false,
-        ),
-        step=(
-            *_pass(mechanism, bases),
-            Let(fit, fits, "whether every leg has its length"),
-            *_step(mechanism),
-        ),
+        start=(*_position(mechanism, "begin_"), *[sp.Integer(0)] * len(angles(mechanism)), sp.false),
+        step=(*_pass(mechanism, bases), Let(fit, fits, "whether every leg has its length"), *_step(mechanism)),
         following=(*(s + real(f"{s.name}_rate") / real("stretch") for s in pose), fit),
         done=sp.And(fit, fitted),
         limit=LIMIT,
@@ -288,27 +277,29 @@ def _pass(mechanism: Mechanism, bases: tuple[tuple[Let, ...], list[sp.Expr]]) ->
         arm, word = names("arm", rod), vector_word(mechanism, rod)
         lets += turned(_turn(mechanism), names("start_arm", rod), arm)
         lets += [*span(rod, position_of(mechanism), arm, base, word), length(rod, word)]
-        lets += row(mechanism, rod, arm, of("length", rod), word)
-        lets.append(Let(of("error", rod), of("length", rod) - wanted, f"length error of leg {rod.name}"))
+        lets += row(mechanism, rod, arm, leg_symbol("length", rod), word)
+        error = leg_symbol("length", rod) - wanted
+        lets.append(Let(leg_symbol("error", rod), error, f"length error of leg {rod.name}"))
     for plane in mechanism.guides:
         arm, normal = names("arm", plane), names(NORMAL, plane)
         lets += turned(_turn(mechanism), names("start_arm", plane), arm)
         lets += plane_row(mechanism, plane, arm)
         point = (p + a for p, a in zip(position_of(mechanism), arm, strict=False))
         ahead = sp.Add(*[n * p for n, p in zip(normal, point, strict=True)])
-        lets.append(Let(of("error", plane), ahead - next(values), f"distance of guide {plane.name} from its plane"))
+        error = ahead - next(values)
+        lets.append(Let(leg_symbol("error", plane), error, f"distance of guide {plane.name} from its plane"))
     return tuple(lets)
 
 
 def _step(mechanism: Mechanism) -> tuple[Let | Solve, ...]:
     """The step of the state that cancels every error to first order, and the divisor that keeps it within bounds."""
-    about = spins(mechanism)
+    about = rotation_axes(mechanism)
     twist = tuple(real(f"{c}_rate") for c in mechanism.motion.position), tuple(real(f"swing_{c}") for c in about)
     spin = tuple(real(f"spin_{c}") for c in about)
     size = real("size")
     too_large = sp.Gt(size, sp.Rational(1, 2))
     shares = [*(v / SCALE for v in twist[0]), *(real(f"{a}_rate") for a in angles(mechanism))]
-    errors = tuple(-of("error", leg) for leg in legs_of(mechanism))
+    errors = tuple(-leg_symbol("error", leg) for leg in legs_of(mechanism))
     return (
         Solve(
             (*twist[0], *twist[1]),

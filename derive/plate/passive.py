@@ -20,17 +20,17 @@ from derive.equations.closures.fixed_names import all_angles, fixed_lets, fixed_
 from derive.equations.problem import Equation, Problem, StepDeterminant
 from derive.ir.passes import renamed
 from derive.ir.primitives import Select
-from derive.ir.program import Let, Output, Require, Statement, binds, rewritten
+from derive.ir.program import Let, Output, Require, Statement, rewritten
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, SCALE, cosine, real, sine
-from derive.plate.legs import NORMAL, moments, names, rotation_of, spins
+from derive.plate.legs import NORMAL, moments, names, rotation_axes, rotation_of
 from derive.solver.solve import Derivation, solve
 from derive.solver.unsolved import Unsolved
 
 TWIST = real("twist")
 """The turn about the tool, from the commanded rotation to that of the platform."""
 GUIDES = "guides_dependent"
-"""The name of the margin that is zero where the planes do not determine the passive coordinates."""
+"""The name of the margin that is zero if the planes do not determine the passive coordinates."""
 _COMMANDED = tuple(real(f"commanded_{r.name}") for r in ROTATION_ENTRIES)
 
 
@@ -89,7 +89,7 @@ def passive_statements(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 
 def _about_the_plate(statement: Statement) -> Statement:
-    """The statement; where it refuses because planes do not determine the twist, its reason says so."""
+    """The statement; if it refuses because planes do not determine the twist, its reason says so."""
     if isinstance(statement, Require) and statement.reason is not None and statement.reason.why is Why.TOO_SHORT:
         return replace(statement, reason=about_machine(Why.UNCONTROLLED))
     return statement
@@ -124,7 +124,7 @@ def guides_determinant(mechanism: Mechanism) -> sp.Expr:
     are divided by the platform's radius.
     """
     tool = rotation_of(mechanism)[:, 2]
-    about = dict(zip(spins(mechanism), tool[-len(spins(mechanism)) :, 0], strict=True))
+    about = dict(zip(rotation_axes(mechanism), tool[-len(rotation_axes(mechanism)) :, 0], strict=True))
     rows = []
     for plane in mechanism.fixed_guides:
         along = dict(zip(COORDINATE_NAMES, names(NORMAL, plane), strict=False))
@@ -178,7 +178,7 @@ def commanded(mechanism: Mechanism) -> dict[sp.Symbol, sp.Symbol]:
     return table | (dict(zip(_COMMANDED, ROTATION_ENTRIES, strict=True)) if turned else {})
 
 
-def spelled(statements: Iterable[Statement], table: Mapping[sp.Symbol, sp.Symbol]) -> tuple[Statement, ...]:
+def renamed_in(statements: Iterable[Statement], table: Mapping[sp.Symbol, sp.Symbol]) -> tuple[Statement, ...]:
     """The statements in which names are replaced, also those that they bind."""
     if not table:
         return tuple(statements)
@@ -198,5 +198,5 @@ def completed(
     table = dict(zip((*places, *turns), (*position, *rotation), strict=True))
     table |= dict(zip(_COMMANDED, rotation, strict=False)) if "twist" in mechanism.passive else {}
     own = [s for s in passive_statements(mechanism) if not isinstance(s, Require)]
-    table |= {name: real(f"completed_{name.name}") for s in own for name in binds(s)}
-    return spelled(own, table), tuple(table[c] for c in places), tuple(table[r] for r in turns)
+    table |= {name: real(f"completed_{name.name}") for s in own for name in s.bound()}
+    return renamed_in(own, table), tuple(table[c] for c in places), tuple(table[r] for r in turns)

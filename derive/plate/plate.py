@@ -1,6 +1,6 @@
 """A platform that a loop turns: its home pose, and the checks of its inverse.
 
-det A (see `legs`) is the margin: it is zero where the lines of the rods belong to one linear complex (type 2). The
+det A (see `legs`) is the margin: it is zero if the lines of the rods belong to one linear complex (type 2). The
 inverse computes it from the spans of the legs, and divides by their lengths at the end.
 """
 
@@ -38,19 +38,19 @@ from derive.plate.legs import (
     divisor,
     home_angles,
     is_driven,
+    leg_symbol,
     legs_of,
     length,
     names,
-    of,
     plane_row,
     point_of,
     position_of,
+    rotation_axes,
     rotation_of,
     row,
     rows,
     span,
     span_moment,
-    spins,
     turned,
     vector_word,
 )
@@ -118,7 +118,7 @@ def check_home(mechanism: Mechanism) -> None:
         )
     if mechanism.assembly is not None:
         raise DescriptionError("a loop that turns its platform needs no assembly: its home pose tells the mode")
-    count = len(mechanism.motion.position) + len(spins(mechanism))
+    count = len(mechanism.motion.position) + len(rotation_axes(mechanism))
     legs = legs_of(mechanism)
     if len(mechanism.fixed_guides) != len(mechanism.passive):
         raise DescriptionError(
@@ -167,8 +167,8 @@ def _no_rods(mechanism: Mechanism) -> str:
     joints = {j.symbol for j in mechanism.joints}
     turns = [e for e in mechanism.closure if not e.free_symbols & {real(c) for c in COORDINATE_NAMES}]
     if turns and all(e.free_symbols & joints for e in turns):
-        told = ", ".join(j.name for j in mechanism.joints if j.symbol in turns[0].free_symbols)
-        return f" and an equation that only turns it: where a joint on the plate ({told}) does, say so by heading="
+        turning = ", ".join(j.name for j in mechanism.joints if j.symbol in turns[0].free_symbols)
+        return f" and an equation that only turns it: where a joint on the plate ({turning}) does, say so by heading="
     return (
         f" and {len(mechanism.closure)} other equations: closure= of a loop that turns its platform must say that a "
         "point of the platform keeps its distance from one that joints move, which a rod says"
@@ -182,7 +182,7 @@ def home_rotation(mechanism: Mechanism) -> sp.Matrix:
 
 
 def home_position(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
-    """The position of the home pose: zero where the task commands none."""
+    """The position of the home pose: zero if the task commands none."""
     given = dict(zip(mechanism.motion.position, mechanism.home, strict=False))
     return tuple(given.get(c, sp.Integer(0)) for c in COORDINATE_NAMES)
 
@@ -205,12 +205,12 @@ def _lengths_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
     rods = mechanism.rods
     fixed = [rod for rod in rods if not is_driven(mechanism, rod.base)]
     measured = [rod for rod in fixed if is_driven(mechanism, [rod.length])]
-    lengths = tuple(of("length", rod) for rod in rods)
+    lengths = tuple(leg_symbol("length", rod) for rod in rods)
     shortest = SHORTEST_LINK * SCALE
     apart = sp.And(sp.Gt(real("spread"), shortest), *[sp.Gt(v, shortest) for v in lengths])
     return (
         *(let for rod in fixed for let in _span_at_home(mechanism, rod)),
-        *(length(rod) if rod in measured else Let(of("length", rod), rod.length) for rod in rods),
+        *(length(rod) if rod in measured else Let(leg_symbol("length", rod), rod.length) for rod in rods),
         Let(SCALE, sp.Add(*lengths) / len(lengths) + RADIUS, "characteristic length: mean leg, radius of the platform"),
         Require(apart, Status.NOT_INITIALIZED, reason=about_parameters(_APART)),
     )
@@ -232,7 +232,7 @@ def at_home_joints(mechanism: Mechanism, value: sp.Expr) -> sp.Expr:
 def _mode_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
     """The lines of the legs at the home pose, and the sign of their determinant."""
     lines = (
-        row(mechanism, rod, names("home_arm", rod), of("length", rod), vector_word(mechanism, rod))
+        row(mechanism, rod, names("home_arm", rod), leg_symbol("length", rod), vector_word(mechanism, rod))
         for rod in mechanism.rods
     )
     planes = (plane_row(mechanism, plane, names("home_arm", plane), plane.normal) for plane in mechanism.guides)
@@ -305,7 +305,9 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
         vectors = (*turned(rotation_of(mechanism), point_of(plane), arm), *plane_row(mechanism, plane, arm))
         lets += [let for let in vectors if let.name not in bound]
     margin, least = ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN)
-    lengths = sp.Mul(*[of("divisor", r) if is_driven(mechanism, [r.length]) else r.length for r in mechanism.rods])
+    lengths = sp.Mul(
+        *[leg_symbol("divisor", r) if is_driven(mechanism, [r.length]) else r.length for r in mechanism.rods]
+    )
     of_spans = real("determinant_of_spans")
     words = [vector_word(mechanism, rod) for rod in mechanism.rods]
     return (

@@ -52,14 +52,14 @@ def with_positive_lengths(mechanism: Mechanism) -> Mechanism:
     whose sign a branch of the description tells.
     """
     joints = {j.symbol for j in mechanism.joints}
-    told = {s for b in mechanism.branches if not b.is_crossing for s in b.indicator.free_symbols}
+    in_branches = {s for b in mechanism.branches if not b.is_crossing for s in b.indicator.free_symbols}
     read = [(rod.length, rod.length.free_symbols & joints) for rod in mechanism.rods]
-    own = [length for length, names in read if names and not names & told and length not in mechanism.positive]
+    own = [length for length, names in read if names and not names & in_branches and length not in mechanism.positive]
     return replace(mechanism, positive=(*mechanism.positive, *own)) if own else mechanism
 
 
 def _plane_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Plane | None:
-    """The plane that has this equation; None where there is none."""
+    """The plane that has this equation; None if there is none."""
     size = 2 if _is_flat(mechanism, equation) else 3
     coordinates = [real(c) for c in COORDINATE_NAMES[:size]]
     entries = sp.Matrix(3, 3, ROTATION_ENTRIES)[:size, :size]
@@ -92,7 +92,7 @@ def _is_flat(mechanism: Mechanism, equation: sp.Expr) -> bool:
 
 
 def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
-    """The rod that has this equation but for a constant factor; None where there is none."""
+    """The rod that has this equation but for a constant factor; None if there is none."""
     size = 2 if _is_flat(mechanism, equation) else 3
     coordinates = [real(c) for c in COORDINATE_NAMES[:size]]
     names = [real(f"r{i + 1}{j + 1}") for i in range(size) for j in range(size)]

@@ -50,7 +50,7 @@ def given_pose(mechanism: Mechanism) -> Forward:
 
 
 def joints_at_home(mechanism: Mechanism, statements: Sequence[Statement]) -> tuple[Statement, ...]:
-    """The statements that bind the joints at the home pose, each name with `home_` before it; none where no joint moves
+    """The statements that bind the joints at the home pose, each name with `home_` before it; none if no joint moves
     an end of a rod.
 
     statements: those of the inverse, in the signs of branches.
@@ -85,11 +85,11 @@ def samples_near_home(
 ) -> Samples:
     """Poses near the home of a machine, and the axes there in every branch, from the derivation of the inverse.
 
-    signs: the signs of its steps. Raises `NoPoseAtHome` where none of the poses is possible.
+    signs: the signs of its steps. Raises `NoPoseAtHome` if none of the poses is possible.
     """
     known = (*platform_size(mechanism), *modes_at_home(mechanism, pose_at_home(mechanism)))
-    told = [Output(SCALE.name, SCALE), *mode_constants(mechanism)]
-    machine = {**machine, **run(normalise("size", known, told), machine)[0]}
+    sizes = [Output(SCALE.name, SCALE), *mode_constants(mechanism)]
+    machine = {**machine, **run(normalise("size", known, sizes), machine)[0]}
     rng = np.random.default_rng(seed)
     poses = poses_around_home(mechanism, machine, rng, (_AROUND, _TURNED), _SAMPLES)
     axes = [Let(let.name, let.value) for j in mechanism.joints for let in axis_lets(j)]

@@ -53,7 +53,7 @@ def _assembly(kinematics: Kinematics) -> Iterator[str]:
 
 
 def _positions(kinematics: Kinematics, parameter: str) -> str:
-    """Both positions of the nominal machine at the same axes; empty where no such axes were found."""
+    """Both positions of the nominal machine at the same axes; empty if no such axes were found."""
     nominal = kinematics.unlimited_values
     machines = [machine_with(kinematics, nominal | {parameter: second}) for second in (0.0, 1.0)]
     for axes in _candidates(machines[0]):
@@ -90,7 +90,7 @@ def _example(kinematics: Kinematics, index: int) -> str:
 def pair_at_one_frame(kinematics: Kinematics, index: int) -> tuple[Reals, Reals] | None:
     """Axis values of the nominal machine that differ in one branch and have the frame in common; the first byte first.
 
-    None where no such pair was found.
+    None if no such pair was found.
     """
     machine = machine_with(kinematics, kinematics.unlimited_values)
     candidates = _candidates(machine)

@@ -19,7 +19,7 @@ from derive.ir.symbols import is_branch_sign, names_in
 from derive.ir.tree import If, Item, bound_in, expressions_in, given_to, read_in
 from derive.ir.types import Type, type_of
 from derive.kept import kept_by_identity
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 
 MOST_SIDES, MOST_KEPT = 16, 80
 """The most that branches can share: stretches, one for every side of their signs, and values."""
@@ -33,7 +33,7 @@ class Stretch:
     signs: tuple[sp.Symbol, ...]
     """The signs on which they depend, in the order of the inputs."""
     kept: tuple[sp.Symbol, ...]
-    """Where branches share the stretch, the values that the rest reads; nothing where they do not."""
+    """Where branches share the stretch, the values that the rest reads; nothing if they do not."""
     is_shared: bool
 
     @property
@@ -44,7 +44,7 @@ class Stretch:
 
 @kept_by_identity(50)
 def stretches_of(program: Program) -> tuple[Stretch, ...]:
-    """The stretches of a branch; one that is not shared where there is nothing to share."""
+    """The stretches of a branch; one that is not shared if there is nothing to share."""
     items = structured(program)
     signs = tuple(s for s in program.inputs if is_branch_sign(s))
     if len(items) < 2 or not signs or not all(isinstance(i, Let | Require | If) or _is_rare(i) for i in items):
@@ -58,7 +58,7 @@ def stretches_of(program: Program) -> tuple[Stretch, ...]:
         if not all(type_of(name) in (Type.REAL, Type.ANGLE, Type.BOOL) for name in kept):
             is_shared, kept = False, ()
         found.insert(0, Stretch(tuple(group), tuple(s for s in signs if s in supported), kept, is_shared))
-        wanted |= read_in(group).union(*map(_told, group))
+        wanted |= read_in(group).union(*map(_read_by_reason, group))
     return tuple(_with_room(found))
 
 
@@ -85,7 +85,7 @@ def _groups(items: Sequence[Item], signs: Sequence[sp.Symbol]) -> list[tuple[fro
     place: dict[sp.Symbol, int] = {}
     groups: list[tuple[frozenset[sp.Symbol], list[Item]]] = []
     for item in items:
-        needed = given_to((item,)) | _told(item)
+        needed = given_to((item,)) | _read_by_reason(item)
         own = frozenset[sp.Symbol]().union(*(support.get(name, frozenset()) for name in needed))
         first = max((place[name] for name in needed if name in place), default=0)
         earlier = [k for k in range(first, len(groups)) if groups[k][0] == own]
@@ -102,7 +102,7 @@ def _groups(items: Sequence[Item], signs: Sequence[sp.Symbol]) -> list[tuple[fro
     return groups
 
 
-def _told(item: Item) -> set[sp.Symbol]:
+def _read_by_reason(item: Item) -> set[sp.Symbol]:
     """The names that the reason of a refusal reads."""
     return {s for value in reason_expressions(item) for s in names_in(value)} if isinstance(item, Require) else set()
 

@@ -23,7 +23,7 @@ from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, So
 from derive.ir.tree import If, Item
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 from derive.report.branch_stretches import stretches_of
 
 _BINARY_FRACTIONS = (2, 4, 8, 16)
@@ -91,9 +91,9 @@ class Costs:
     automatic: Cost
     """The inverse with a configuration whose branch bytes are all automatic; without branches, equal to `inverse`."""
     exact: Cost
-    """The check of an exact commanded rotation, once a call; zero where the rotation is not read."""
+    """The check of an exact commanded rotation, once a call; zero if the rotation is not read."""
     repair: Cost
-    """Check and repair of any other commanded rotation, once a call; zero where the rotation is not read."""
+    """Check and repair of any other commanded rotation, once a call; zero if the rotation is not read."""
     corners: Cost
     """The additional cost of a branch at a singular pose: the second sides of choices."""
     bounds: tuple[Bound, ...]

@@ -30,7 +30,7 @@ class Check:
     status: Status
     reason: str
     missing: sp.Expr | None
-    """The amount by which one side is short of the other; None where this has no meaning."""
+    """The amount by which one side is short of the other; None if this has no meaning."""
     turns: tuple[tuple[OtherTurn, str], ...] = ()
     """The axes that may be inside on another turn, each with its reason; the first one that is gives reason and
     number."""
@@ -63,7 +63,7 @@ class Reasons:
         return self.text(_given(loop))
 
     def call(self, call: Call) -> tuple[Status, str] | None:
-        """The status and the reason of a caller where a shared program refuses; None where it passes on the status."""
+        """The status and the reason of a caller where a shared program refuses; None if it passes on the status."""
         return None if call.refusal is None else (call.refusal[0], self.text(call.refusal[1]))
 
     def text(self, reason: Reason) -> str:

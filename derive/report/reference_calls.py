@@ -50,13 +50,13 @@ class Machine:
         return max(0, math.ceil(math.log10(_USUAL / size))) if size > 0.0 else 0
 
     @property
-    def finer(self) -> int:
+    def iterations(self) -> int:
         """The number of decimals that lengths need more than in millimetres, where the machine is given in metres."""
         return self.smaller if self.smaller > _SMALL else 0
 
     def rounded(self, values: Sequence[float], decimals: int = _DECIMALS) -> Reals:
         """Lengths as they are written: far coarser than rounding, without a negative zero."""
-        return _rounded(values, decimals + self.finer)
+        return _rounded(values, decimals + self.iterations)
 
     @property
     def home(self) -> Reals:
@@ -64,8 +64,8 @@ class Machine:
         mechanism = self.kinematics.mechanism
         position = (float(evaluate(v, self.values)) for v in home_position(mechanism))
         frame = (*position, *(float(evaluate(entry, self.values)) for entry in home_rotation(mechanism)))
-        told = {b.name: self.given.get(b.home_flag, 0.0) for b in mechanism.branches}
-        chosen = tuple(1 + int(told[b.name]) for b in mechanism.branches)
+        at_home = {b.name: self.given.get(b.home_flag, 0.0) for b in mechanism.branches}
+        chosen = tuple(1 + int(at_home[b.name]) for b in mechanism.branches)
         configuration = (*chosen, *(0,) * len(mechanism.period_joints))
         return branches(self, frame, configuration, (0.0,) * len(mechanism.joints))[1][0]
 
@@ -184,7 +184,7 @@ def are_inside(machine: Machine, axes: Mapping[str, Array]) -> NDArray[np.bool_]
 
 
 def margins(machine: Machine, poses: Sequence[Reals]) -> Array:
-    """The margins of IsSingularity by rows, a column for every pose; NaN where there is none."""
+    """The margins of IsSingularity by rows, a column for every pose; NaN if there is none."""
     kinematics = machine.kinematics
     found, status = _run(kinematics.singularity, machine, _axes(machine, poses))
     rows = [found[m.name] for m in kinematics.margins] or [np.ones(len(poses))]

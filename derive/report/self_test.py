@@ -306,7 +306,9 @@ def _candidates(machine: Machine, share: float = 1.0) -> list[Reals]:
         return [()]
     angles = [j.is_angle for j in mechanism.joints]
     return [
-        tuple(round(float(v), 1 if is_angle else 1 + machine.finer) for v, is_angle in zip(row, angles, strict=True))
+        tuple(
+            round(float(v), 1 if is_angle else 1 + machine.iterations) for v, is_angle in zip(row, angles, strict=True)
+        )
         for row in drawn
     ]
 

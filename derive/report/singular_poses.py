@@ -1,7 +1,7 @@
 """Poses in which one margin of the nominal machine vanishes: found by Newton's method from regular poses.
 
 A margin is a function of the axis values. For a loop that turns its platform it is a function of the pose instead, and
-the inverse gives the axis values, because the iteration of forward kinematics fails where the margin vanishes. A step
+the inverse gives the axis values, because the iteration of forward kinematics fails if the margin vanishes. A step
 goes along the gradient, to where the margin would be zero if it were linear; it is halved until the machine reaches
 that pose, inside its limits, and the margin there is smaller. So the search also ends on the boundary of what a loop
 can reach, where the
@@ -26,7 +26,7 @@ from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, branc
 from derive.kinematics.reference_cases import Reals
 from derive.kinematics.sampling import sample_axes, size_of
 from derive.plate.legs import angles, by_angles
-from derive.plate.passive import commanded, spelled
+from derive.plate.passive import commanded, renamed_in
 from derive.plate.plate import platform_checks
 from derive.report.derived import Derived
 from derive.report.reference_calls import FRAME, Machine, are_inside
@@ -48,7 +48,7 @@ _CLEAR = 0.05
 
 Array = NDArray[np.float64]
 Measure = Callable[[Array], Array]
-"""A function from rows of coordinates to the margins, a column for every row; NaN where the machine has no pose."""
+"""A function from rows of coordinates to the margins, a column for every row; NaN if the machine has no pose."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class SingularPose:
 
 
 def singular_pose(machine: Machine, derived: Derived, name: str, start: Reals) -> SingularPose | None:
-    """A pose in which the margin of that name vanishes, as near to the start as one is found; None where none is.
+    """A pose in which the margin of that name vanishes, as near to the start as one is found; None if none is.
 
     start: axis values, from which the search begins.
     """
@@ -129,9 +129,9 @@ def _measured(machine: Machine, rows: Array) -> Array:
     size = size_of(kinematics.mechanism, machine.values)
     axes = {j.axis.name: rows[:, k] for k, j in enumerate(kinematics.mechanism.joints)}
     found, status = run(kinematics.singularity, {**machine.values, **axes})
-    told = [np.broadcast_to(found[m.factor], (len(rows),)) / (size if m.length else 1.0) for m in kinematics.margins]
+    scaled = [np.broadcast_to(found[m.factor], (len(rows),)) / (size if m.length else 1.0) for m in kinematics.margins]
     good = np.asarray(np.broadcast_to(status == Status.OK, (len(rows),)), dtype=bool) & are_inside(machine, axes)
-    return np.where(good, np.abs(np.stack(told)), np.nan)
+    return np.where(good, np.abs(np.stack(scaled)), np.nan)
 
 
 def _scales(machine: Machine) -> Array:
@@ -154,7 +154,7 @@ def _starts(machine: Machine, start: Array, measure: Measure, place: int) -> Ite
 
 
 def _descended(measure: Measure, place: int, start: Array, scales: Array) -> Array | None:
-    """A pose where the margin vanishes, found from a start; None where none is found."""
+    """A pose where the margin vanishes, found from a start; None if none is found."""
     at = start.copy()
     value = float(measure(at[None])[place, 0])
     for _ in range(_PASSES):
@@ -237,7 +237,7 @@ def _program_at_pose(derived: Derived) -> Program:
     lets = [let for factor in derived.factors for let in factor.lets]
     own = {s.name for s in statements if isinstance(s, Let)}
     axes = [let for j in mechanism.joints for let in axis_lets(j) if let.name not in own]
-    body = spelled((*statements, *platform_checks(mechanism, statements), *lets, *axes), commanded(mechanism))
+    body = renamed_in((*statements, *platform_checks(mechanism, statements), *lets, *axes), commanded(mechanism))
     kept = [s for s in body if not _is_far_from_type_2(s)]
     margins_told = [Output(f.name, f.lets[-1].name) for f in derived.factors]
     return normalise("margins", kept, [*margins_told, *(Output(j.axis.name, j.axis) for j in mechanism.joints)])

@@ -16,7 +16,7 @@ _MOST = {1: 80, 2: 24, 3: 9}
 
 
 def equations_of(step: Step) -> tuple[Equation, ...]:
-    """The equations, in the names that their rule was given; empty where they are not found again."""
+    """The equations, in the names that their rule was given; empty if they are not found again."""
     if not step.found.unknowns:
         return ()
     for problem in (step.problem, replace(step.problem, fixed=step.problem.parameters)):

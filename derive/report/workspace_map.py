@@ -42,7 +42,7 @@ class Slice:
     solutions: Array
     """The number of solutions: 0 where the machine cannot reach the point."""
     margin: Array
-    """The smallest margin in size, for the solution with the largest one; NaN where there is no solution."""
+    """The smallest margin in size, for the solution with the largest one; NaN if there is no solution."""
     tool: tuple[float, float]
     """The position of the tool in the drawn pose."""
 
@@ -129,12 +129,12 @@ def _solved(
     good = np.asarray(np.broadcast_to(status == Status.OK, (count,)), dtype=bool)
     named = {**machine.values, **{j.axis.name: row for j, row in zip(joints, solution, strict=True)}}
     good = good & are_inside(machine, {j.axis.name: row for j, row in zip(joints, solution, strict=True)})
-    told = [m.name for m in kinematics.margins if m.length is None]
-    if not told:
+    names = [m.name for m in kinematics.margins if m.length is None]
+    if not names:
         return solution, good, np.where(good, 1.0, np.nan)
     there = {f"start_{n}": values[n] for n in FRAME} if kinematics.starts else {}
     margins, at = run(kinematics.singularity, named | there)
-    least = np.min(np.abs(np.stack([np.broadcast_to(margins[n], (count,)) for n in told])), axis=0)
+    least = np.min(np.abs(np.stack([np.broadcast_to(margins[n], (count,)) for n in names])), axis=0)
     has_margin = good & np.asarray(np.broadcast_to(at == Status.OK, (count,)), dtype=bool)
     return solution, good, np.where(has_margin, least, np.nan)
 
@@ -152,7 +152,7 @@ def _different(solutions: list[Array], good: list[NDArray[np.bool_]]) -> Array:
 
 
 def _best(margins: list[Array]) -> Array:
-    """The largest of the margins at each point; NaN where there is none."""
+    """The largest of the margins at each point; NaN if there is none."""
     stacked = np.stack(margins)
     best = np.max(np.where(np.isnan(stacked), -1.0, stacked), axis=0)
     return np.asarray(np.where(best < 0.0, np.nan, best))

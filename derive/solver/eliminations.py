@@ -34,7 +34,7 @@ def differences(problem: Problem) -> tuple[Equation, ...]:
 
 
 def lossy_differences(problem: Problem) -> tuple[Equation, ...]:
-    """Equations from which one unknown length has been eliminated; they say nothing where both coefficients
+    """Equations from which one unknown length has been eliminated; they say nothing if both coefficients
     vanish.
     """
     return tuple(e for e, is_lossless in _differences(problem) if not is_lossless)

@@ -1,7 +1,7 @@
 """Two-root steps of which only one root belongs to the machine: the determinant is a multiple of a positive quantity.
 
 A description says `positive=(sin(A2),)` for an elbow that cannot bend the other way. The law of cosines still has two
-roots, but the sign of the machine's root is known, and no branch needs a name. Where the determinant vanishes both
+roots, but the sign of the machine's root is known, and no branch needs a name. If the determinant vanishes both
 roots meet: this is still a singularity.
 """
 

@@ -29,5 +29,5 @@ def left_of_rotation(problem: Problem, record: DerivationRecord) -> list[sp.Expr
 
 
 def left_of_positions(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
-    """The residual of the positions where they have one equation too many; where it is zero, the others are zero."""
+    """The residual of the positions where they have one equation too many; if it is zero, the others are zero."""
     return [residual / problem.scale**2 for residual in record.residuals[:1]]

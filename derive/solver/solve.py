@@ -130,7 +130,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
 
     arguments: those of the sines and cosines in the original equations, from which sums of angles about parallel axes
     are read. resolve_angle: gives the statements that bind an angle with its whole turns, for equations in which it
-    stands outside sines and cosines. Raises `Unsolved` where no rule applies, `Exhausted` where
+    stands outside sines and cosines. Raises `Unsolved` if no rule applies, `Exhausted` if
     rules meet expressions with too many terms.
     """
     try:
@@ -202,7 +202,7 @@ def _read_plainly(problem: Problem, unknowns: Sequence[sp.Symbol]) -> list[sp.Sy
 def _next_after(
     steps: Sequence[Step], problem: Problem, sums: tuple[Sum, ...], arguments: Sequence[sp.Expr]
 ) -> tuple[Problem, Binding, tuple[Sum, ...]]:
-    """The next step; where there is none, the refusal holds those before it."""
+    """The next step; if there is none, the refusal holds those before it."""
     try:
         return _next(problem, sums, arguments)
     except Unsolved as stuck:
@@ -296,7 +296,7 @@ _LAST = (_along_a_direction, _three_lengths, _by_condition, _three_squares, _alo
 
 def _candidates(problem: Problem, equations: tuple[Equation, ...], wanted: sp.Symbol | None = None) -> list[Binding]:
     """The steps that the rules find, all or those for a wanted unknown. A step that gives a cosine alone is computed
-    only where there is no other.
+    only if there is no other.
     """
     spend(sum(len(sp.Add.make_args(e.expression)) for e in equations))
     answers = {rule: tuple(rule(problem, equations)) for rule in _BETTER}

@@ -45,7 +45,7 @@ class Undetermined(Unsolved):
 
 
 def undetermined(problem: Problem) -> str | None:
-    """The message where unknowns can move while the commanded values stay; None where the equations determine all."""
+    """The message where unknowns can move while the commanded values stay; None if the equations determine all."""
     unknowns = (*problem.lengths, *problem.angles)
     free, moving = _free(problem, unknowns) if unknowns else (0, [])
     if not free:

@@ -41,7 +41,7 @@ def _npm() -> Path:
 def installed(packages: Path, folder: Path) -> Path:
     """The folder `node_modules` with the packages that a lockfile names, installed where they are not yet.
 
-    packages: the folder of `package.json` and its lockfile. Raises `MissingTool` where they cannot be fetched.
+    packages: the folder of `package.json` and its lockfile. Raises `MissingTool` if they cannot be fetched.
     Several processes may call this at once: each installs into a temporary folder, and the first moves it into place.
     """
     wanted = sha256(b"\0".join((packages / name).read_bytes() for name in PACKAGES)).hexdigest()

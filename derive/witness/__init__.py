@@ -9,7 +9,7 @@ It imports descriptions, programs and the bundle `kinematics.kinematics`, and no
 assembly: the assembly mode of a loop that turns its platform, from the closure alone
 checks: the checks of forward kinematics, Jacobian and margins, and how errors are measured
 closure: the closure equations as CasADi functions
-disagreement: the errors where a derived formula is wrong, and where there is no pose to measure
+disagreement: the errors if a derived formula is wrong, and if there is no pose to measure
 exact/: forward and inverse kinematics against the closure in a finite field, where it holds or not
 frames: the frames of a chain, multiplied out factor by factor
 home_samples: axis values of a loop that turns its platform, around its home pose

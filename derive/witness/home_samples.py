@@ -80,7 +80,7 @@ def joints_at(
 ) -> Array:
     """Joint values at poses, by Newton's method; from anywhere where a leg has several.
 
-    mechanism: its rods tell which legs have several. Where a quantity that must be positive is not,
+    mechanism: its rods tell which legs have several. If a quantity that must be positive is not,
     the joints on which it depends start elsewhere once more.
     """
     joints = closure.joint_size(reach)

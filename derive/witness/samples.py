@@ -213,7 +213,7 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
 
 
 def _refused(setup: Program, values: dict[str, Array]) -> str:
-    """What the first condition wants that they do not meet; empty where it gives no reason."""
+    """What the first condition wants that they do not meet; empty if it gives no reason."""
     for place, statement in enumerate(setup.body):
         if isinstance(statement, Require) and statement.reason is not None:
             _, status = run(replace(setup, body=setup.body[: place + 1], outputs=()), values)

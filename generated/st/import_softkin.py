@@ -70,7 +70,7 @@ def returned(declaration):
 
 
 def child(parent, name):
-    """The child of that name, in whatever case; None where there is none."""
+    """The child of that name, in whatever case; None if there is none."""
     return next((one for one in parent.get_children() if one.get_name().lower() == name.lower()), None)
 
 
@@ -230,7 +230,7 @@ def source_folder():
 
 
 def target_path():
-    """Where the library is to be saved: the first argument, or what the user says."""
+    """If the library is to be saved: the first argument, or what the user says."""
     path = sys.argv[1] if len(sys.argv) > 1 else None
     if path is None and system.ui_present:
         path = system.ui.save_file_dialog(

@@ -126,7 +126,7 @@ int8_t softkin_turn_of(double value) {
 }
 
 /* The number of the turn on which an axis that is beyond its limits (degrees) would be inside. Of several the
- * one nearest to the limit that it exceeds; 0 where there is none, or none that a byte can name. */
+ * one nearest to the limit that it exceeds; 0 if there is none, or none that a byte can name. */
 int softkin_turn_inside(double axis, double lowest, double highest) {
   const double turns = axis > highest ? floor((highest - axis)/360.0) : -floor((axis - lowest)/360.0);
   const int number = softkin_turn_of(fmin(fmax(axis + 360.0*turns, -360.0*127.0), 360.0*126.0));
@@ -348,7 +348,7 @@ static void signs_of(const int8_t *bytes, int count, unsigned number, int8_t *si
   }
 }
 
-/* The axes on the slot that bytes name, or on the nearest of the open ones; where all refuse, the first
+/* The axes on the slot that bytes name, or on the nearest of the open ones; if all refuse, the first
  * reason. */
 static softkin_status choose(const softkin_mechanism *kind, const void *machine, const asked *given,
     const int8_t *bytes, double *axes, softkin_refusal *why) {
@@ -584,7 +584,7 @@ bool softkin_refuse_all(softkin_status status, softkin_status *statuses, int cou
   return true;
 }
 
-/* Every branch with automatic turns together; false where each has to be solved by itself. */
+/* Every branch with automatic turns together; false if each has to be solved by itself. */
 static bool together(const softkin_mechanism *kind, const void *machine, const asked *given,
     softkin_status *statuses, double *axes) {
   return kind->every_branch != NULL && softkin_are_reasonable(given->frame.position, 3)

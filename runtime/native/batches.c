@@ -57,7 +57,7 @@ void softkin_forward_rows(const softkin_rows *rows, const softkin_table *axes, d
   }
 }
 
-/* The bytes of a row; false where a number is none. */
+/* The bytes of a row; false if a number is none. */
 static bool take_bytes(const softkin_table *table, ptrdiff_t row, int count, int8_t *bytes) {
   for (int i = 0; i < count; i += 1) {
     const int64_t value = whole_at(table, row, i);
@@ -97,7 +97,7 @@ static void choose_turns(const softkin_mechanism *kind, double (*near)[SOFTKIN_L
   }
 }
 
-/* The signs of a row that names one branch and no turn; false where it does not. */
+/* The signs of a row that names one branch and no turn; false if it does not. */
 static bool take_signs(const softkin_mechanism *kind, const softkin_table *configurations, ptrdiff_t row,
     int lane, softkin_lanes *lanes) {
   bool is_named = true;

@@ -5,7 +5,7 @@ import { frameOf, numbersOf } from "./pose.js";
 /**
  * The fragment of a model: machine, parameters that differ from the nominal ones, axes, a frame that was refused.
  *
- * view: from where one looks, and at what, six numbers; null where one looks at the whole machine.
+ * view: from where one looks, and at what, six numbers; null if one looks at the whole machine.
  */
 export function fragmentOf(model, view = null) {
   const parts = [`machine=${encodeURIComponent(model.name)}`, `axes=${(model.pose?.axes ?? model.axes).join()}`];
@@ -19,7 +19,7 @@ export function fragmentOf(model, view = null) {
 
 /**
  * What a fragment says: the name of a machine, that of its mechanism or of its block, and what is given of it. Anything
- * else that is wrong in it is left out. null where it names none; `unknown` is a name that no machine has.
+ * else that is wrong in it is left out. null if it names none; `unknown` is a name that no machine has.
  */
 export function readFragment(fragment, model) {
   const parts = new Map(fragment.replace(/^#/, "").split("&").map((part) => part.split(/=(.*)/s)));

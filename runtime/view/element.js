@@ -22,7 +22,7 @@ export function shown(value, digits = 3) {
   return text === "-0" || text === "" ? "0" : text;
 }
 
-/** The value of a field as a finite number; null where it holds none. */
+/** The value of a field as a finite number; null if it holds none. */
 export function numberIn(field) {
   const value = field.value.trim() === "" ? NaN : Number(field.value);
   return Number.isFinite(value) ? value : null;

@@ -161,7 +161,7 @@ export class Figure {
     cone.scale.x = cone.scale.z = size * 0.024;
   }
 
-  /** The face that the ring of a plate or base encloses; 1 where there is one. */
+  /** The face that the ring of a plate or base encloses; 1 if there is one. */
   #face(place, body, kind) {
     const ring = ringOf(body.lines);
     if (ring.length < 3 || ring.length > LARGEST_PLATE) return 0;

@@ -45,7 +45,7 @@ export function isFree({ lower, upper }, parameters) {
 }
 
 /**
- * What changes with a parameter, which is null where its field is empty: of an end of limits both ends. Where there
+ * What changes with a parameter, which is null if its field is empty: of an end of limits both ends. If there
  * were no limits the other end is open, and where both are open there are none.
  */
 export function changesWith(description, parameters, name, value) {

@@ -9,7 +9,7 @@ import { endsOf } from "./limits.js";
 const PROTOCOL = "softkin.live.1";
 const RETRY = 1500;
 
-/** The token of a run in the fragment of the address; null where the page is not live. */
+/** The token of a run in the fragment of the address; null if the page is not live. */
 export function tokenOf(fragment) {
   return new URLSearchParams(fragment.replace(/^#/, "")).get("live");
 }

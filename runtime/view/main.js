@@ -115,7 +115,7 @@ class Page {
     this.parts[name].setAttribute("aria-pressed", String(isPressed));
   }
 
-  /** One kind of handles, or none where it is chosen again. */
+  /** One kind of handles, or none if it is chosen again. */
   #handle(mode) {
     this.mode = this.mode === mode ? "" : mode;
     this.#handles();

@@ -54,7 +54,7 @@ export class Model {
     return this.description.axes.length > 0;
   }
 
-  /** Move the axes. Where the machine has no pose there, it is drawn in its last one, and the reason is shown. */
+  /** Move the axes. If the machine has no pose there, it is drawn in its last one, and the reason is shown. */
   moveAxes(axes) {
     this.#stand(axes);
     this.#tell("pose");

@@ -54,7 +54,7 @@ function inside({ lower, upper }, value) {
   return upper !== null && value > upper ? upper : value;
 }
 
-/** How far the least margin is from zero; null where there is no pose, or the inverse does not come back to it. */
+/** How far the least margin is from zero; null if there is no pose, or the inverse does not come back to it. */
 function worthOf(machine, axes) {
   const found = machine.forward(axes);
   if (found.status) return null;

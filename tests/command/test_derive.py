@@ -138,11 +138,7 @@ def test_check_writes_nothing(folder: Folder) -> None:
 
 @pytest.mark.parametrize(
     ("file", "more", "package"),
-    [
-        ("My-Machine.py", (), "my_machine"),
-        ("2r.py", (), "machine_2r"),
-        ("rail.py", ("--package", "Robot7"), "Robot7"),
-    ],
+    [("My-Machine.py", (), "my_machine"), ("2r.py", (), "machine_2r"), ("rail.py", ("--package", "Robot7"), "Robot7")],
 )
 def test_the_package_is_called_after_the_file(folder: Folder, file: str, more: tuple[str, ...], package: str) -> None:
     folder.write(file, RAIL)

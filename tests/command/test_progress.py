@@ -81,9 +81,9 @@ def test_a_file_gets_lines_alone() -> None:
 def test_a_long_stage_on_a_terminal_counts_its_seconds() -> None:
     """The running line is replaced each second, and by the result."""
     run = Watched(Terminal())
-    run.stages.told("derive", "")
+    run.stages.report("derive", "")
     run.at(1.0, 2.0)
-    run.stages.told("derive", "5 statements")
+    run.stages.report("derive", "5 statements")
     assert run.stream.getvalue().split(CLEARED)[1:] == [
         "  derive   …", "  derive       1 s …", "  derive       2 s …", "  derive     2.0 s   5 statements\n",
     ]  # fmt: skip
@@ -93,12 +93,12 @@ def test_a_long_stage_in_a_file_is_told_after_ten_seconds_and_then_rarely(monkey
     """A log gets one line after 10 s, then after 20, 40, …; a line of the run itself starts again."""
     monkeypatch.setattr(of_machine, "doing", lambda: "solving its equations")
     run = Watched(StringIO())
-    run.stages.told("derive", "")
+    run.stages.report("derive", "")
     run.at(*map(float, range(1, 50)))
     assert run.stream.getvalue().splitlines() == [
         f"  derive   {seconds:5} s … solving its equations" for seconds in (10, 20, 40)
     ]
-    run.stages.told("derive", "5 statements")
+    run.stages.report("derive", "5 statements")
     run.at(52.0)
     run.at(*map(float, range(58, 62)))
     assert run.stream.getvalue().splitlines()[3:] == [

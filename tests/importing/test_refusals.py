@@ -13,12 +13,7 @@ from derive.importing.importing import Options, import_robot
 from derive.importing.robot import UnreadableRobot
 from tests.importing.robots import joint, urdf
 
-ARM = urdf(
-    "arm",
-    joint("a", "revolute"),
-    joint("b", "revolute", "0.1 0 0"),
-    joint("c", "prismatic", "0.2 0 0"),
-)
+ARM = urdf("arm", joint("a", "revolute"), joint("b", "revolute", "0.1 0 0"), joint("c", "prismatic", "0.2 0 0"))
 TURN = '<joint name="{}" type="{}"><parent link="{}"/><child link="{}"/></joint>'
 SCARA_TABLE = 'convention = "standard"\nangles = "degrees"\nlengths = "mm"\n[[joints]]\na = 200\n[[joints]]\na = 100\n'
 MODEL = '<mujoco><worldbody><body name="a">{}<body name="b">{}</body></body></worldbody>{}</mujoco>'

@@ -68,11 +68,7 @@ def test_a_table_in_radians_is_read_by_its_decimals(tmp_path: Path) -> None:
     rows = "[[joints]]\nd = 0.3\nalpha = {0}\n[[joints]]\na = 0.4\n[[joints]]\na = 0.3\ntheta = {1}\nalpha = {0}\n"
     toml, table = tmp_path / "r.toml", tmp_path / "r.csv"
     head = "# convention: standard\n# angles: {}\n# lengths: m\ntheta,d,a,alpha\n"
-    for half, quarter, is_read in (
-        ("1.5708", "0.7854", True),
-        ("1.5712", "0.7856", False),
-        ("1.57", "0.7860", False),
-    ):
+    for half, quarter, is_read in (("1.5708", "0.7854", True), ("1.5712", "0.7856", False), ("1.57", "0.7860", False)):
         settings = 'convention = "standard"\nangles = "radians"\nlengths = "m"\n'
         toml.write_text(settings + rows.format(half, quarter), encoding="utf-8")
         cells = f"0,0.3,0,{half}\n0,0,0.4,0\n{quarter},0,0.3,{half}\n"

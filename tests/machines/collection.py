@@ -213,10 +213,7 @@ ALONG_A_DIRECTION = {
         Tz(HEIGHT) * Rz(A1) * Ty(Y) * Ry(A2) * Tz(L2) * Ry(A3) * Tz(R),
         (HEIGHT, L2),
         DIRECTION,
-        (
-            branch("tilt", sin(A2 + A3), positive=+1, negative=-1),
-            branch("arm", cos(A3), ahead=+1, behind=-1),
-        ),
+        (branch("tilt", sin(A2 + A3), positive=+1, negative=-1), branch("arm", cos(A3), ahead=+1, behind=-1)),
     ),
 }
 
@@ -282,10 +279,7 @@ SEEN_FROM_A_KNOWN_FRAME = {
         Tx(X) * Rx(A1) * Ty(L1) * Rz(A2) * Tz(BESIDE) * Tx(L2),
         (L1, BESIDE, L2),
         Task("xyz"),
-        (
-            branch("shoulder", L1 + L2 * sin(A2), front=+1, back=-1),
-            branch("elbow", cos(A2), ahead=+1, behind=-1),
-        ),
+        (branch("shoulder", L1 + L2 * sin(A2), front=+1, back=-1), branch("elbow", cos(A2), ahead=+1, behind=-1)),
     ),
     "telescope on a rocker that points the tool": _machine(
         "RockerTelescope",

@@ -9,18 +9,7 @@ from sympy import cos, sin
 
 from derive.description.mechanism import Constraint, Mechanism
 from derive.frames import Rz, Tx, Tz
-from derive.mechanism import (
-    Task,
-    X,
-    Y,
-    assembly,
-    branch,
-    length,
-    limited,
-    linear,
-    rod,
-    rotary,
-)
+from derive.mechanism import Task, X, Y, assembly, branch, length, limited, linear, rod, rotary
 from derive.vectors import cross, minus, vector
 
 MARKS = (

@@ -86,10 +86,7 @@ KINDS = {
     ),
     "five-bar": Kind(
         "DualScara",
-        _sizes(
-            dict(zip(_FIVE_BAR, (210.0, 310.0, 260.0, 390.0, 460.0), strict=True)),
-            dict.fromkeys(_FIVE_BAR, 300.0),
-        ),
+        _sizes(dict(zip(_FIVE_BAR, (210.0, 310.0, 260.0, 390.0, 460.0), strict=True)), dict.fromkeys(_FIVE_BAR, 300.0)),
         (2,),
     ),
 }

@@ -51,10 +51,7 @@ def _with(name: str, **changes: object) -> Mechanism:
             " angle by motors of earlier axes and its own, or give the gears as numbers",
         ),
         (
-            _with(
-                "SCARA with gears",
-                joints=(rotary("A1", "turn", domain=(-90.0, 90.0)), A2, Z),
-            ),
+            _with("SCARA with gears", joints=(rotary("A1", "turn", domain=(-90.0, 90.0)), A2, Z)),
             "joint 'A1' has a gear and a domain: state the domain as limits of its axis",
         ),
     ],

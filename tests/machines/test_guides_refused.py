@@ -41,10 +41,7 @@ WRONG = {
         replace(RPS, guides=(*RPS.guides[:2], guide("3", (sp.sin(RPS.joints[0].symbol), 1, 0), on_plate(0, 0, 0)))),
         "the closure has 4 equations, and the task commands only 3 quantities (z, tilt x, tilt y)",
     ),
-    "a guide with two coordinates and three": (
-        None,
-        "guide '1': its normal and its point have 3 and 2 coordinates",
-    ),
+    "a guide with two coordinates and three": (None, "guide '1': its normal and its point have 3 and 2 coordinates"),
     "a home pose of the task alone": (replace(RPS, home=(450, 0, 0)), "needs a home pose of 6 coordinates, and has 3"),
     "no guides": (replace(RPS, guides=()), "must be held by guides=, planes in which points of a platform that turns"),
     "a whole rotation": (

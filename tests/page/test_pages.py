@@ -36,10 +36,7 @@ def test_a_page_stands_by_itself(name: str) -> None:
     text = page(name).text
     assert tree(name).tag.endswith("html")
     assert "<script" not in text and "javascript:" not in text
-    assert set(re.findall(r"https?://[\w./]+", text)) <= {
-        "http://www.w3.org/1999/xhtml",
-        "http://www.w3.org/2000/svg",
-    }
+    assert set(re.findall(r"https?://[\w./]+", text)) <= {"http://www.w3.org/1999/xhtml", "http://www.w3.org/2000/svg"}
     assert not re.search(r'(?:src|href)="(?!data:|#)', text)
     assert len(text.encode()) < 1_000_000
     anchors = re.findall(r'href="#([^"]+)"', text)

@@ -95,13 +95,13 @@ def _held(machine: Machine, found: SingularPose) -> float:
         frame = tuple(float(pose[n]) for n in FRAME)
     size = size_of(mechanism, machine.values)
     directions = [k for k, c in enumerate("xyz") if c in mechanism.motion.position]
-    spins = [] if found.frame is None else [2] if mechanism.motion.turning.value == "about z" else [0, 1, 2]
+    rotation_axes = [] if found.frame is None else [2] if mechanism.motion.turning.value == "about z" else [0, 1, 2]
     columns = []
     for place in directions:
         shift = np.zeros(3)
         shift[place] = _STEP * size
         columns.append(_slope(mechanism, values, frame, shift, np.zeros(3)))
-    for place in spins:
+    for place in rotation_axes:
         turn = np.zeros(3)
         turn[place] = _STEP
         columns.append(_slope(mechanism, values, frame, np.zeros(3), turn))

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import cache
 
 from derive.description.mechanism import Mechanism
-from derive.emit.plcopen.objects import Object, objects_of, ruled
+from derive.emit.plcopen.objects import Object, as_text, objects_of
 from derive.emit.softmotion.flat import flattened
 from tests.harness.library import Library, compile_st
 from tests.text.units import file_of, shared_texts, text_of
@@ -38,7 +38,7 @@ def flat_text(mechanism: Mechanism) -> str:
 
 def flat_of(text: str) -> str:
     """The text of a unit, flat."""
-    return ruled(flattened(objects_in(text), base()))
+    return as_text(flattened(objects_in(text), base()))
 
 
 def flat_texts(mechanism: Mechanism) -> Mapping[str, str]:

@@ -13,15 +13,7 @@ from dataclasses import dataclass
 _TOKENS = re.compile(r"'[^'\n]*'|\d[\d.]*(?:E-?\d+)?|[A-Za-z_]\w*|:=|=>|<=|>=|<>|\S")
 _BETWEEN = {"IF", "THEN", "ELSIF", "FOR", "TO", "BY", "DO", "WHILE", "CASE", "OF", ":=", ";", ":"}
 """What stands between the expressions of a statement."""
-_LEVELS = (
-    ("OR",),
-    ("XOR",),
-    ("AND",),
-    ("=", "<>"),
-    ("<", "<=", ">", ">="),
-    ("+", "-"),
-    ("*", "/", "MOD"),
-)
+_LEVELS = (("OR",), ("XOR",), ("AND",), ("=", "<>"), ("<", "<=", ">", ">="), ("+", "-"), ("*", "/", "MOD"))
 """The operators, those that bind least first."""
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from derive.emit.plcopen.declaration import declaration_of
-from derive.emit.plcopen.objects import Object, objects_of, ruled
+from derive.emit.plcopen.objects import Object, as_text, objects_of
 from derive.emit.plcopen.uses import needed
 
 TEXT = """\
@@ -90,7 +90,7 @@ def test_a_list_of_global_constants_has_the_name_that_it_is_given() -> None:
     text = "// Names\n{attribute 'qualified_only'}\nVAR_GLOBAL CONSTANT\n  ONE : INT := 1;\nEND_VAR"
     (found,) = objects_of(f"{text}\n", "Names")
     assert found == Object("VAR_GLOBAL", "Names", text, "")
-    assert ruled([found]).count("// ====") == 2 and "END_VAR_GLOBAL" not in ruled([found])
+    assert as_text([found]).count("// ====") == 2 and "END_VAR_GLOBAL" not in as_text([found])
     declared = declaration_of(found.declaration)
     assert declared.attributes == (("qualified_only", ""),) and list(declared.names()) == ["ONE"]
     with pytest.raises(ValueError, match="'VAR_GLOBAL CONSTANT' stands in no object that has a name"):
@@ -107,18 +107,18 @@ def test_an_interface_has_declarations_alone() -> None:
     first, stop = found.members
     assert first == Object("METHOD", "Run", "METHOD Run : BOOL\nVAR_INPUT\n  x : INT;\nEND_VAR", "")
     assert declaration_of(first.declaration).returns == "BOOL" and stop.declaration == "METHOD Stop"
-    titles = [line.strip("/= ") for line in ruled([found]).split("\n") if line.startswith("// ====")]
+    titles = [line.strip("/= ") for line in as_text([found]).split("\n") if line.startswith("// ====")]
     assert [one for one in titles if one] == [
         "INTERFACE IAsk: declaration",
         "METHOD IAsk.Run: declaration",
         "METHOD IAsk.Stop: declaration",
     ]
-    assert ruled([found]).endswith("\nEND_INTERFACE\n")
+    assert as_text([found]).endswith("\nEND_INTERFACE\n")
 
 
 def test_rulers_are_all_that_is_added() -> None:
     """The rulers are the only lines that are added to a text."""
-    text = ruled(objects_of(TEXT))
+    text = as_text(objects_of(TEXT))
     lines = [line.removesuffix("  // ====") for line in text.split("\n") if line and not line.startswith("// ====")]
     assert lines == [line for line in TEXT.split("\n") if line]
     titles = [line.strip("/= ") for line in text.split("\n") if line.startswith("// ====")]
@@ -136,7 +136,7 @@ def test_rulers_are_all_that_is_added() -> None:
 def test_no_closing_line_stands_between_two_rulers() -> None:
     """Between two rulers stands exactly what one pastes into one editor."""
     inside = ""
-    for line in ruled(objects_of(TEXT)).split("\n"):
+    for line in as_text(objects_of(TEXT)).split("\n"):
         if line.endswith("===="):
             inside = line.strip("/= ") if line.startswith("// ====") else ""
         elif inside:

@@ -137,7 +137,7 @@ _END = aiohttp.ClientTimeout(total=1.0)
 
 
 async def _object(answer: aiohttp.ClientResponse) -> dict[str, Any]:
-    """The object of JSON in an answer; empty where it is none, or is too long."""
+    """The object of JSON in an answer; empty if it is none, or is too long."""
     body = b""
     async for part in answer.content.iter_any():
         body += part

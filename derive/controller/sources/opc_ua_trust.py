@@ -36,7 +36,7 @@ _ENCRYPTED = ua.MessageSecurityMode.SignAndEncrypt
 
 
 async def encrypt(client: Client, security: Security) -> None:
-    """Let the client sign and encrypt with the server that it shall trust. Raises `Refused` where it cannot."""
+    """Let the client sign and encrypt with the server that it shall trust. Raises `Refused` if it cannot."""
     anchors = () if security.is_unchecked else _anchors(security.ca)
     endpoints = await client.connect_and_get_server_endpoints()
     host = str(client.server_url.hostname)
@@ -59,7 +59,7 @@ async def encrypt(client: Client, security: Security) -> None:
 
 
 def distrust(server: x509.Certificate, anchors: Sequence[x509.Certificate], host: str) -> str | None:
-    """The reason why a certificate is not trusted at present; None where it is. anchors: the trusted certificates."""
+    """The reason why a certificate is not trusted at present; None if it is. anchors: the trusted certificates."""
     now = datetime.datetime.now(datetime.UTC)
     if not server.not_valid_before_utc <= now <= server.not_valid_after_utc:
         return f"it is valid from {server.not_valid_before_utc:%Y-%m-%d} to {server.not_valid_after_utc:%Y-%m-%d}"
@@ -107,7 +107,7 @@ def _anchors(path: Path | None) -> tuple[x509.Certificate, ...]:
 
 
 async def _own(client: Client, folder: Path) -> tuple[Path, Path]:
-    """This client's certificate and key, created where there are none; no other user may read the folder."""
+    """This client's certificate and key, created if there are none; no other user may read the folder."""
     certificate, key = folder / CERTIFICATE, folder / _KEY
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)

@@ -17,7 +17,7 @@ from derive.ir.program import Require, Status
 from derive.ir.symbols import REFUSAL, choices, suffixed, symbols_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 from derive.report.reasons import Reasons
 
 NAME = "find_every_branch"
@@ -33,7 +33,7 @@ _HEAD = (
 
 @kept_by_identity(10)
 def straight_line(kin: Kinematics) -> EveryBranch | None:
-    """The program of all branches. None where each branch is solved by itself: without a straight line, or where a turn
+    """The program of all branches. None if each branch is solved by itself: without a straight line, or if a turn
     moves several axes.
     """
     if not is_unrolled(kin) or 2 ** len(kin.branches) > MOST_SLOTS:
@@ -59,7 +59,7 @@ def constants_of_branches(kin: Kinematics) -> set[str]:
 
 
 def every_branch_lines(kin: Kinematics, machine: str, stored: Mapping[str, str], reasons: Reasons) -> list[str]:
-    """The function; nothing where there is no straight line."""
+    """The function; nothing if there is no straight line."""
     found = straight_line(kin)
     if found is None:
         return []

@@ -17,7 +17,7 @@ from derive.emit.c.every_branch import straight_line
 from derive.emit.c.layout import comment, commented
 from derive.emit.c.printer import C, member, spelled, type_of
 from derive.emit.c.program import function_of
-from derive.emit.every_branch import constants, known_constants, read_of, signs
+from derive.emit.every_branch import constants, given_to_branch, known_constants, read_of, signs
 from derive.emit.interface import read_by
 from derive.equations.rotation_repair import surely_exact
 from derive.ir.program import Let, Program, Require
@@ -25,9 +25,7 @@ from derive.ir.symbols import COORDINATE_NAMES, REFUSAL, ROTATION_ENTRIES, branc
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.lost_digits.doubts import without_meeting
-from derive.lowering.lower import lowered
-from derive.optimize.regular import regular
-from derive.optimize.without_periods import specialised, without_chosen_turns
+from derive.lowering.passes import ANY_TURN, LANES, REGULAR, SPECIALISED, Given, applied, lowered
 
 ONE, EVERY = "regular", "regular_all"
 """The ends of the names of the functions: for the branch that the signs choose, and for all branches."""
@@ -56,13 +54,13 @@ class InLanes:
 
 @kept_by_identity(10)
 def in_lanes(kin: Kinematics) -> tuple[InLanes, ...]:
-    """The programs of a machine. None where they would need more than arithmetic, roots and angles, where a turn moves
-    several axes or a gear, and where nothing moves. That of all branches only where these are few.
+    """The programs of a machine. None if they would need more than arithmetic, roots and angles, if a turn moves
+    several axes or a gear, or if nothing moves. That of all branches only if these are few.
     """
     if not kin.mechanism.joints or any(joint.coupling != 0 or joint.is_geared for joint in kin.period_joints):
         return ()
-    one = specialised(without_meeting(kin.branch), {j.turn: sp.Integer(0) for j in kin.period_joints})
-    found = regular(without_chosen_turns(one), constants(kin))
+    given = given_to_branch(kin)
+    found = REGULAR.change(applied((*SPECIALISED, *ANY_TURN), without_meeting(kin.branch), given), given)
     if found is None:
         return ()
     own = InLanes(replace(found, name=ONE), ())
@@ -71,17 +69,17 @@ def in_lanes(kin: Kinematics) -> tuple[InLanes, ...]:
 
 
 def _every_branch(kin: Kinematics, one: Program) -> InLanes | None:
-    """The program of all branches; None where there is no straight line. one: that of one branch."""
+    """The program of all branches; None if there is no straight line. one: that of one branch."""
     line = straight_line(kin)
     if line is None:
         return None
     parts = line.parts
-    found = regular(line.program, constants(kin) | {part.name.name for part in parts})
+    found = REGULAR.change(line.program, Given(constants(kin) | {part.name.name for part in parts}))
     if found is None:  # it takes sines of sums of angles, which lanes lack and one branch does not need
         (found,), parts = lowered(
             [replace(one, name=EVERY)],
             constants(kin),
-            modulo_turns=True,
+            LANES,
             branches={EVERY: signs(kin)},
             known=known_constants(kin),
         )

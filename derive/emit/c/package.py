@@ -18,15 +18,7 @@ from derive.emit.c.functions import FRAME, Function, functions, rotation_functio
 from derive.emit.c.lanes import constants_of_lanes
 from derive.emit.c.layout import comment, laid_out, page
 from derive.emit.c.printer import C, list_of, member, number, text, type_of
-from derive.emit.c.program import (
-    Body,
-    arguments_read,
-    directions_of,
-    function_lines,
-    function_of,
-    of_search,
-    taken,
-)
+from derive.emit.c.program import Body, arguments_read, directions_of, function_lines, function_of, of_search, taken
 from derive.emit.c.refusal import Refusals
 from derive.emit.c.setup import constants_read, setup
 from derive.emit.interface import arguments_of, read_by, search_of, searches
@@ -37,8 +29,9 @@ from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import NO_MEANING, reasons_of, reasons_of_rotation
 
-name = "c"
+name, title = "c", "C"
 MOST_AXES, MOST_BRANCHES, MOST_DIRECTIONS, MOST_LISTED = 24, 12, 6, 10
+bound = f"no C: its calls hold {MOST_AXES} axes and {MOST_BRANCHES} branches"
 _WRITTEN = ("softkin_constants.h", "softkin_rotation.h")
 """The files beside the runtime that hold constants and a program."""
 _TAKEN = frozenset(
@@ -50,7 +43,7 @@ _TAKEN = frozenset(
 
 
 def part(kinematics: Kinematics) -> Part | None:
-    """Header and source of one mechanism; None where it has more axes, branches or directions than the calls hold."""
+    """Header and source of one mechanism; None if it has more axes, branches or directions than the calls hold."""
     return _written(kinematics) if _fits(kinematics) else None
 
 
@@ -142,7 +135,7 @@ def _known(kin: Kinematics, module: str) -> dict[str, Any]:
         "counts": counts(kin),
         "slots": 2 ** len(kin.branches),
         "parameters": [
-            {"name": given.names[p.name], "meaning": harmless(_told(p.meaning, p.unit, in_words(p), p.default))}
+            {"name": given.names[p.name], "meaning": harmless(_described(p.meaning, p.unit, in_words(p), p.default))}
             for p in kin.parameters
         ],
         "constants": _members(made.constants),
@@ -165,7 +158,7 @@ def _function(kin: Kinematics, function: Function, machine: str, stored: dict[st
     return [*before, function_lines(function, machine, stored, reasons_of(kin))]
 
 
-def _told(meaning: str, unit: str, words: str, default: float | None) -> str:
+def _described(meaning: str, unit: str, words: str, default: float | None) -> str:
     at_first = "must be given" if default is None else f"default {default:g}"
     return f"{meaning}{f' [{unit}]' if unit else ''}: {words}; {at_first}"
 
@@ -184,7 +177,7 @@ def _head(kin: Kinematics) -> list[str]:
     order = [b.name for b in kin.branches] + [f"turn of {j.name}" for j in kin.period_joints]
     further = [f"configuration: {', '.join(order)}"] if order else []
     further.append(f"rows of the Jacobian: {', '.join(kin.rows) or 'none'}")
-    texts = head_of(kin, map(inputs(kin).told, kin.mechanism.all_notes), further)
+    texts = head_of(kin, map(inputs(kin).reworded, kin.mechanism.all_notes), further)
     return [line for text in texts for line in comment(text) or [""]]
 
 

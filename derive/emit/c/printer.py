@@ -108,9 +108,9 @@ class C(Braced):
     """Writes expressions and the parts of statements. members: the spelling of values in a struct."""
 
     functions = {
-        "abs": "fabs", "root": "softkin_root", "atan2": "softkin_angle_of", "nearest_period": "softkin_on_turn",
-        "nearest_on_arc": "softkin_nearest_on_arc",
+        "sin": "sin", "cos": "cos", "abs": "fabs", "atan2": "softkin_angle_of", "nearest_period": "softkin_on_turn",
     }  # fmt: skip
+    shared_function = "softkin_{snake}"
     radian = "SOFTKIN_RADIAN"
     members: Mapping[str, str] = field(default_factory=dict)
 

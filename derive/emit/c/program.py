@@ -15,10 +15,10 @@ from derive.emit.c.layout import comment
 from derive.emit.c.printer import C, list_of, spelled, type_of
 from derive.emit.c.refusal import Refusals
 from derive.emit.interface import names_in, read_by
-from derive.ir.program import Call, FindRoot, Solve, binds
+from derive.ir.program import Call, FindRoot, Solve
 from derive.ir.symbols import PLACE
 from derive.lowering.decided import decided
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 from derive.report.reasons import Reasons
 
 _PLACES = {name.name: f"place->{name.name}" for name in PLACE}
@@ -79,7 +79,7 @@ class Body(walk.Body):
 
     endless, numbering = "int pass = 0;", "_of_"
     read: Collection[str] | None = None
-    """The names that are read; None where that is not known."""
+    """The names that are read; None if that is not known."""
 
     def begin(self, state: Sequence[sp.Symbol], values: Sequence[str]) -> list[str]:
         """The variables of the state of a loop, with their first values."""
@@ -87,7 +87,7 @@ class Body(walk.Body):
 
     def solve(self, system: Solve) -> list[str]:
         """Linear equations: the matrix with its right-hand sides in one array, which then holds the solution."""
-        size, columns, declares = system.size, system.columns, self.declared.isdisjoint(binds(system))
+        size, columns, declares = system.size, system.columns, self.declared.isdisjoint(system.bound())
         array, word = self.another("system"), "const double " if declares else ""
         rows = [
             [*system.matrix[i * size : (i + 1) * size], *system.right[i * columns : (i + 1) * columns]]

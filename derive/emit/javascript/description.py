@@ -63,7 +63,7 @@ def description(kin: Kinematics, module: str) -> dict[str, Any]:
         "sides": kin.tried_branches,
         "jacobianRows": list(kin.rows),
         "margins": [{"name": m.name, "kind": m.kind, "isDistance": bool(m.length)} for m in kin.margins],
-        "notes": [*map(given.told, mechanism.all_notes), *given.notes],
+        "notes": [*map(given.reworded, mechanism.all_notes), *given.notes],
     }
 
 

@@ -34,13 +34,13 @@ class Function:
 
     @property
     def result(self) -> tuple[Shape, ...] | None:
-        """None where the program only refuses."""
+        """None if the program only refuses."""
         shapes = tuple(shape for _, shape in self.entry.results)
         return shapes if len(shapes) > 1 else shapes[0] if shapes else None
 
     @property
     def key(self) -> str:
-        """Its name among the programs that the runtime calls; empty where only other programs call it."""
+        """Its name among the programs that the runtime calls; empty if only other programs call it."""
         return _camel(self.entry.key)
 
 

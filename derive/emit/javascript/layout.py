@@ -19,7 +19,7 @@ def comment(note: str) -> list[str]:
 
 
 def commented(line: str, note: str) -> list[str]:
-    """A statement with a note beside it, or above it where there is no room in most places."""
+    """A statement with a note beside it, or above it if there is no room in most places."""
     beside = f"{line} // {note}"
     return [beside] if note and len(beside) <= _COMMENT else [*comment(note), line]
 

@@ -28,7 +28,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 from derive.report.reasons import reasons_of, reasons_of_rotation
 
-name = "javascript"
+name, title, bound = "javascript", "JavaScript", ""
 _VERSION = "0.1.0"
 _AROUND = ("index.js", "package.json")
 _WRITTEN = ("softkin/constants.js", "softkin/rotation.js")
@@ -105,7 +105,7 @@ def _module(kin: Kinematics, module: str) -> str:
 
 
 def _parts(kin: Kinematics) -> Parts | None:
-    """The drawn parts of the machine; None where nothing can be drawn."""
+    """The drawn parts of the machine; None if nothing can be drawn."""
     try:
         return parts_of(kin)
     except Exception:  # whatever a drawing meets, the formulas are proven without it
@@ -113,7 +113,7 @@ def _parts(kin: Kinematics) -> Parts | None:
 
 
 def _drawn(kin: Kinematics) -> list[float] | None:
-    """The axis values of the pose that a picture shows, with nominal parameters; None where there is none."""
+    """The axis values of the pose that a picture shows, with nominal parameters; None if there is none."""
     try:
         return list(map(float, drawn_pose(nominal_machine(kin)).axes))
     except Exception:  # as above
@@ -122,7 +122,7 @@ def _drawn(kin: Kinematics) -> list[float] | None:
 
 def _head(kin: Kinematics) -> list[str]:
     """The lines at the top of a module."""
-    texts = head_of(kin, map(inputs(kin).told, kin.mechanism.all_notes))
+    texts = head_of(kin, map(inputs(kin).reworded, kin.mechanism.all_notes))
     return [line for text in texts for line in comment(text) or [""]]
 
 

@@ -13,13 +13,9 @@ import sympy as sp
 from derive.emit.braced import Braced
 from derive.emit.javascript import layout
 from derive.ir.constants import DEGREE
+from derive.ir.primitives import FUNCTIONS, KEYS, Select
 from derive.ir.program import Status
 
-RUNTIME = (
-    "DEGREE", "RADIAN", "Machine", "Refusal", "Status", "angleOf", "everyRoot", "isReasonable", "nearestOnArc",
-    "nearestPeriod", "nearestRoot", "refuse", "solveLinear", "squareRoot", "turnInside",
-)  # fmt: skip
-"""The names that a module may import from the runtime."""
 _WORDS = frozenset(
     "arguments await break case catch class const continue debugger default delete do else enum eval export extends "
     "false finally for function if implements import in instanceof interface let new null package private protected "
@@ -61,8 +57,8 @@ class JavaScript(Braced):
 
     functions = {
         "sin": "Math.sin", "cos": "Math.cos", "abs": "Math.abs", "root": "squareRoot", "atan2": "angleOf",
-        "nearest_period": "nearestPeriod", "nearest_on_arc": "nearestOnArc",
     }  # fmt: skip
+    shared_function = "{camel}"
     square_root = "Math.sqrt"
 
     spelled = staticmethod(spelled)
@@ -93,3 +89,8 @@ class JavaScript(Braced):
 
 
 PRINTER = JavaScript()
+RUNTIME = frozenset(JavaScript.function(KEYS[one]) for one in FUNCTIONS if one is not Select) | {
+    "DEGREE", "RADIAN", "Machine", "Refusal", "Status", "everyRoot", "isReasonable", "nearestRoot", "refuse",
+    "solveLinear", "turnInside",
+}  # fmt: skip
+"""The names that a module may import from the runtime."""

@@ -14,10 +14,10 @@ from derive.emit.javascript.functions import Function
 from derive.emit.javascript.layout import comment
 from derive.emit.javascript.printer import PRINTER, function_name, list_of, spelled
 from derive.emit.javascript.refusal import Refusals
-from derive.ir.program import Call, FindRoot, Solve, binds
+from derive.ir.program import Call, FindRoot, Solve
 from derive.ir.symbols import PLACE, is_condition
 from derive.lowering.decided import decided
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 
 _PLACE = "({ tried, side, freed, freed_angle }) => "
 
@@ -67,7 +67,7 @@ class Body(walk.Body):
         """`[determinant, x, y] = solveLinear(matrix, right)`, matrices by rows."""
         targets = ["" if system.determinant is None else spelled(system.determinant.name), *PRINTER.names(system.names)]
         matrix, right = _matrix(system.matrix, system.size), _matrix(system.right, system.columns)
-        word = "const " if self.declared.isdisjoint(binds(system)) else ""
+        word = "const " if self.declared.isdisjoint(system.bound()) else ""
         return [*comment(system.note), f"{word}{list_of(targets)} = solveLinear({matrix}, {right});"]
 
     def call(self, call: Call) -> list[str]:

@@ -57,7 +57,7 @@ def _lines(kin: Kinematics, words: Words, pins: Mapping[str, str]) -> Iterator[s
     yield "pins that are read at the begin of every call:"
     for i, parameter in enumerate(kin.parameters, 1):
         kind = "bit" if parameter.role is Role.FLAG else "float"
-        yield from _item(f"{i} softkin.{pins[parameter.name]} ({kind})", _told(parameter))
+        yield from _item(f"{i} softkin.{pins[parameter.name]} ({kind})", _described(parameter))
     yield "pins that are written:"
     for name, meaning in _OUT:
         yield from _item(f"softkin.{name}", meaning)
@@ -68,5 +68,5 @@ def _item(name: str, text: str) -> list[str]:
     return wrap(f"{name}: {text}", _WIDTH, initial_indent="  ", subsequent_indent="      ", break_on_hyphens=False)
 
 
-def _told(p: Parameter) -> str:
+def _described(p: Parameter) -> str:
     return f"{p.meaning}: {in_words(p)}; {'must be set' if p.default is None else f'{p.default:g} at first'}"

@@ -22,8 +22,9 @@ from derive.emit.linuxcnc.words import LETTERS, Orientation, Words, flange_of, t
 from derive.ir.constants import FREE_ANGLE, LARGEST, TIE
 from derive.kinematics.kinematics import Kinematics
 
-name = "linuxcnc"
+name, title = "linuxcnc", "LinuxCNC"
 MOST_AXES = len(LETTERS)
+bound = f"no module for LinuxCNC: it has {{axes}} axes, a pose there 1 to {MOST_AXES}, or no C"
 _LONGEST = 39
 """The most characters of the name of a pin, behind `softkin.`: a name of the HAL has 47."""
 _TURNS = {
@@ -39,7 +40,7 @@ _SEARCH = "/* ---- roots of a trial"
 
 
 def part(kinematics: Kinematics) -> Part | None:
-    """The source of one mechanism; None where a pose of LinuxCNC does not hold it."""
+    """The source of one mechanism; None if a pose of LinuxCNC does not hold it."""
     words, inner = words_of(kinematics), c.part(kinematics)
     if words is None or inner is None:
         return None

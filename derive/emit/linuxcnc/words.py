@@ -57,7 +57,7 @@ class Words:
 
 
 def words_of(kin: Kinematics) -> Words | None:
-    """The letters of a machine; None where it has no joints, or more than a pose has letters."""
+    """The letters of a machine; None if it has no joints, or more than a pose has letters."""
     joints = kin.mechanism.joints
     if not 0 < len(joints) <= len(LETTERS):
         return None
@@ -88,7 +88,7 @@ def _orientation(kin: Kinematics, turning: Sequence[Joint]) -> Orientation:
 
 def flange_of(kin: Kinematics) -> sp.Expr | None:
     """1 where the z axis of the flange has the direction of the machine's, -1 where it is opposite, or the constant of
-    the machine with this sign; None where the two are not parallel.
+    the machine with this sign; None if the two are not parallel.
     """
     entries = {o.name: o.value for o in kin.forward.outputs}
     is_along = all(entries[name] == 0 for name in ("r13", "r23", "r31", "r32"))

@@ -17,7 +17,7 @@ from derive.equations.trigonometry import named_trigonometry
 from derive.ir.program import Output
 from derive.ir.symbols import HEADING, cosine, real, sine
 from derive.kinematics.kinematics import Kinematics, Margin
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 from derive.report.derived import Derived
 
 
@@ -80,12 +80,12 @@ def jacobian_of(kinematics: Kinematics, lines: Lines) -> tuple[tuple[Line, ...],
     outputs = kinematics.jacobian.outputs
     width = len(kinematics.mechanism.joints)
     rows = [[_cell(o, lines) for o in outputs[k : k + width]] for k in range(0, len(outputs), width or 1)]
-    told = tuple(
+    named_lines = tuple(
         Line("value", element((word(_name(o)),)), lines.math.lines(o.value), neutral=o.name)
         for o in outputs
         if not _is_short(o.value)
     )
-    return body, Entries(matrix(rows), told)
+    return body, Entries(matrix(rows), named_lines)
 
 
 def _cell(output: Output, lines: Lines) -> str:

@@ -64,10 +64,11 @@ class Lines:
 
     def _item(self, item: Item) -> Iterator[Line]:
         if isinstance(item, If):
-            yield Line("where", math=self.math.lines(item.condition), note=_note_of(item))
-            yield from self.of((_unnoted(i, item) for i in item.holds), 1)
+            holds, fails = item.sides
+            yield Line("where", math=self.math.lines(item.condition), note="; ".join(item.comments))
+            yield from self.of(holds, 1)
             yield Line("otherwise")
-            yield from self.of((_unnoted(i, item) for i in item.fails), 1)
+            yield from self.of(fails, 1)
         elif isinstance(item, Let):
             yield self._let(item)
         elif isinstance(item, Require):
@@ -147,16 +148,6 @@ class Lines:
 def steps_by_name(spans: Sequence[tuple[int, Sequence[Statement]]]) -> dict[str, int]:
     """The number of the step that binds a name."""
     return {s.name.name: number for number, statements in spans for s in statements if isinstance(s, Let)}
-
-
-def _note_of(choice: If) -> str:
-    notes = [s.comment for s in choice.holds if isinstance(s, Let) and s.name in choice.names and s.comment]
-    return "; ".join(dict.fromkeys(notes))
-
-
-def _unnoted(item: Item, choice: If) -> Item:
-    is_noted = isinstance(item, Let) and item.name in choice.names
-    return replace(item, note="", turn_of="") if is_noted and isinstance(item, Let) else item
 
 
 def matrix(rows: Sequence[Sequence[str]], opening: str = "(", closing: str = ")") -> Markup:

@@ -17,7 +17,7 @@ from sympy.core.relational import Relational
 
 from derive.emit.expression import factor_order, is_negative, terms_of
 from derive.ir.constants import DEGREE
-from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
+from derive.ir.primitives import Root, ToReal
 from derive.ir.symbols import is_decided
 
 WIDTH = 108
@@ -26,16 +26,6 @@ _SHORT = 46
 """The most letters of a fraction or a root that is written as one."""
 _OR, _AND, _COMPARE, _SUM, _PRODUCT, _ATOM = range(6)
 _RELATIONS = {"==": "=", "!=": "≠", "<=": "≤", ">=": "≥", "<": "<", ">": ">"}
-_FUNCTIONS: dict[type[sp.Basic], str] = {
-    sp.sin: "sin",
-    sp.cos: "cos",
-    sp.tan: "tan",
-    Atan2: "atan2",
-    Wrap: "wrap",
-    NearestPeriod: "nearestPeriod",
-    NearestOnArc: "nearestOnArc",
-    Select: "select",
-}
 _NEVER, _BADLY, _WELL = range(3)
 """How well a line begins: a factor is better on the line of its product."""
 _ZEROS = "000000"
@@ -135,7 +125,8 @@ class MathML:
         arguments: list[Token] = []
         for argument in node.args:
             arguments += [*([operator(",")] if arguments else []), *self._row(argument, _OR)]
-        name = Token(f"<mi>{_FUNCTIONS[type(node)]}</mi><mo>{_INVISIBLE}</mo>", len(_FUNCTIONS[type(node)]))
+        kind = type(node).__name__
+        name = Token(f"<mi>{kind[0].lower()}{kind[1:]}</mi><mo>{_INVISIBLE}</mo>", len(kind))
         return (name, _fence("("), *arguments, _fence(")")), _ATOM
 
     def _joined(self, parts: Sequence[sp.Basic], sign: str) -> Row:
@@ -239,7 +230,7 @@ def _times(factors: Sequence[Row]) -> Row:
 
 
 def _over(numerator: Row, denominator: Row, above: int, below: int) -> Row:
-    """A fraction; where it is wide, with a slash."""
+    """A fraction; if it is wide, with a slash."""
     wide = max(_width(numerator), _width(denominator))
     if wide <= _SHORT:
         return (Token(f"<mfrac>{_grouped(numerator)}{_grouped(denominator)}</mfrac>", wide + 1),)

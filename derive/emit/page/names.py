@@ -13,7 +13,7 @@ from derive.emit.softmotion.library import most_axes
 from derive.emit.softmotion.methods import spelled_inputs
 from derive.emit.st.contract import load
 from derive.emit.st.names import parameter_name, spellings
-from derive.ir.program import Program, binds
+from derive.ir.program import Program
 from derive.ir.tree import bound_in
 from derive.kinematics.kinematics import Kinematics
 from derive.report.branch_stretches import stretches_of
@@ -84,7 +84,7 @@ def _names(kinematics: Kinematics, programs: Sequence[Program]) -> list[str]:
     found = [name.name for stretch in stretches_of(kinematics.branch) for name in bound_in(stretch.items)]
     for program in programs:
         found += [s.name for s in program.inputs]
-        found += [name.name for statement in program.body for name in binds(statement)]
+        found += [name.name for statement in program.body for name in statement.bound()]
     return list(dict.fromkeys(found))
 
 

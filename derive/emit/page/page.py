@@ -23,7 +23,7 @@ from derive.ir.program import Let, Program
 from derive.ir.symbols import real
 from derive.kinematics.kinematics import Kinematics, Margin
 from derive.kinematics.margins.candidates import Factor
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 from derive.report.branch_stretches import stretches_of
 from derive.report.derived import Derived, derived_of
 from derive.report.reasons import workspace
@@ -59,7 +59,7 @@ def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = T
     """The page of a machine. kinematics: the result of the build, with the witness's measurements where it has any.
 
     has_pictures: with the drawing, the machine in its singular poses, and maps; without, the formulas alone.
-    viewer: the file that shows the machine in the browser, from where this page stands; empty where there is none.
+    viewer: the file that shows the machine in the browser, from where this page stands; empty if there is none.
     """
     derived, spelling = derived_of(kinematics.solution), spelling_of(kinematics)
     lines, plain = Lines(spelling, _numbered(derived)), Lines(spelling)
@@ -67,7 +67,7 @@ def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = T
     found = pictured(kinematics, names) if has_pictures else None
     body, entries = jacobian_of(kinematics, lines)
     factors = {f.name: f for f in derived.factors}
-    told = {} if found is None else dict(singularities(found, derived, names))
+    singular = {} if found is None else dict(singularities(found, derived, names))
     block = kinematics.mechanism.block_name
     text = (
         _templates()
@@ -96,7 +96,7 @@ def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = T
             entries=entries,
             rows=kinematics.rows,
             factored=factored(kinematics.margins),
-            margins=[(m, _margin(m, factors, lines), told.get(m.name)) for m in kinematics.margins],
+            margins=[(m, _margin(m, factors, lines), singular.get(m.name)) for m in kinematics.margins],
             singularity=_program(kinematics.singularity, "singularity", "", lines),
             workspace=[f"{bound}." for bound in workspace(kinematics)],
             maps=[] if found is None else list(maps(found)),
@@ -163,8 +163,8 @@ def _programs(kinematics: Kinematics, lines: Lines) -> list[ShownProgram]:
     """Constants and both directions, line by line as the block has them."""
     stretches = stretches_of(kinematics.branch)
     items = [item for stretch in stretches for item in stretch.items]
-    told = (kinematics.branch, kinematics.forward, kinematics.jacobian, kinematics.singularity)
-    read = {s.name for program in told for s in program.reads()}
+    asked = (kinematics.branch, kinematics.forward, kinematics.jacobian, kinematics.singularity)
+    read = {s.name for program in asked for s in program.reads()}
     setup = kinematics.setup_less_windows
     parameters = {p.name for p in kinematics.parameters}
     wanted = [o for o in setup.outputs if o.name in read and o.name not in parameters]

@@ -38,7 +38,7 @@ class Pictured:
     drawing: Drawing | None
     picture: Markup
     undrawn: str
-    """Why there is no picture; empty where there is one."""
+    """Why there is no picture; empty if there is one."""
 
 
 def pictured(kinematics: Kinematics, names: Mapping[str, str]) -> Pictured:
@@ -73,8 +73,8 @@ def singularities(found: Pictured, derived: Derived, names: Mapping[str, str]) -
     for margin in kinematics.margins:
         at = singular_pose(found.machine, derived, margin.name, start)
         picture = Markup("") if at is None or found.drawing is None else _singular(found, at, names)
-        told = "" if at is None else ", ".join(_axes(kinematics, at))
-        yield margin.name, Singularity(at, picture, told)
+        axes_in_words = "" if at is None else ", ".join(_axes(kinematics, at))
+        yield margin.name, Singularity(at, picture, axes_in_words)
 
 
 def _axes(kinematics: Kinematics, at: SingularPose) -> Iterator[str]:
@@ -95,7 +95,7 @@ def _singular(found: Pictured, at: SingularPose, names: Mapping[str, str]) -> Ma
 
 
 def _scene(machine: Machine, at: SingularPose) -> Scene | None:
-    """The machine in this pose; where a bar has no direction there, in a pose very near to it."""
+    """The machine in this pose; if a bar has no direction there, in a pose very near to it."""
     for axes in (at.axes, at.beside):
         pose = pose_at(machine, axes) if at.frame is None else Pose(axes, at.frame, ())
         try:
@@ -116,7 +116,7 @@ class Map:
 
 
 def maps(found: Pictured) -> Iterator[Map]:
-    """The maps of the workspace; none where no pose of the machine is drawn, or its task has too few coordinates."""
+    """The maps of the workspace; none if no pose of the machine is drawn, or its task has too few coordinates."""
     if found.pose is None:
         return
     pose = _regular(found.machine, found.pose)

@@ -12,7 +12,7 @@ from derive.emit.page.lines import Line, Lines
 from derive.emit.page.mathml import Row, element, operator, word
 from derive.equations.problem import Equation
 from derive.geometry.frames import LETTERS, Factor, Motion
-from derive.ir.program import Let, Statement, reads
+from derive.ir.program import Let, Statement
 from derive.ir.symbols import names_in
 from derive.kinematics.branches.assignment import Assignment
 from derive.report.derived import FORMS, Derived, ExplainedStep, Route
@@ -42,7 +42,7 @@ class ShownStep:
     only: str
     """The sign of the determinant, where the machine has one of the two solutions alone; else empty."""
     free: str
-    """The unknown that is free where a value vanishes; empty where there is none."""
+    """The unknown that is free where a value vanishes; empty if there is none."""
     free_where: tuple[str, ...]
     """The equation that says that this value is zero."""
     refused: tuple[tuple[str, ...], ...]
@@ -91,12 +91,12 @@ def _needed(route: Route) -> list[Statement]:
     wanted = {s for e in route.equations for s in names_in(e.expression)}
     for step in route.steps:
         wanted |= {s for e in step.equations for s in names_in(e.expression)}
-        wanted |= {s for statement in step.statements for s in reads(statement)}
+        wanted |= {s for statement in step.statements for s in statement.reads()}
     kept: list[Statement] = []
     for statement in reversed(route.known):
         if not isinstance(statement, Let) or statement.name in wanted:
             kept.insert(0, statement)
-            wanted |= reads(statement)
+            wanted |= statement.reads()
     return kept
 
 

@@ -99,8 +99,8 @@ def _add_value(parent: ET.Element, value: str) -> None:
 def _add_type(parent: ET.Element, type_text: str) -> None:
     if _ELEMENTARY.fullmatch(type_text):
         ET.SubElement(parent, type_text)
-    elif sized := _STRING.fullmatch(type_text):
-        ET.SubElement(parent, "string", length=sized.group(1))
+    elif sizes := _STRING.fullmatch(type_text):
+        ET.SubElement(parent, "string", length=sizes.group(1))
     elif array := _ARRAY.fullmatch(type_text):
         element = ET.SubElement(parent, "array")
         for bounds in array.group(1).split(", "):

@@ -47,7 +47,7 @@ def objects_of(text: str, list_name: str = "") -> tuple[Object, ...]:
     return tuple(_Reader(text, list_name).objects())
 
 
-def ruled(objects: Sequence[Object]) -> str:
+def as_text(objects: Sequence[Object]) -> str:
     """The objects as text, with a ruler above every part that has its own editor in CODESYS."""
     return "\n\n".join("\n".join(_lines(one, one.name)) for one in objects) + "\n"
 
@@ -120,10 +120,7 @@ def _lines(one: Object, path: str) -> Iterator[str]:
         yield from (
             ("GET" + _BESIDE, *_lines(member, path))
             if member.kind == "GET"
-            else (
-                "",
-                *_lines(member, f"{path}.{member.name}"),
-            )
+            else ("", *_lines(member, f"{path}.{member.name}"))
         )
     if one.implementation:
         yield _ruler(f" {one.kind} {path}: implementation ")

@@ -11,30 +11,20 @@ from derive.emit.python.control_flow import array_arm_lines, fixed
 from derive.emit.python.layout import note_lines
 from derive.emit.python.loops import array_end, array_head
 from derive.emit.python.printer import ArrayPrinter, words
-from derive.emit.python.program import (
-    Method,
-    binding_lines,
-    constants_of,
-    has_search,
-    step_lines,
-    unpacked,
-    values_of,
-    without_conversions,
-)
-from derive.ir.primitives import NearestPeriod
-from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve, Statement, reads
+from derive.emit.python.program import Method, binding_lines, constants_of, has_search, step_lines, unpacked, values_of
+from derive.ir.primitives import FUNCTIONS, KEYS, NearestPeriod
+from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve
 from derive.ir.symbols import START_POSITION, START_ROTATION
-from derive.ir.tree import If, Item, grouped
+from derive.ir.tree import If, Item, Tree, grouped
 from derive.kinematics.kinematics import Kinematics
-from derive.lowering.scheduling import scheduled
+from derive.lowering.passes import ARRAYS, NOTHING, UNCONVERTED, applied
 
 OF_A_SEARCH = 120_000
 """The number of values for one row of a root scan, whose trials are computed together: measured."""
-CALLED = frozenset((
-    "DEGREE", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc",
-    "nearest_period", "opposite", "passed", "reasonable", "require", "root", "run_where", "select", "settled", "sin",
-    "solve", "sqrt",
-))  # fmt: skip
+CALLED = frozenset(ArrayPrinter.function(KEYS[one]) for one in FUNCTIONS) | {
+    "DEGREE", "advanced", "degrees", "elsewhere", "initial", "opposite", "passed", "reasonable", "require", "run_where",
+    "settled", "solve", "sqrt",
+}  # fmt: skip
 """The functions that programs on arrays call."""
 TYPES = frozenset((
     "Codes", "Matrix", "Real", "Reals", "Rotation", "Signs", "Truth", "Turns", "Values", "Vector", "Whole",
@@ -62,8 +52,8 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
     lines = [*unpacked(method), *(["k = self.constants"] if constants else [])]
     if not method.is_shared:
         lines.append(f"status = passed({', '.join(a.name for a in method.arguments)})")
-    program = without_conversions(method.program)
-    read = {s for statement in program.body for s in reads(statement) if s.name in constants}
+    program = applied(UNCONVERTED, method.program, NOTHING)
+    read = {s for statement in program.body for s in statement.reads() if s.name in constants}
     alike = fixed(program.body, read - {*START_POSITION, *START_ROTATION})
 
     def bound(item: Item) -> list[str]:
@@ -74,7 +64,7 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
             item, turns if isinstance(item, Let) and isinstance(item.value, NearestPeriod) else printer
         )
 
-    for item, same in grouped(scheduled(_refused_late(program.body), [o.value for o in program.outputs])):
+    for item, same in grouped(applied(ARRAYS, Tree.of(program), NOTHING).items):
         if isinstance(item, Iterate):
             lines += [*array_head(item, printer), *step_lines(item, printer), *array_end(item, printer)]
         elif isinstance(item, Call):
@@ -88,24 +78,6 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
         else:
             lines += bound(item)
     return lines
-
-
-def _refused_late(body: Iterable[Statement]) -> list[Statement]:
-    """The statements with the conditions moved behind the values.
-
-    All rows are computed in any case, and values that stand together can share a choice. The first conditions check the
-    inputs and stay in front. No condition moves across an iteration, a search or a call: these skip refused rows.
-    """
-    found: list[Statement] = []
-    waiting: list[Statement] = []
-    for statement in body:
-        if isinstance(statement, Require) and not all(isinstance(s, Require) for s in found):
-            waiting.append(statement)
-            continue
-        if isinstance(statement, Iterate | Call | FindRoot):
-            found, waiting = [*found, *waiting], []
-        found.append(statement)
-    return [*found, *waiting]
 
 
 def values_of_a_row(kin: Kinematics) -> int:

@@ -19,7 +19,6 @@ nothing has to be computed on the second side:
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
-from dataclasses import replace
 
 import sympy as sp
 
@@ -40,19 +39,13 @@ def array_arm_lines(
         holds, fails = ([line for item in side for line in lines(item)] for side in (arms.holds, arms.fails))
         declared = [f"{spelled(name.name)}: {_kind(name)}" for name in arms.names]
         return [*declared, f"if {condition}:", *_indented(holds), "else:", *_indented(fails)]
-    notes = dict.fromkeys(i.comment for i in arms.holds if isinstance(i, Let) and i.name in arms.names and i.comment)
-    said = [line for note in notes for line in note_lines(note)]
-    (second, other), (first, held) = _side(arms.fails, arms.names, printer), _side(arms.holds, arms.names, printer)
+    comments = [line for comment in arms.comments for line in note_lines(comment)]
+    (first, held), (second, other) = (_side(side, arms.names, printer) for side in arms.sides)
     if not second:
-        first, held = _side(arms.holds, arms.names, printer, is_written_out=len(results) == 1)
+        first, held = _side(arms.sides[0], arms.names, printer, is_written_out=len(results) == 1)
         name, named = (condition, []) if len(results) == 1 else ("holds", [f"holds = {condition}"])
         chosen = [f"{r} = select({name}, {a}, {b})" for r, a, b in zip(results, held, other, strict=True)]
-        return [
-            *(line for item in first for line in lines(item)),
-            *named,
-            *said,
-            *chosen,
-        ]
+        return [*(line for item in first for line in lines(item)), *named, *comments, *chosen]
     holds = [line for item in first for line in lines(item)]
     fails = [line for item in second for line in lines(item)]
     kinds = {
@@ -65,22 +58,19 @@ def array_arm_lines(
         *_indented([*fails, f"return {tuple_of(other)}"]),
         "",
         *holds,
-        *said,
+        *comments,
         *taken_apart(results, f"elsewhere({condition}, {tuple_of(held)}, {function}, {tuple_of(list(kinds))})"),
     ]
 
 
 def _side(
-    side: Sequence[Item], names: Sequence[sp.Symbol], printer: ScalarPrinter, *, is_written_out: bool = False
+    items: list[Item], names: Sequence[sp.Symbol], printer: ScalarPrinter, *, is_written_out: bool = False
 ) -> tuple[list[Item], list[str]]:
-    """The statements of a side, and its results: a value that has a name needs no other. Notes stand before the choice.
+    """The statements of a side, and its results: a value that has a name needs no other.
 
     is_written_out: whether a result that nothing else on the side reads stands where it is chosen.
     """
-    items, results = (
-        [replace(i, note="", turn_of="") if isinstance(i, Let) and i.name in names else i for i in side],
-        [],
-    )
+    results: list[str] = []
     for name in names:
         let = next((i for i in items if isinstance(i, Let) and i.name == name), None)
         others = [i for i in items if i is not let]

@@ -142,7 +142,7 @@ def described(kin: Kinematics) -> list[str]:
 def notes(kin: Kinematics) -> list[str]:
     """The notes on the mechanism, in the names of the class; those on parameters with another name here come last."""
     given = inputs(kin)
-    return [*map(given.told, kin.mechanism.all_notes), *given.notes]
+    return [*map(given.reworded, kin.mechanism.all_notes), *given.notes]
 
 
 def default_configuration(kin: Kinematics) -> str:

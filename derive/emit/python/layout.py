@@ -26,7 +26,7 @@ class UnformattedError(ValueError):
 def formatted(files: Mapping[str, str]) -> dict[str, str]:
     """The files, path → text, with every Python file formatted.
 
-    Raises `UnformattedError` where one of them is no Python.
+    Raises `UnformattedError` if one of them is no Python.
     """
     python = [path for path in files if path.endswith(".py")]
     with tempfile.TemporaryDirectory() as folder:

@@ -28,7 +28,7 @@ from derive.emit.python.refusal import explained
 from derive.emit.python.runtime import templates
 from derive.emit.python.straight_line.finish import Function
 from derive.emit.python.straight_line.unrolled import Unrolled, is_trusted, trusted_branch, unrolled
-from derive.ir.passes import untold
+from derive.ir.passes import without_reasons
 from derive.ir.program import FindRoot, Iterate
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
@@ -56,27 +56,27 @@ def modules(kin: Kinematics) -> dict[str, str]:
     """The files of a mechanism: path → text."""
     names = index(kin)
     programs = (*shared(kin), forward(kin), branch(kin), limits(kin), *differential(kin))
-    arrays = [_untold(m) for m in (*programs, *projection(kin), *end_point_shift(kin))]
-    lean = unrolled(kin) if is_unrolled(kin) else None
+    arrays = [_without_reasons(m) for m in (*programs, *projection(kin), *end_point_shift(kin))]
+    straight_line = unrolled(kin) if is_unrolled(kin) else None
     contexts = {
-        "": ("mechanism.py.j2", _class_context(kin, arrays, lean)),
+        "": ("mechanism.py.j2", _class_context(kin, arrays, straight_line)),
         "_array_programs/": ("arrays.py.j2", _array_context(kin, arrays)),
-        "_unrolled/": ("unrolled.py.j2", {"unrolled": lean}),
+        "_unrolled/": ("unrolled.py.j2", {"unrolled": straight_line}),
     }
     return {
         f"softkin/{folder}{names['module']}.py": templates().get_template(template).render(names | context)
         for folder, (template, context) in contexts.items()
-        if lean or folder != "_unrolled/"
+        if straight_line or folder != "_unrolled/"
     }
 
 
-def _class_context(kin: Kinematics, arrays: Sequence[Method], lean: Unrolled | None) -> dict[str, Any]:
+def _class_context(kin: Kinematics, arrays: Sequence[Method], straight_line: Unrolled | None) -> dict[str, Any]:
     """The values that the template of the class reads; `lean` are its branches in a straight line, if any."""
     scalar = methods(kin)
     reasons = explained(reasons_of(kin))
-    bodies = [scalar_body(m, reasons) if m.is_explained else scalar_body(_untold(m)) for m in scalar]
+    bodies = [scalar_body(m, reasons) if m.is_explained else scalar_body(_without_reasons(m)) for m in scalar]
     trusted = trusted_branch(kin) if is_trusted(kin) else None
-    setup_lines = setup.setup_body(kin, _constants_read(kin, (*scalar, *arrays), lean or trusted))
+    setup_lines = setup.setup_body(kin, _constants_read(kin, (*scalar, *arrays), straight_line or trusted))
     types = _types(kin, scalar)
     return {
         "kin": kin,
@@ -90,9 +90,9 @@ def _class_context(kin: Kinematics, arrays: Sequence[Method], lean: Unrolled | N
         "core_types": sorted({"Image", "Mechanism", "Pose"}),
         "types": [name for name in types if name in _MADE],
         "checked_types": [name for name in types if name not in _MADE],
-        "lean": lean,
+        "lean": straight_line,
         "trusted": trusted,
-        "slots": ("_all_trusted", "_constants", "_finish", "_one_trusted") if lean else ("_constants",),
+        "slots": ("_all_trusted", "_constants", "_finish", "_one_trusted") if straight_line else ("_constants",),
         "of_configuration": [
             *(["Criterion"] if chooses_by_lengths(kin.mechanism) else []),
             *(["period"] if entries.turn_sizes(kin) else []),
@@ -137,9 +137,11 @@ def _array_context(kin: Kinematics, arrays: Sequence[Method]) -> dict[str, Any]:
     }
 
 
-def _constants_read(kin: Kinematics, programs: Iterable[Method], lean: Unrolled | Function | None) -> set[str]:
+def _constants_read(kin: Kinematics, programs: Iterable[Method], straight_line: Unrolled | Function | None) -> set[str]:
     """The constants that a program or the text around the programs reads."""
-    found = {name for method in programs for name in constants_of(method)} | set(lean.constants if lean else ())
+    found = {name for method in programs for name in constants_of(method)} | set(
+        straight_line.constants if straight_line else ()
+    )
     found |= {TIE_OF_LENGTHS.name} if chooses_by_lengths(kin.mechanism) else set()
     search = kin.mechanism.search
     return found | ({"searched"} if search is not None and search.where is not None else set())
@@ -173,16 +175,16 @@ def _bases(kin: Kinematics) -> dict[str, str]:
 
 def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
     kinds = {m.kind for m in used if m.kind} | {a.kind for m in used for a in m.arguments}
-    lean = {"PlainFrame", "Reals", "Rotation", "Signs", "Vector"} if can_be_unrolled(kin) else set()
-    lean |= {"ConfigurationByte"} if kin.configuration_size else set()
-    lean |= {"Configuration"} if entries.turn_sizes(kin) else set()
-    lean |= {"Axis"} if kin.mechanism.joints else set()
-    return in_order(kinds - {"Pose", "Image", "TotalImage"} | {"Diagnosis", "Parameter", "Reals", "Status"} | lean)
+    further = {"PlainFrame", "Reals", "Rotation", "Signs", "Vector"} if can_be_unrolled(kin) else set()
+    further |= {"ConfigurationByte"} if kin.configuration_size else set()
+    further |= {"Configuration"} if entries.turn_sizes(kin) else set()
+    further |= {"Axis"} if kin.mechanism.joints else set()
+    return in_order(kinds - {"Pose", "Image", "TotalImage"} | {"Diagnosis", "Parameter", "Reals", "Status"} | further)
 
 
-def _untold(method: Method) -> Method:
+def _without_reasons(method: Method) -> Method:
     """The method in the form that refuses with a status alone, without a reason."""
-    return replace(method, program=untold(method.program))
+    return replace(method, program=without_reasons(method.program))
 
 
 def _head(method: Method, prefix: str) -> str:

@@ -23,11 +23,7 @@ from derive.kinematics.differential import TWIST_ROWS
 from derive.kinematics.kinematics import Kinematics
 
 OFFSET: tuple[Shape, ...] = ("point_x", "point_y", "point_z")
-IMAGE: tuple[Shape, ...] = (
-    rotation_of("zero_"),
-    ("rot_x", "rot_y", "rot_z"),
-    ("u_x", "u_y", "u_z"),
-)
+IMAGE: tuple[Shape, ...] = (rotation_of("zero_"), ("rot_x", "rot_y", "rot_z"), ("u_x", "u_y", "u_z"))
 ROTATION_ARGUMENT = Argument("rotation", "Rotation", ROTATION)
 _AXES = tuple(Argument(name, "Vector", tuple(f"{name}_{c}" for c in "xyz")) for name in ("flange_axis", "base_axis"))
 _KINDS = {
@@ -113,7 +109,7 @@ def _method(entry: Entry) -> Method:
 
 
 def rows_of_twist(kin: Kinematics) -> tuple[int, ...]:
-    """The rows of the twist that the Jacobian has; nothing where the Jacobian has a program of its own."""
+    """The rows of the twist that the Jacobian has; nothing if the Jacobian has a program of its own."""
     if kin.twist is None or not set(kin.rows) <= set(TWIST_ROWS):
         return ()
     return tuple(map(TWIST_ROWS.index, kin.rows))

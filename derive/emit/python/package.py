@@ -12,7 +12,7 @@ from derive.emit.python.mechanism_modules import in_order, index, modules
 from derive.emit.python.runtime import NAME, templates
 from derive.kinematics.kinematics import Kinematics
 
-name = NAME
+name, title, bound = NAME, "Python", ""
 PACKAGE = "softkin"
 """The package of the catalogue."""
 _ARRANGED = (

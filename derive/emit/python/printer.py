@@ -8,14 +8,15 @@ from keyword import iskeyword
 
 import sympy as sp
 
-from derive.emit.conditions import sized
-from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, ExpressionPrinter
+from derive.emit.conditions import magnitude_tests
+from derive.emit.expression import ATOM, COMPARE, ExpressionPrinter
 from derive.ir.constants import DEGREE
-from derive.ir.primitives import Atan2, Root, Select
+from derive.ir.primitives import FUNCTIONS, KEYS, Atan2, Root, Select
 from derive.optimize.guards import PositiveRoot
 from derive.optimize.inline import Grouped
 
-TAKEN = frozenset(FUNCTION_KEYS.values()) | {
+_PRIMITIVES = frozenset(KEYS[one] for one in FUNCTIONS)
+TAKEN = _PRIMITIVES | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
     "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "no_offsets", "opposite", "holds",
@@ -43,7 +44,7 @@ def literal(value: float) -> str:
 
 def primitives_in(lines: Iterable[str]) -> list[str]:
     """The primitives and constants that statements use, in alphabetical order."""
-    known = {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "reasonable", "arctan2", "solve", "sqrt"} - {"abs", "select"}
+    known = _PRIMITIVES - {"abs", "select"} | {"DEGREE", "RADIAN", "reasonable", "arctan2", "solve", "sqrt"}
     return sorted(words(lines) & known)
 
 
@@ -61,12 +62,12 @@ class ScalarPrinter(ExpressionPrinter):
     a name, are written out. In the arguments of an angle, adding 0 removes the sign of a zero.
     """
 
-    def __init__(self, *, modulo_turns: bool = False, is_trusted: bool = False) -> None:
+    def __init__(self, *, modulo_turns: bool = False, for_valid_input: bool = False) -> None:
         """modulo_turns: whether -180 and 180 degrees are the same, so that the sign of a zero sine does not matter.
 
-        is_trusted: whether sine and cosine of an angle are known not to vanish together.
+        for_valid_input: whether sine and cosine of an angle are known not to vanish together.
         """
-        self.modulo_turns, self.is_trusted = modulo_turns, is_trusted
+        self.modulo_turns, self.for_valid_input = modulo_turns, for_valid_input
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
         if isinstance(node, PositiveRoot):
@@ -105,9 +106,8 @@ class ScalarPrinter(ExpressionPrinter):
     def call(self, key: str, arguments: Sequence[str]) -> str:
         if key == "atan2":
             sine, cosine = arguments
-            return (
-                f"arctan2({sine}{'' if self.modulo_turns else ' + 0.0'}, {cosine}{'' if self.is_trusted else ' + 0.0'})"
-            )
+            first, second = ("" if is_free else " + 0.0" for is_free in (self.modulo_turns, self.for_valid_input))
+            return f"arctan2({sine}{first}, {cosine}{second})"
         return super().call(key, arguments)
 
     def larger(self, first: str, second: str) -> str:
@@ -139,7 +139,7 @@ class ArrayPrinter(ScalarPrinter):
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
         if isinstance(node, sp.Not):
             return f"opposite({self.print(node.args[0])})", ATOM
-        if checked := sized([node], 1):
+        if checked := magnitude_tests([node], 1):
             return f"reasonable({', '.join(map(self.print, checked))})", ATOM
         if self.modulo_turns and node.is_Mul and len(node.args) == 2 and 1 / DEGREE in node.args:
             (angle,) = (factor for factor in node.args if factor != 1 / DEGREE)

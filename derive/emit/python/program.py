@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import sympy as sp
-
 from derive.emit.interface import Shape, names, read_by
 from derive.emit.python import calls as python_calls
 from derive.emit.python.layout import assigned, fits, note_lines, taken_apart, tuple_of
@@ -15,21 +13,10 @@ from derive.emit.python.printer import ScalarPrinter, literal, spelled
 from derive.emit.python.refusal import PLAIN, Refusals, conjunction
 from derive.ir.constants import EDGE
 from derive.ir.primitives import NearestPeriod, Select, ToReal
-from derive.ir.program import (
-    Call,
-    FindRoot,
-    Iterate,
-    Let,
-    Program,
-    Require,
-    Solve,
-    rewritten,
-)
-from derive.ir.symbols import replaced
+from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve
 from derive.ir.tree import If, Item, grouped
-from derive.ir.verify import verify
 from derive.lowering.decided import decided
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import NOTHING, UNCONVERTED, applied, structured
 
 _SCALAR, _MODULO_TURNS = ScalarPrinter(), ScalarPrinter(modulo_turns=True)
 
@@ -43,7 +30,7 @@ class Argument:
     """Its type: `Axes`, `Vector`, `Rotation`, `Signs`, `Turns`."""
     shape: tuple[Shape, ...]
     default: str = ""
-    """The value in place of None; empty where a value is required."""
+    """The value in place of None; empty if a value is required."""
 
     @property
     def declared(self) -> str:
@@ -65,7 +52,7 @@ class Method:
     program: Program
     arguments: tuple[Argument, ...]
     kind: str
-    """The type of the result, where the status is OK; empty where there is none."""
+    """The type of the result, where the status is OK; empty if there is none."""
     result: Shape
     is_shared: bool = False
     """Whether other programs call it: then, on arrays, it writes the statuses of its caller."""
@@ -82,7 +69,7 @@ def scalar_body(method: Method, refusals: Refusals = PLAIN) -> list[str]:
 
 def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """The statements of a program on plain numbers."""
-    return item_lines(structured(without_conversions(program)), refusals, printer)
+    return item_lines(structured(applied(UNCONVERTED, program, NOTHING)), refusals, printer)
 
 
 def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:
@@ -107,24 +94,15 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
 def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """A binding, or a choice between two sides that bind the same or refuse."""
     if isinstance(item, If):
-        notes = dict.fromkeys(
-            i.comment for i in item.holds if isinstance(i, Let) and i.name in item.names and i.comment
-        )
-        head = [*(line for note in notes for line in note_lines(note)), f"if {conjunction([item.condition])}:"]
-        sides = [[_unnoted(i, item.names) for i in side] for side in (item.holds, item.fails)]
-        holds, fails = (_side(side, refusals, printer) for side in sides)
-        return [*head, *holds, "else:", *fails]
+        comments = [line for comment in item.comments for line in note_lines(comment)]
+        holds, fails = (_side(side, refusals, printer) for side in item.sides)
+        return [*comments, f"if {conjunction([item.condition])}:", *holds, "else:", *fails]
     if isinstance(item, Require):
         return refusals.lines([item])
     if isinstance(item, Let) and isinstance(item.value, NearestPeriod):
         return _turn_lines(item, item.value, printer)
     assert isinstance(item, Let | Solve)
     return binding_lines(item, printer)
-
-
-def _unnoted(item: Item, names: Sequence[sp.Symbol]) -> Item:
-    """The statement without its note, if the note stands above the choice that binds the name."""
-    return replace(item, note="", turn_of="") if isinstance(item, Let) and item.name in names else item
 
 
 def _side(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:
@@ -146,17 +124,6 @@ def _turn_lines(let: Let, value: NearestPeriod, printer: ScalarPrinter) -> list[
 def has_search(program: Program) -> bool:
     """Whether a program searches for a root."""
     return any(isinstance(s, FindRoot) for s in program.body)
-
-
-def without_conversions(program: Program) -> Program:
-    """The program without conversions of whole numbers: where they multiply, Python converts them by itself."""
-    own = {
-        let.name: let.value for let in program.lets() if isinstance(let.value, ToReal) and let.value.args[0].is_Symbol
-    }
-    others = (s for s in program.body if not (isinstance(s, Let) and s.name in own))
-    body = [rewritten(s, lambda e: replaced(e, own)) for s in others]
-    outputs = tuple(replace(o, value=replaced(o.value, own)) for o in program.outputs)
-    return verify(replace(program, body=tuple(body), outputs=outputs)) if own else program
 
 
 def binding_lines(statement: Let | Solve, printer: ScalarPrinter) -> list[str]:
@@ -211,7 +178,7 @@ def constants_of(method: Method) -> list[str]:
 
 
 def values_of(method: Method, printer: ScalarPrinter) -> str:
-    """The values that a method returns where nothing refuses, in its shape; empty where it returns nothing."""
+    """The values that a method returns where nothing refuses, in its shape; empty if it returns nothing."""
     values = {o.name: printer.print(o.value) for o in method.program.outputs}
 
     def text(shape: Shape) -> str:

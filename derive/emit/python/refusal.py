@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 from sympy.core.relational import Relational
 
-from derive.emit.conditions import parts_of, sized
+from derive.emit.conditions import magnitude_tests, parts_of
 from derive.emit.python.calls import FOUND
 from derive.emit.python.layout import note_lines, quoted
 from derive.emit.python.printer import ScalarPrinter
@@ -31,16 +31,16 @@ class Refusals:
     """The return value of a body without results where no condition refuses."""
 
     def lines(self, requires: Sequence[Require]) -> list[str]:
-        """The lines that refuse where conditions with the same refusal do not all hold."""
+        """The lines that refuse if conditions with the same refusal do not all hold."""
         head = _unless([r.condition for r in requires])
         return [*_notes(requires), head, f"    return {self.answer(requires[0].otherwise)}"]
 
     def of_loop(self, status: Status, loop: Iterate) -> str:
-        """The line that refuses where a loop is never left."""
+        """The line that refuses if a loop is never left."""
         return f"return {self.answer(status)}"
 
     def of_call(self, call: Call) -> str:
-        """The line with which a caller refuses where a shared program does: by passing it on, or with its own."""
+        """The line with which a caller refuses if a shared program does: by passing it on, or with its own."""
         return f"return {FOUND if call.refusal is None else self.answer(call.refusal[0])}"
 
 
@@ -57,11 +57,11 @@ class Explained(Refusals):
         return [*_notes(requires), *(line for check in self.reasons.checks(requires) for line in self._lines(check))]
 
     def of_loop(self, status: Status, loop: Iterate) -> str:
-        """The line that refuses where a loop is never left: a reason without an amount."""
+        """The line that refuses if a loop is never left: a reason without an amount."""
         return self._refused(status, self.reasons.loop(loop))
 
     def of_call(self, call: Call) -> str:
-        """The line with which a caller refuses where a shared program does, which gives no reason itself."""
+        """The line with which a caller refuses if a shared program does, which gives no reason itself."""
         own = self.reasons.call(call)
         return f'return Diagnosis({FOUND}, "", 0.0)' if own is None else self._refused(*own)
 
@@ -109,7 +109,7 @@ class Limits:
 
     @classmethod
     def of(cls, below: Require, above: Require) -> Limits | None:
-        """The limits that two conditions test; None where they test something else."""
+        """The limits that two conditions test; None if they test something else."""
         low, high, reason, other = below.condition, above.condition, below.reason, above.reason
         if not (
             isinstance(low, sp.GreaterThan)
@@ -120,14 +120,14 @@ class Limits:
         ):
             return None
         found = cls(low.lhs, low.rhs, high.rhs, reason)
-        told = (Why.BELOW, low.rhs - low.lhs), (Why.ABOVE, high.lhs - high.rhs)
-        is_told = (reason, other) == tuple(replace(reason, why=why, amount=amount) for why, amount in told)
-        return found if is_told and below.otherwise is above.otherwise is Status.UNREACHABLE else None
+        amounts = (Why.BELOW, low.rhs - low.lhs), (Why.ABOVE, high.lhs - high.rhs)
+        is_alike = (reason, other) == tuple(replace(reason, why=why, amount=amount) for why, amount in amounts)
+        return found if is_alike and below.otherwise is above.otherwise is Status.UNREACHABLE else None
 
 
 def _unless(conditions: Sequence[sp.Basic]) -> str:
     """The `if` in front of the statements for the case that conditions do not all hold."""
-    values = sized(conditions, _MANY)
+    values = magnitude_tests(conditions, _MANY)
     if values:
         return f"if not reasonable({', '.join(map(_SCALAR.print, values))}):"
     return f"if not ({conjunction(conditions)}):"
@@ -136,7 +136,7 @@ def _unless(conditions: Sequence[sp.Basic]) -> str:
 def _notes(requires: Sequence[Require]) -> list[str]:
     """The subject of the conditions as a comment; none for inputs, where the name of the called function tells it."""
     note = requires[0].comment
-    return [] if sized([requires[0].condition], _MANY) else note_lines(note)
+    return [] if magnitude_tests([requires[0].condition], _MANY) else note_lines(note)
 
 
 def status_of(status: Status) -> str:
@@ -149,7 +149,7 @@ PLAIN = Refusals(status_of)
 
 
 def explained(reasons: Reasons) -> Explained:
-    """Refusals with a diagnosis; a body without results returns None where no condition refuses."""
+    """Refusals with a diagnosis; a body without results returns None if no condition refuses."""
     return Explained(status_of, reasons, success="None")
 
 

@@ -13,7 +13,7 @@ from derive.emit.python.printer import ScalarPrinter, primitives_in
 from derive.emit.python.program import Method, scalar_body
 from derive.emit.python.refusal import explained
 from derive.equations.rotation_repair import rotation_program, surely_exact
-from derive.ir.passes import untold
+from derive.ir.passes import without_reasons
 from derive.report.reasons import reasons_of_rotation
 
 
@@ -24,7 +24,7 @@ def rotation_functions() -> dict[str, object]:
         "made_rotation", entry.summary, entry.program, (ROTATION_ARGUMENT,), "Rotation", ROTATION_ARGUMENT.shape
     )
     plain = _with_shortcut(scalar_body(method, explained(reasons_of_rotation())))
-    arrays = array_body(replace(method, program=untold(method.program)))
+    arrays = array_body(replace(method, program=without_reasons(method.program)))
     return {
         "plain": plain,
         "primitives": primitives_in(plain),

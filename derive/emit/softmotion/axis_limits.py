@@ -12,7 +12,7 @@ from derive.report.reasons import Check, reasons_of, texts
 
 @kept_by_identity(10)
 def limit_reasons(kinematics: Kinematics) -> tuple[int, ...]:
-    """The number of the reason "below its lower limit" of every axis, in the order of the axes; empty where a block
+    """The number of the reason "below its lower limit" of every axis, in the order of the axes; empty if a block
     tests other limits, too.
 
     The numbers of an axis follow one another: "below", then "another turn" if the axis has turns, then "above". Axes

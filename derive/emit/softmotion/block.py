@@ -125,10 +125,10 @@ class Block:
     command: Command
     """The parts of a command that the inverse reads."""
     limit_reasons: tuple[int, ...]
-    """The number of the reason that an axis is below its lower limit, for every axis; empty where the block tests more
+    """The number of the reason that an axis is below its lower limit, for every axis; empty if the block tests more
     limits than those of its axes."""
     tie: str
-    """The difference up to which two squared distances count as equal; empty where it is computed, or not read."""
+    """The difference up to which two squared distances count as equal; empty if it is computed, or not read."""
 
     def stored(self, program: Printed) -> list[tuple[str, str]]:
         """The instance variables and their values, given the text of `setup`."""

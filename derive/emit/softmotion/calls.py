@@ -60,7 +60,7 @@ def branch_of(kinematics: Kinematics) -> Program:
 
 @kept_by_identity(10)
 def offset_branch_of(kinematics: Kinematics) -> Program | None:
-    """The program of one branch for a tool offset; None where the mechanism has none, or needs none."""
+    """The program of one branch for a tool offset; None if the mechanism has none, or needs none."""
     offset = _offset_of(kinematics)
     return None if offset is None else _solving(offset, kinematics)
 
@@ -124,7 +124,7 @@ def _names(requires: tuple[Require, ...]) -> Iterator[str]:
 
 
 def _unchecked(require: Require, known: frozenset[str]) -> Require | None:
-    """The condition without its parts on inputs that are known to be numbers; None where nothing is left."""
+    """The condition without its parts on inputs that are known to be numbers; None if nothing is left."""
     parts = [p for p in sp.And.make_args(require.condition) if {s.name for s in p.free_symbols} - known]
     return replace(require, condition=sp.And(*parts)) if parts else None
 

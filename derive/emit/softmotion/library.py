@@ -12,7 +12,7 @@ from jinja2 import Environment
 
 from derive.emit.language import GENERATED, TEMPLATES, Part, environment, runtime
 from derive.emit.plcopen import document as plcopen
-from derive.emit.plcopen.objects import Object, objects_of, ruled
+from derive.emit.plcopen.objects import Object, as_text, objects_of
 from derive.emit.plcopen.uses import needed
 from derive.emit.softmotion.base import base_text
 from derive.emit.softmotion.block import Block, block_of
@@ -55,6 +55,8 @@ class StructuredTextFiles:
 
     profile: str | None = None
     name: ClassVar[str] = _FOLDER
+    title: ClassVar[str] = "Structured Text"
+    bound: ClassVar[str] = "no block: it has {axes} axes, and SoftMotion knows six"
 
     def __post_init__(self) -> None:
         """Refuse a profile that the contract does not have, before anything is derived."""
@@ -83,7 +85,7 @@ class StructuredTextFiles:
         contract, templates = load(self.profile), _templates()
         objects = dict(_objects(parts, contract, templates))
         refuse_clashes({f"{path}.st": inside for path, inside in objects.items()})
-        files = {f"{path}.st": f"{_PREAMBLE}\n{ruled(inside)}" for path, inside in objects.items()}
+        files = {f"{path}.st": f"{_PREAMBLE}\n{as_text(inside)}" for path, inside in objects.items()}
         files |= {f"{path}.xml": text for path, text in _documents(objects)}
         rows = sorted((part["row"] for part in parts), key=lambda row: (row["family"], row["block"]))
         for name in ("import_softkin.py", "README.md"):

@@ -49,7 +49,7 @@ class Test:
 
 
 def test_of(kinematics: Kinematics, block: Block) -> Test | None:
-    """The self-test of a block; None where no cases were made."""
+    """The self-test of a block; None if no cases were made."""
     found = kinematics.self_test
     if found is None:
         return None
@@ -117,7 +117,7 @@ def _tables(cases: Sequence[Case], axes: int, size: int) -> Iterator[Table]:
 
 
 def _table(name: str, kind: str, rows: Sequence[Sequence[str]]) -> Table:
-    """A table with as many whole rows in every line as fit, two spaces apart; where none fits, its values fill the
+    """A table with as many whole rows in every line as fit, two spaces apart; if none fits, its values fill the
     lines."""
     whole = [", ".join(row) for row in rows]
     together = (_LINE + 2) // (max(map(len, whole)) + 3)

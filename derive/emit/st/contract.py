@@ -104,7 +104,7 @@ class Contract:
 
     @property
     def own_interface(self) -> str | None:
-        """The name of the interface of our own; None where the profile leaves it out."""
+        """The name of the interface of our own; None if the profile leaves it out."""
         name: str = self.spelling["own_interface"]["name"]
         return None if name in self.omits else name
 

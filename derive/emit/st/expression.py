@@ -41,10 +41,7 @@ def _is_comparison(condition: sp.Basic, kind: type[Relational], left: sp.Expr, r
 class StructuredText(ExpressionPrinter):
     """Writes an expression, given the spelling of every name in it."""
 
-    functions = {
-        "sin": "SIN", "cos": "COS", "abs": "ABS", "root": "Softkin_Root", "atan2": "Softkin_Atan2",
-        "nearest_period": "Softkin_NearestPeriod", "nearest_on_arc": "Softkin_NearestOnArc",
-    }  # fmt: skip
+    functions, shared_function = {"sin": "SIN", "cos": "COS", "abs": "ABS"}, "Softkin_{words}"
     square_root = "SQRT"
 
     def __init__(self, names: Mapping[str, str]) -> None:

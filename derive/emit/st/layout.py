@@ -68,7 +68,7 @@ def conjunction(head: str, parts: Sequence[str], tail: str) -> list[str]:
 
 
 def commented(lines: Sequence[str], comment: str, width: int = WIDTH - INSIDE) -> list[str]:
-    """The lines with a comment beside the last one, or above the first one where there is no room."""
+    """The lines with a comment beside the last one, or above the first one if there is no room."""
     if not comment:
         return list(lines)
     comment = harmless(comment)

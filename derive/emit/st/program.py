@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import groupby
 
 import sympy as sp
@@ -19,11 +19,11 @@ from derive.emit.st.shared import OUTCOME, call_lines
 from derive.emit.st.stretches import SIDE, has_sides, stretch_lines
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Root, Select
-from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, Status
+from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Status
 from derive.ir.tree import If, Item, bound_in
 from derive.ir.types import type_of
 from derive.lowering.decided import decided
-from derive.lowering.scheduling import structured
+from derive.lowering.passes import structured
 
 _SHORT = 72
 """The most columns of a selection that stays on one line."""
@@ -114,10 +114,11 @@ def _sides(choice: If, printer: StructuredText, refusal: Refusal, width: int) ->
     """
 
     def side(items: Sequence[Item]) -> list[str]:
-        return indented(list(_body(_unnoted(items, choice.names), printer, refusal, width - INSIDE)))
+        return indented(list(_body(items, printer, refusal, width - INSIDE)))
 
+    holds, fails = choice.sides
     yield from wrapped(f"IF {printer.print(choice.condition)} THEN", width)
-    yield from side(choice.holds)
+    yield from side(holds)
     match choice.fails:
         case (If() as other,) if not (note := _note_of(other, printer.names)) or note == _note_of(
             choice, printer.names
@@ -125,16 +126,11 @@ def _sides(choice: If, printer: StructuredText, refusal: Refusal, width: int) ->
             first, *others = _sides(other, printer, refusal, width - INSIDE)
             yield from (f"ELS{first}", *others)
         case _:
-            yield from ("ELSE", *side(choice.fails), "END_IF")
+            yield from ("ELSE", *side(fails), "END_IF")
 
 
 def _note_of(choice: If, names: Mapping[str, str]) -> str:
-    return _notes([s for s in choice.holds if isinstance(s, Let) and s.name in choice.names], names)
-
-
-def _unnoted(side: Sequence[Item], names: Sequence[sp.Symbol]) -> list[Item]:
-    """One side of a choice, without the notes that stand above it."""
-    return [replace(s, note="", turn_of="") if isinstance(s, Let) and s.name in names else s for s in side]
+    return "; ".join(dict.fromkeys(respelled(comment, names) for comment in choice.comments))
 
 
 Kind = tuple[Status | str | None, object, bool]
@@ -147,11 +143,11 @@ def _kind(statement: Item, printer: StructuredText) -> Kind:
     separate, because AND evaluates both sides, and what follows is defined only where these tests hold. Selections by
     one condition become one IF.
     """
-    if isinstance(statement, Solve | Iterate | Call | FindRoot | If):
-        return None, statement, False
     if isinstance(statement, Require):
         subject = None if statement.reason is None else statement.reason.subject
         return statement.otherwise, subject, all(map(is_size_test, sp.And.make_args(statement.condition)))
+    if not isinstance(statement, Let):
+        return None, statement, False
     if isinstance(statement.value, Select) and limits_of(statement.value) is None:
         return printer.print(statement.value.args[0]), "", False
     return None, "", False

@@ -35,11 +35,11 @@ class Refusal:
         return self.answering(self.errors[status.name])
 
     def of_loop(self, status: Status, loop: Iterate) -> tuple[str, ...]:
-        """The lines that refuse where a loop is never left."""
+        """The lines that refuse if a loop is never left."""
         return self.of(status)
 
     def of_call(self, call: Call, outcome: str) -> tuple[str, ...]:
-        """The lines that refuse where a shared program does: they pass on its error, or have their own."""
+        """The lines that refuse if a shared program does: they pass on its error, or have their own."""
         return self.answering(outcome) if call.refusal is None else self.of(call.refusal[0])
 
     def answering(self, error: str) -> tuple[str, ...]:
@@ -52,7 +52,7 @@ class Refusal:
         return (f"{self.signature.name} := {value};", "RETURN;")
 
     def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
-        """The lines that refuse where conditions with the same refusal do not all hold."""
+        """The lines that refuse if conditions with the same refusal do not all hold."""
         conditions = [part for r in requires for part in sp.ordered(sp.And.make_args(r.condition))]
         head = conjunction("IF NOT (", [text for part in conditions for text in printer.parts(part)], ") THEN")
         return [*head, *indented(self.of(requires[0].otherwise)), "END_IF"]
@@ -82,12 +82,12 @@ class Explained(Refusal):
     """The axes whose limits one function tests, by the names of their values."""
 
     def of_call(self, call: Call, outcome: str) -> tuple[str, ...]:
-        """The lines that refuse where a shared program does."""
+        """The lines that refuse if a shared program does."""
         own = self.reasons.call(call)
         return self.answering(outcome) if own is None else self._because(own[1], own[0])
 
     def of_loop(self, status: Status, loop: Iterate) -> tuple[str, ...]:
-        """The lines that refuse where a loop is never left."""
+        """The lines that refuse if a loop is never left."""
         return self._because(self.reasons.loop(loop), status)
 
     def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:

@@ -59,7 +59,7 @@ class OfInputs(Refusal):
         return [*conjunction("IF NOT (", parts, ") THEN"), *refused, "  RETURN;", "END_IF"]
 
     def _called(self, condition: sp.Basic, printer: StructuredText) -> tuple[str, tuple[str, ...]] | None:
-        """The method that checks the condition, and its arguments; None where no method checks it."""
+        """The method that checks the condition, and its arguments; None if no method checks it."""
         if condition in self.limits:
             window, axis = self.limits[condition]
             given = tuple(printer.names[name] for name in window.given)

@@ -59,7 +59,7 @@ def own_names(program: Program, spelled: Mapping[str, str]) -> dict[str, str]:
 
 
 def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterator[str]:
-    """The lines that call the method where it is wanted, and refuse where it does."""
+    """The lines that call the method where it is wanted, and refuse if it does."""
     arguments = list(dict.fromkeys(_argument(name, value, printer) for name, value in call.given))
     results = [f"{parameter_name(name.name)} => {printer.name(name)}" for name in call.names]
     refused = [

@@ -104,7 +104,7 @@ def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ..
 
 
 def heading_of(chain: Chain) -> sp.Expr:
-    """The angle by which a chain turns its flange about z. Raises `DescriptionError` where it turns otherwise."""
+    """The angle by which a chain turns its flange about z. Raises `DescriptionError` if it turns otherwise."""
     joints, _ = flange_flips(chain)
     turns = pose_of(joints).turns
     if len(turns) != 1 or turns[0].axis != 2:

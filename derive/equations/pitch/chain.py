@@ -41,7 +41,7 @@ class Followed:
 
 
 def followed_of(mechanism: Mechanism) -> Followed:
-    """The turns of the chain of a mechanism whose task is the pitch. Raises `DescriptionError` where it has none."""
+    """The turns of the chain of a mechanism whose task is the pitch. Raises `DescriptionError` if it has none."""
     what = mechanism.task.turning.value
     if mechanism.chain is None:
         raise DescriptionError(f"a task with {what} needs a chain: its last turns follow the commanded rotation")

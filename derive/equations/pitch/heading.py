@@ -25,8 +25,8 @@ def free_heading(mechanism: Mechanism, steps: Sequence[sp.Symbol] = ()) -> tuple
     """The joint that turns the plane: where the position does not determine it, the tool's direction does.
 
     Two turns hold the direction in the plane: one for each sign of the step of that joint, where it has two roots
-    (`steps`), else the one nearer to the reference. Where the tool is along the axis of the joint, the joint takes its
-    reference. Returns the statements, which bind `free_value` of the joint, and the joint; none where more or fewer
+    (`steps`), else the one nearer to the reference. If the tool is along the axis of the joint, the joint takes its
+    reference. Returns the statements, which bind `free_value` of the joint, and the joint; none if more or fewer
     than one joint turns the plane.
     """
     found = followed_of(mechanism)
@@ -74,8 +74,5 @@ def _heading_lets(seen: sp.Matrix, turn: Factor, square: sp.Matrix, of: _Heading
         Let(across, -square[i] * seen[i] - square[j] * seen[j]),
         Let(_LEAN, Root(along**2 + across**2)),
         Let(side, Select(agrees, sp.Integer(1), sp.Integer(-1)) if of.side is None else of.side),
-        Let(
-            free_value(symbol),
-            Select(sp.Gt(_LEAN, FREE_ANGLE), of.sense * angle - of.sense * of.known, reference),
-        ),
+        Let(free_value(symbol), Select(sp.Gt(_LEAN, FREE_ANGLE), of.sense * angle - of.sense * of.known, reference)),
     )

@@ -62,7 +62,7 @@ class Motions:
 
 
 def _distances(columns: Array) -> Array:
-    """The distance of each column from the span of the others; zero where the columns are dependent."""
+    """The distance of each column from the span of the others; zero if the columns are dependent."""
     if np.linalg.matrix_rank(columns, tol=1e-9) < columns.shape[1]:
         return np.zeros(columns.shape[1])
     return np.asarray(1.0 / np.linalg.norm(np.linalg.pinv(columns), axis=1))
@@ -74,8 +74,8 @@ def motions(arm: Arm, count: int) -> Motions:
     found: list[tuple[Array, Array, Array, Array]] = []
     for _ in range(_SAMPLES):
         values = rng.uniform(0.3, 1.2, count) * rng.choice([-1.0, 1.0], count)
-        sized = np.array([v * _unit(arm, k) for k, v in enumerate(values)])
-        found.append(_jacobian(arm, sized))
+        in_units = np.array([v * _unit(arm, k) for k, v in enumerate(values)])
+        found.append(_jacobian(arm, in_units))
     jacobians, rotations, last, before = (np.array(some) for some in zip(*found, strict=True))
     return Motions(jacobians, rotations, last, before)
 

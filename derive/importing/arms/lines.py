@@ -41,7 +41,7 @@ class Arm:
     tip: Array
     size: float
     """The length of the way from the base's nearest point on the first axis, from axis to nearest point of the next, to
-    the tip; where that is zero the distance of the tip from the base, or one unit. Lengths are compared with it. It is
+    the tip; if that is zero the distance of the tip from the base, or one unit. Lengths are compared with it. It is
     that of the machine, whatever frames the file chooses.
     """
     rounding: float
@@ -157,7 +157,7 @@ def relation(first: Line, second: Line) -> Relation:
 
 
 def feet(first: Line, second: Line) -> tuple[Array, Array] | None:
-    """The points of two lines that are nearest to each other; None where the lines are (nearly) parallel."""
+    """The points of two lines that are nearest to each other; None if the lines are (nearly) parallel."""
     cosine = float(first.direction @ second.direction)
     determinant = 1.0 - cosine**2
     if determinant < 1e-6:

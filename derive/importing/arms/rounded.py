@@ -58,7 +58,7 @@ def _triple(row: Array) -> Triple:
 
 
 def _moving(step: Step, moving: Moving | None, limit: float, moved: list[Snapped]) -> Moving | None:
-    """The movement; where it turns, with the exact value of its offset."""
+    """The movement; if it turns, with the exact value of its offset."""
     if moving is None or not moving.offset or not moving.turns:
         return moving
     offset = _angle(f"{step.name}, offset", moving.offset, moving.rounding, limit, moved)

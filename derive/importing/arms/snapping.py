@@ -33,7 +33,7 @@ def nearest_angle(angle: float) -> float:
 
 
 def right_angled(rotation: Array) -> Array | None:
-    """The rotation with entries 0 and ±1 that is nearest in its largest entries; None where there is none."""
+    """The rotation with entries 0 and ±1 that is nearest in its largest entries; None if there is none."""
     rounded = np.round(rotation)
     return rounded if np.allclose(rounded @ rounded.T, np.eye(3)) and np.linalg.det(rounded) > 0.0 else None
 

@@ -32,7 +32,7 @@ class Followed:
     facing: int = 2
     """The axis x, y or z (0, 1, 2) of the tip that is the direction of the tool, which a description calls z."""
     beside: tuple[float, float, float] | None = None
-    """The shift, in the frame of the file's tip, onto the axis of the roll; None where the tip is on it."""
+    """The shift, in the frame of the file's tip, onto the axis of the roll; None if the tip is on it."""
 
 
 def followed(arm: Arm, count: int, held: Sequence[int] = ()) -> Followed:
@@ -116,7 +116,7 @@ def _seen_from_tip(arm: Arm) -> Array:
 
 
 def _beside(arm: Arm) -> tuple[float, float, float] | None:
-    """The shift, in the frame of the tip, that puts the tip on the axis of the last turn; None where it is on it."""
+    """The shift, in the frame of the tip, that puts the tip on the axis of the last turn; None if it is on it."""
     line, tip = _turns(arm)[-1], arm.tip[:3, 3]
     foot = line.point + line.direction * float((tip - line.point) @ line.direction)
     shift = arm.tip[:3, :3].T @ (foot - tip)

@@ -20,7 +20,7 @@ COARSE = 5e-3
 
 
 def parsed(path: Path) -> Element:
-    """The root of an XML file. Raises `UnreadableRobot` where there is none, or it is broken."""
+    """The root of an XML file. Raises `UnreadableRobot` if there is none, or it is broken."""
     data = _bytes_of(path)
     try:
         return ElementTree.fromstring(data)
@@ -39,7 +39,7 @@ def without_namespace(root: Element) -> Element:
 
 
 def text_of(path: Path) -> str:
-    """The text of a file. Raises `UnreadableRobot` where there is no such file, or it is no text."""
+    """The text of a file. Raises `UnreadableRobot` if there is no such file, or it is no text."""
     try:
         return _bytes_of(path).decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -82,7 +82,7 @@ def number(path: Path, text: str, place: str, largest: float = _LARGEST) -> floa
 
 
 def between(path: Path, place: str, low: float, high: float, unit: float) -> tuple[float, float] | None:
-    """The limits of a joint in our unit; None where both ends are the same, which files write for no limits."""
+    """The limits of a joint in our unit; None if both ends are the same, which files write for no limits."""
     if low > high:
         raise UnreadableRobot(f"{path}: {place}: its lower limit {low:g} is above its upper limit {high:g}")
     return (low * unit, high * unit) if low < high else None

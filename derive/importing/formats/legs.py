@@ -66,7 +66,7 @@ class Meeting:
 
 
 def meeting_of(loops: Loops, tip: str | None) -> Meeting | None:
-    """The legs that move a tip, or that of the one machine there is; None where no loop binds it. Raises `NoRods`."""
+    """The legs that move a tip, or that of the one machine there is; None if no loop binds it. Raises `NoRods`."""
     closed = [c for c in loops.closed if c.joints and not is_followed(c.joints, loops.followers)]
     own = set(loops.way(tip) if tip else closed[0].joints if closed else ())
     bound: list[Closed] = []
@@ -120,7 +120,7 @@ def _motors(loops: Loops, bodies: Mapping[str, Frame]) -> list[str]:
 
 
 def _plane(loops: Loops, bodies: Mapping[str, Frame]) -> int | None:
-    """The axis of the base that is along all hinges, and square to all slides; None where there is none."""
+    """The axis of the base that is along all hinges, and square to all slides; None if there is none."""
     if any(loops.joints[name].get("type") == "ball" for name in bodies):
         return None
     for axis in (2, 1, 0):

@@ -22,7 +22,7 @@ class Follower:
 
 @dataclass(frozen=True)
 class Driven:
-    """The axis that moves a joint with its multiplier (none where that is 0), and the joint's offset."""
+    """The axis that moves a joint with its multiplier (none if that is 0), and the joint's offset."""
 
     drives: tuple[tuple[str, float], ...]
     offset: float

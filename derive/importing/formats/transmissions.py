@@ -32,8 +32,8 @@ def transmission_notes(root: Element, axes: Container[str]) -> Iterator[str]:
                 f"{joints[-1]}."
             )
     if found:
-        told = f" Reductions, for the drives: {', '.join(reductions)}." if reductions else ""
-        yield f"Transmissions are not part of a description: axis values are the joint values of the file.{told}"
+        further = f" Reductions, for the drives: {', '.join(reductions)}." if reductions else ""
+        yield f"Transmissions are not part of a description: axis values are the joint values of the file.{further}"
 
 
 def _kind(element: Element) -> str:
@@ -53,7 +53,7 @@ def _reductions(element: Element, joints: list[str]) -> Iterator[str]:
 
 
 def _number(text: str) -> float | None:
-    """The number of a text; None where it is none: kinematics needs no reduction."""
+    """The number of a text; None if it is none: kinematics needs no reduction."""
     try:
         value = float(text)
     except ValueError:

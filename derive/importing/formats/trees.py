@@ -85,7 +85,7 @@ def tree_of(edges: Sequence[Edge]) -> tuple[dict[str, Edge], tuple[Loop, ...]]:
 def path_between(path: Path, above: Mapping[str, Edge], base: str, tip: str) -> list[tuple[Edge, bool]]:
     """The joints from the base to the tip, each with whether it is passed from its child to its parent.
 
-    above: the joint above each link. Raises `UnreadableRobot` where there is no way.
+    above: the joint above each link. Raises `UnreadableRobot` if there is no way.
     """
     if base == tip:
         raise UnreadableRobot(f"{path}: base and tip are the same link, {base!r}")

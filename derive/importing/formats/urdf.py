@@ -222,11 +222,7 @@ def _left_out(root: Element, passed: list[str], used: Mapping[str, None]) -> tup
 
 
 def _ignored(root: Element) -> tuple[str, ...]:
-    tags = {
-        "inertial": "masses",
-        "visual": "meshes",
-        "collision": "collision bodies",
-    }
+    tags = {"inertial": "masses", "visual": "meshes", "collision": "collision bodies"}
     found = [word for tag, word in tags.items() if root.find(f"link/{tag}") is not None]
     notes = [f"Not read, because kinematics does not need them: {', '.join(found)}."] if found else []
     return tuple(notes)

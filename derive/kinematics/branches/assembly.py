@@ -58,7 +58,7 @@ class Assembled:
 
     forward: Forward
     margin: sp.Expr | None
-    """The determinant over its scale, in the names of the forward derivation; None where forward has one solution."""
+    """The determinant over its scale, in the names of the forward derivation; None if forward has one solution."""
     name: str = ""
     """The name of the margin."""
 
@@ -233,11 +233,7 @@ def assembly_checks(
     name = real(f"type2_{mechanism.assembly.margin}")
     least = real(MIN_TYPE2_MARGIN)
     reason = about(mechanism.assembly.margin, Why.NEAR_TYPE_2, least - name)
-    return (
-        *own,
-        Let(name, margin * ASSEMBLY_SIGN),
-        Require(sp.Ge(name, least), Status.UNREACHABLE, reason=reason),
-    )
+    return (*own, Let(name, margin * ASSEMBLY_SIGN), Require(sp.Ge(name, least), Status.UNREACHABLE, reason=reason))
 
 
 def bound_checks(mechanism: Mechanism, offset: bool) -> tuple[Statement, ...]:

@@ -61,7 +61,7 @@ class Assignment:
 def assign(
     mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool = False
 ) -> tuple[Assignment, ...]:
-    """Find the step of every branch. Raises `DescriptionError` where there is not exactly one.
+    """Find the step of every branch. Raises `DescriptionError` if there is not exactly one.
 
     optional_zero: compare on a machine without its optional lengths. The steps of the offset problem correspond to the
     branches of the machine only where the point is the flange itself.
@@ -91,7 +91,7 @@ def _assigned(
     sampled, indicators = _sampled(mechanism, inverse, forward, optional_zero)
     found: list[Assignment] = []
     for branch, indicator in zip(mechanism.branches, indicators, strict=True):
-        steps = _told(branch, indicator, determinants, sampled)
+        steps = _steps_of(branch, indicator, determinants, sampled)
         if len(steps) != 1:
             raise DescriptionError(
                 f"branch {branch.name!r}: its indicator agrees with {len(steps)} steps, not one: its sign must change "
@@ -105,12 +105,13 @@ def _assigned(
     return tuple(found), unnamed
 
 
-def _told(
+def _steps_of(
     branch: Branch, indicator: np.ndarray, determinants: Sequence[StepDeterminant], sampled: Sequence[np.ndarray]
 ) -> list[tuple[StepDeterminant, int]]:
-    """The steps whose determinants have the sign of an indicator, or the opposite one. Where several steps have equal
-    signs because of the assembly of a loop, those count whose unknown the indicator reads; where they have because of
-    long links, the step counts whose determinant is proportional to the indicator.
+    """The steps whose determinants have the sign of an indicator, or the opposite one. Several steps may agree.
+
+    If the assembly of a loop is the reason, the indicator means the step whose unknown it reads. If long links are the
+    reason, it means the step to whose determinant it is proportional.
     """
     agreeing = [
         (s, o, row)
@@ -163,7 +164,7 @@ def steps_without_branch(mechanism: Mechanism, inverse: Inverse, forward: Forwar
     named = [
         step
         for branch, indicator in zip(mechanism.branches, indicators, strict=True)
-        for step, _ in _told(branch, indicator, determinants, sampled)
+        for step, _ in _steps_of(branch, indicator, determinants, sampled)
     ]
     return tuple(step for step in determinants if step not in named)
 

@@ -1,4 +1,4 @@
-"""Where a closed form has lost digits, steps on the closure meet the pose.
+"""If a closed form has lost digits, steps on the closure meet the pose.
 
 Like `kinematics`, it may import the folders from `ir` to `optimize`.
 

@@ -5,7 +5,7 @@ the damping d is a share of its size. A fold or a free angle is no special case:
 move. A solution counts if its error is rounding, and no branch has the wrong sign.
 
 Where the steps meet nothing, the closed form gives another start: with nearly free angles at the reference, then with
-them turned to where one step leaves the least error, of many values around the circle. Where the steps meet
+them turned to where one step leaves the least error, of many values around the circle. If the steps meet
 the pose on another branch, nearly free angles are known from there, and the closed form is taken again; if that
 leads to the same branch, the joint of its two roots is mirrored about the start.
 """
@@ -33,16 +33,7 @@ from derive.ir.constants import (
 from derive.ir.passes import normalise
 from derive.ir.primitives import NearestPeriod, Root, Select, ToReal, larger
 from derive.ir.program import Iterate, Let, Output, Program, Require, Solve, Statement, Status, rewritten
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    OFFSET,
-    ROTATION_ENTRIES,
-    SCALE,
-    called,
-    count,
-    flag,
-    real,
-)
+from derive.ir.symbols import COORDINATE_NAMES, OFFSET, ROTATION_ENTRIES, SCALE, called, count, flag, real
 from derive.kinematics.branches.assignment import Assignment, margin_lets
 from derive.kinematics.differential import jacobian_entries, jacobian_rows
 from derive.kinematics.inverse import Inverse
@@ -290,7 +281,7 @@ def _step(machine: Machine) -> list[Statement]:
 
 
 def _next(machine: Machine, joint: Joint, start: sp.Expr) -> sp.Expr:
-    """The axis value behind a step: the start of the next attempt; where the pose is met on another branch, the closed
+    """The axis value behind a step: the start of the next attempt; if the pose is met on another branch, the closed
     form with what is known there, or the mirror image; else the step.
     """
     unit = 1 / DEGREE if joint.is_angle else SCALE

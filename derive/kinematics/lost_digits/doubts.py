@@ -1,7 +1,7 @@
 """Lost digits: a closed form may refuse a pose that the machine has; then steps on the closure meet it.
 
 A two-root step near its fold, and a step whose conditioning nearly vanishes, know their angle to a few digits. If a
-later step refuses there, this is not final: the branch calls the program of `closure_steps`. Where no earlier step is
+later step refuses there, this is not final: the branch calls the program of `closure_steps`. If no earlier step is
 near its singularity the refusal is final, and the branch does nothing more.
 """
 
@@ -15,16 +15,9 @@ import sympy as sp
 from derive.ir.constants import BOUNDARY, DOUBTFUL
 from derive.ir.passes import depending_on, normalise
 from derive.ir.primitives import Select
-from derive.ir.program import Call, Let, Program, Require, Statement, Status, binds, reads
+from derive.ir.program import Call, Let, Program, Require, Statement, Status
 from derive.ir.symbols import BOUND_OF, Flag, cosine, flag, names_in, real, sine
-from derive.kinematics.lost_digits.closure_steps import (
-    MET,
-    Machine,
-    given_name,
-    meet_program,
-    started,
-    varying,
-)
+from derive.kinematics.lost_digits.closure_steps import MET, Machine, given_name, meet_program, started, varying
 from derive.kinematics.lost_digits.starts import GOAL, LOST
 from derive.work import stage
 
@@ -53,8 +46,8 @@ def with_doubts(machine: Machine, statements: Sequence[Statement]) -> tuple[Stat
 def _doubts(machine: Machine, statements: Sequence[Statement], place: int) -> list[sp.Basic]:
     """The conditions under which an earlier step, on which a refusal depends, has lost digits of its angle."""
     assignments, conditionings = machine.assignments, machine.inverse.derivation.conditionings
-    before, read = statements[:place], reads(statements[place])
-    unbound = {name for s in statements[place:] for name in binds(s)}
+    before, read = statements[:place], statements[place].reads()
+    unbound = {name for s in statements[place:] for name in s.bound()}
     signs = {a.determinant.sigma: a.orientation * a.factor for a in assignments}
     roots = [(a.factor, a.determinant, a.determinant.legs) for a in assignments]
     steps = [({s}, (d.value if legs is None else legs.root).xreplace(signs), d.scale) for s, d, legs in roots]

@@ -34,8 +34,8 @@ class Factor:
             return (Let(margin, self.value),)
         length = real(f"length_{self.name}")
         other = Select(sp.Lt(length, -FREE_ANGLE), sp.Integer(-1), sp.Integer(0)) if self.is_signed else sp.Integer(0)
-        told = Select(sp.Gt(length, FREE_ANGLE), sp.Integer(1), other)
-        return Let(length, self.value), Let(margin, told, "0 where no equation determines the axis, else 1 or -1")
+        value = Select(sp.Gt(length, FREE_ANGLE), sp.Integer(1), other)
+        return Let(length, self.value), Let(margin, value, "0 where no equation determines the axis, else 1 or -1")
 
 
 def factor_of(mechanism: Mechanism, found: Assignment | Conditioning) -> Factor:

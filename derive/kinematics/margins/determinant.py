@@ -37,14 +37,14 @@ def singularity_program(
     """The margins whose product, with integer exponents, is the determinant of the Jacobian: found at the samples."""
     lets = [let for f in factors for let in f.lets]
     lengths = {f.name: Output(f"length_{f.name}", f.lets[0].name) for f in factors if f.is_length}
-    told = {f.name: Output(f.name, f.lets[-1].name) for f in factors}
-    outputs = [lengths.get(f.name, told[f.name]) for f in factors]
+    output_of = {f.name: Output(f.name, f.lets[-1].name) for f in factors}
+    outputs = [lengths.get(f.name, output_of[f.name]) for f in factors]
     if not mechanism.joints:
         return normalise("singularity", statements, []), ()
     draft = normalise("singularity", (*statements, *lets), outputs)
     exponents = _exponents(mechanism, draft, jacobian, samples)
     kept = [(f.name, e) for f, e in zip(factors, exponents, strict=True) if e != 0]
-    shown = [o for name, _ in kept for o in (told[name], *([lengths[name]] if name in lengths else []))]
+    shown = [o for name, _ in kept for o in (output_of[name], *([lengths[name]] if name in lengths else []))]
     program = normalise("singularity", (*statements, *lets), shown)
     of_length = {name: output.name for name, output in lengths.items()}
     return program, tuple(Margin(n, e, "type 1" if e > 0 else "type 2", of_length.get(n)) for n, e in kept)

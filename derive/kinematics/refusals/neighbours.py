@@ -38,9 +38,9 @@ def what_misses(mechanism: Mechanism) -> str:
         found.insert(0, _of_the_tool(*lines[-1], tip, size))
     exact = [is_so for share, is_so, _ in found if share < _SAME]
     near = sorted((share, wanted) for share, _, wanted in found if _SAME <= share < inf)
-    told = f"{' and '.join(exact)}, which is not enough" if exact else ""
+    known = f"{' and '.join(exact)}, which is not enough" if exact else ""
     wanted = ", or if ".join(words for _, words in near[:_NAMED])
-    return "; ".join(part for part in (told, wanted and f"it would help if {wanted}") if part)
+    return "; ".join(part for part in (known, wanted and f"it would help if {wanted}") if part)
 
 
 _Change = tuple[float, str, str]
@@ -73,7 +73,7 @@ def _of_the_tool(name: str, last: Line, tip: Array, size: float) -> _Change:
 
 def fitting_task(mechanism: Mechanism) -> str:
     """Another task for which these joints are solved, the last of them held where it commands fewer quantities; in
-    words, empty where none is found.
+    words, empty if none is found.
     """
     joints = mechanism.solved_joints
     for turning, commanded in _QUANTITIES.items():

@@ -49,8 +49,8 @@ def _elsewhere(mechanism: Mechanism, values: Mapping[str, Array]) -> str:
     """The message that a loop closes at a pose that was not sampled."""
     units = [np.pi / 180.0 if j.is_angle else 1.0 for j in mechanism.joints]
     joints = zip(mechanism.joints, units, strict=True)
-    told = ", ".join(f"{j.name} = {float(values[j.symbol.name][0]) / unit:.4g}" for j, unit in joints)
-    return f"no sampled pose is possible, but the loop closes at {told}: state nominal values of the joints near these"
+    place = ", ".join(f"{j.name} = {float(values[j.symbol.name][0]) / unit:.4g}" for j, unit in joints)
+    return f"no sampled pose is possible, but the loop closes at {place}: state nominal values of the joints near these"
 
 
 def _open_loop(mechanism: Mechanism, machine: Samples, missed: NDArray[np.float64], at_home: bool) -> str:
@@ -76,21 +76,23 @@ def _open_loop(mechanism: Mechanism, machine: Samples, missed: NDArray[np.float6
 
 
 def _not_positive(mechanism: Mechanism, values: Mapping[str, Array]) -> str | None:
-    """The message about quantities that must be positive and never are; None where that is not the reason."""
-    told = [f"{q}" for q in mechanism.positive]
+    """The message about quantities that must be positive and never are; None if that is not the reason."""
+    quantities = [f"{q}" for q in mechanism.positive]
     found = [evaluate(sp.sympify(q), values) for q in mechanism.positive]
-    for text, value in zip(told, found, strict=True):
+    for text, value in zip(quantities, found, strict=True):
         if not np.any(value > 0):
             return f"{text} must be positive, and is at most {np.max(value):.4g}: {_CHECK}"
     if len(found) > 1 and not np.any(np.all(np.stack(np.broadcast_arrays(*found)) > 0, axis=0)):
-        return f"{' and '.join(told)} must be positive, and never are together: {_CHECK}"
+        return f"{' and '.join(quantities)} must be positive, and never are together: {_CHECK}"
     for bound in mechanism.bounds:
         least, largest = (float(np.min(np.abs(evaluate(v, values)))) for v in (bound.value, bound.largest))
         if least > largest:
             return f"{bound.meaning} is at least {least:.4g} where it was tried, and may be {largest:.4g}: {_CHECK}"
     if any(j.domain is not None for j in mechanism.joints):
-        told = [f"{j.name} from {j.domain[0]:g} to {j.domain[1]:g}" for j in mechanism.joints if j.domain is not None]
-        return f"no pose is possible where the joints may be ({', '.join(told)}): {_CHECK}"
+        domains = [
+            f"{j.name} from {j.domain[0]:g} to {j.domain[1]:g}" for j in mechanism.joints if j.domain is not None
+        ]
+        return f"no pose is possible where the joints may be ({', '.join(domains)}): {_CHECK}"
     return None
 
 
@@ -108,7 +110,7 @@ def _anywhere(mechanism: Mechanism, machine: Samples) -> dict[str, Array]:
 def near_home(
     mechanism: Mechanism, derivation: Sequence[Statement], signs: Sequence[sp.Symbol], machine: Samples, seed: int
 ) -> Samples:
-    """`samples_near_home`; where there are none, raises `DescriptionError` with the errors of the legs."""
+    """`samples_near_home`; if there are none, raises `DescriptionError` with the errors of the legs."""
     try:
         return samples_near_home(mechanism, derivation, signs, machine, seed)
     except NoPoseAtHome:

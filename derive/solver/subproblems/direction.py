@@ -1,6 +1,6 @@
 """Direction:  cos u : sin u = along : across.
 
-One root. Where the conditioning (the length of the vector that turns) vanishes nothing determines u, and u takes the
+One root. If the conditioning (the length of the vector that turns) vanishes nothing determines u, and u takes the
 value of the reference. Cosine and sine are divided by the length of (along, across) itself, so that sin^2 + cos^2 = 1
 to rounding.
 """

@@ -8,7 +8,7 @@ One root, by Cramer's rule. Determinant D = a1 b2 - a2 b1. Two kinds are taken:
   D = s (A^2 + B^2), cos u : sin u = A e1 + B e2 : s (A e2 - B e1).
 * Any other pair with a determinant that never vanishes: divided by D.
 
-In the first kind |(A, B)| must equal |(e1, e2)|. Where this length is always one nothing is divided. Where it
+In the first kind |(A, B)| must equal |(e1, e2)|. If this length is always one nothing is divided. If it
 can vanish, u is free there (degenerate case), and the length is its conditioning.
 """
 

@@ -129,12 +129,7 @@ def _solve(
         statements = (*naming.lets, Let(radius, sigma * distance), *known)
         return Binding("polar", (radius, angle), statements, determinant, conditioning)
     column = _column((along, a), (across, b), sigma * distance)
-    product = Equation(
-        f"{angle.name} radius",
-        radius - sigma * distance,
-        is_length=along[0].is_length,
-        column=column,
-    )
+    product = Equation(f"{angle.name} radius", radius - sigma * distance, is_length=along[0].is_length, column=column)
     return Binding("polar", (angle,), (*naming.lets, *known), determinant, conditioning, (product,))
 
 
@@ -156,7 +151,7 @@ _Side = tuple[tuple[Equation, sp.Expr], sp.Expr]
 
 def _column(along: _Side, across: _Side, radius: sp.Expr) -> Column | None:
     """How much smaller than its largest the square of the radius is, by values as small as the angle that it tells:
-    where a side is an entry of a rotation, the other entries of its column less the other side. None where neither is,
+    where a side is an entry of a rotation, the other entries of its column less the other side. None if neither is,
     or both are, in two columns.
     """
     for ((equation, side), _), ((other, _), beside) in ((along, across), (across, along)):

@@ -90,7 +90,7 @@ def _has_minus(value: sp.Expr) -> bool:
 
 
 def _sides(sums: list[sp.Expr]) -> list[sp.Expr] | None:
-    """The sides of the triangle in Heron's product; None where the product is another one."""
+    """The sides of the triangle in Heron's product; None if the product is another one."""
     perimeter = next((f for f in sums if 2 * f == sp.Add(*sums)), None)
     return None if len(sums) != 4 or perimeter is None else [(perimeter - f) / 2 for f in sums if f != perimeter]
 
@@ -115,5 +115,5 @@ def _written_out(value: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr
 
 
 def _below_zero(value: sp.Expr) -> sp.Expr:
-    """How far a value is below zero; zero where it is not."""
+    """How far a value is below zero; zero if it is not."""
     return (sp.Abs(value) - value) / 2

@@ -3,7 +3,7 @@
 Two roots, mirror images in the line or plane of the centres. Let n be normal to it, and p0 the foot of the
 perpendicular from P, seen from C_1: P = C_1 + p0 + sigma root(r_1^2 - |p0|^2) n / |n|. The only division is by |n|^2,
 which vanishes where the centres coincide or lie on a line: nothing determines P then, and the pose is refused.
-Determinant: that of the rod vectors P - C_i; its sign is sigma. Guard: the spheres intersect. Where they touch, both
+Determinant: that of the rod vectors P - C_i; its sign is sigma. Guard: the spheres intersect. If they touch, both
 roots meet (degenerate case).
 """
 

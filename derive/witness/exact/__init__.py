@@ -6,6 +6,6 @@ trial with a probability below d/2^61.
 
 field: the field, its square roots, and the sines and cosines of fixed angles
 proof: machines and poses are drawn, programs are evaluated, the closure is asked
-runs: programs in the field; where a root may have either sign, both are tried
+runs: programs in the field; if a root may have either sign, both are tried
 values: numbers that remember what they are as angles
 """

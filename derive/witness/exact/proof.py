@@ -72,7 +72,7 @@ class Trial:
         return {j.symbol.name: v for j, v in zip(of.joints, values, strict=True)}
 
     def equations(self, axes: Mapping[str, Value], pose: Mapping[str, Value]) -> list[int]:
-        """The closure of the description: zeros where it holds."""
+        """The closure of the description: zeros if it holds."""
         joints = self.joints(axes)
         if self.described.chain is not None:
             frame = frame_of(self, joints)
@@ -122,7 +122,7 @@ def _turned(columns: Columns, axis: int, pair: Pair) -> Columns:
 
 def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
     """Forward and inverse kinematics meet the equations exactly at random machines and poses, or it cannot be asked.
-    Raises `Disagreement` where one does not.
+    Raises `Disagreement` if one does not.
 
     The form of a machine with oblique frames holds numbers that were computed, and rounded: where the equations of the
     description do not hold to the last digit, those of the form do.
@@ -221,8 +221,8 @@ def _know(trial: Trial) -> None:
     else:
         stated = [f.args[0] for e in trial.described.equations for f in sp.sympify(e).atoms(sp.sin, sp.cos)]
     moving = sorted((a for a in {*stated, *turned} if a.free_symbols & turned), key=sp.default_sort_key)
-    told = evaluated(moving, {**trial.own, **joints}, trial.angles, trial.degree)
-    for angle in (*told, *trial.machine_joints().values()):
+    moved = evaluated(moving, {**trial.own, **joints}, trial.angles, trial.degree)
+    for angle in (*moved, *trial.machine_joints().values()):
         if angle.form is not None:
             trial.angles.know(angle)
 

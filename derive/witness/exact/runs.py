@@ -18,7 +18,7 @@ from sympy.logic.boolalg import BooleanFalse, BooleanTrue
 
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
-from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Solve, Statement, binds
+from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Solve, Statement
 from derive.ir.symbols import Flag, is_condition
 from derive.witness.exact.field import PRIME, element, inverse, root, root_of_whole
 from derive.witness.exact.values import MINUS_ONE, ONE, ZERO, Angles, NotAlgebraic, Value, fraction
@@ -35,11 +35,11 @@ class _Missing(Exception):
 
 
 class Signs:
-    """The signs that a run may choose: those that are told, then ones that are positive; and what it has compared."""
+    """The signs that a run may choose: those that are given first, then positive ones; and what it has compared."""
 
-    def __init__(self, told: Sequence[int] = ()) -> None:
+    def __init__(self, first: Sequence[int] = ()) -> None:
         self.taken: list[int] = []
-        self._told = told
+        self._first = first
         self._positive: set[int] = set()
 
     def is_positive(self, number: int) -> bool:
@@ -52,11 +52,11 @@ class Signs:
     def next(self) -> int:
         """The next sign."""
         place = len(self.taken)
-        self.taken.append(self._told[place] if place < len(self._told) else 1)
+        self.taken.append(self._first[place] if place < len(self._first) else 1)
         return self.taken[-1]
 
     def others(self) -> Signs | None:
-        """The next signs to try; None where all have been tried."""
+        """The next signs to try; None if all have been tried."""
         left = list(self.taken)
         while left and left[-1] < 0:
             left.pop()
@@ -79,7 +79,7 @@ class Run:
     ) -> None:
         self.known, self._angles, self._signs, self._degree = known, angles, signs, degree
         self._input_of = input_of
-        self._sources: dict[str, Statement] = {n.name: s for s in program.body for n in binds(s)}
+        self._sources: dict[str, Statement] = {n.name: s for s in program.body for n in s.bound()}
         self._program = program
 
     def output(self, name: str) -> Value:

@@ -86,7 +86,7 @@ class Value:
 
     @property
     def rational(self) -> Fraction | None:
-        """The fraction that the value is; None where it is not known to be one."""
+        """The fraction that the value is; None if it is not known to be one."""
         if self.form is None or any(key != ("", 0) for key in self.form):
             return None
         return self.form.get(("", 0), Fraction(0))

@@ -89,7 +89,7 @@ typedef struct {
 /** A machine: constants that `ac6_txtytzryrxrz_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[AC6_TXTYTZRYRXRZ_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, lowest_a3, highest_a3, lowest_a4, highest_a4, mid_a4,
       lowest_a5, highest_a5, mid_a5, lowest_a6, highest_a6, mid_a6, flange_x, flange_y, flange_z, offset_a1,

@@ -47,7 +47,7 @@ typedef struct {
 /** A machine: constants that `caxis_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[CAXIS_LIMITS];
   double lowest_c, highest_c, mid_c, offset_c;
   bool single_c;

@@ -55,7 +55,7 @@ typedef struct {
 /** A machine: constants that `caxis_tool_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[CAXIS_TOOL_LIMITS];
   double lowest_c, highest_c, mid_c, tool_x, tool_y, tool_z, offset_c;
   bool single_c;

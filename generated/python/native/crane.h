@@ -67,7 +67,7 @@ typedef struct {
 /** A machine: constants that `crane_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[CRANE_LIMITS];
   double lowest_r, highest_r, lowest_theta, highest_theta, mid_theta, lowest_phi, highest_phi, offset_r,
       offset_theta, offset_phi, machine_scale_times_free_angle, one_by_machine_scale;

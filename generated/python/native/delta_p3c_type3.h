@@ -100,7 +100,7 @@ typedef struct {
 /** A machine: constants that `delta_p3c_type3_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[DELTA_P3C_TYPE3_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       base_radius_1, base_radius_2, base_radius_3, inner_arm_1, inner_arm_2, inner_arm_3, outer_arm_1,

@@ -53,7 +53,7 @@ typedef struct {
 /** A machine: constants that `gantry2_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[GANTRY2_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, offset_x, offset_y, machine_scale_times_plane;
 } gantry2_machine;

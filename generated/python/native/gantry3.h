@@ -60,7 +60,7 @@ typedef struct {
 /** A machine: constants that `gantry3_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[GANTRY3_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, offset_x, offset_y, offset_z;
 } gantry3_machine;

@@ -63,7 +63,7 @@ typedef struct {
 /** A machine: constants that `gantrycutter2_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[GANTRYCUTTER2_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_r, highest_r, mid_r, direction_r, offset_x,
       offset_y, offset_r, machine_scale_times_plane;

@@ -86,7 +86,7 @@ typedef struct {
 /** A machine: constants that `headhead_cb_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[HEADHEAD_CB_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_c, highest_c, mid_c, lowest_b,
       highest_b, mid_b, fork_offset, head_offset, pivot_length, offset_x, offset_y, offset_z, offset_c,

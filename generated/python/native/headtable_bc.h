@@ -85,7 +85,7 @@ typedef struct {
 /** A machine: constants that `headtable_bc_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[HEADTABLE_BC_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_b, highest_b, mid_b, lowest_c,
       highest_c, mid_c, head_offset, pivot_length, offset_x, offset_y, offset_z, offset_b, offset_c;

@@ -244,7 +244,7 @@ typedef struct {
 /** A machine: constants that `hexaglide_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[HEXAGLIDE_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, lowest_a3, highest_a3, lowest_a4, highest_a4,
       lowest_a5, highest_a5, lowest_a6, highest_a6, rail_1_y, rail_1_z, rail_2_y, rail_2_z, rail_3_y,

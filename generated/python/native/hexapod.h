@@ -247,7 +247,7 @@ typedef struct {
 /** A machine: constants that `hexapod_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[HEXAPOD_LIMITS];
   double lowest_l1, highest_l1, lowest_l2, highest_l2, lowest_l3, highest_l3, lowest_l4, highest_l4,
       lowest_l5, highest_l5, lowest_l6, highest_l6, base_1_x, base_1_y, base_1_z, base_2_x, base_2_y,

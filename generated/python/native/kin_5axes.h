@@ -83,7 +83,7 @@ typedef struct {
 /** A machine: constants that `kin_5axes_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[KIN_5AXES_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_a, highest_a, mid_a, lowest_b,
       highest_b, mid_b, tool_length, tool_side, offset_x, offset_y, offset_z, offset_a, offset_b,

@@ -176,7 +176,7 @@ static bool take_frame(machine_object *self, PyObject *given, softkin_frame *fra
   return true;
 }
 
-/* A reference, or None where the machine needs none. */
+/* A reference, or None if the machine needs none. */
 static bool take_reference(machine_object *self, PyObject *given, double *reference) {
   if (!Py_IsNone(given)) {
     return take_reals(self, given, self->kind->axis_count, reference);
@@ -232,7 +232,7 @@ static PyObject *unanswered(void) {
   return Py_NewRef(Py_NotImplemented);
 }
 
-/* Put a new object into a tuple that nobody else has; false where there is none. */
+/* Put a new object into a tuple that nobody else has; false if there is none. */
 static bool put(PyObject *tuple, Py_ssize_t place, PyObject *value) {
   return value != NULL && PyTuple_SetItem(tuple, place, value) == 0;
 }
@@ -576,7 +576,7 @@ static bool take_table(arrays *held, PyObject *given, const char *formats, Py_ss
   return true;
 }
 
-/* None where the machine reads no rotation. */
+/* None if the machine reads no rotation. */
 static bool take_rotations(const machine_object *self, arrays *held, PyObject *given, Py_ssize_t stop,
     softkin_table *table) {
   *table = (softkin_table){NULL, 0, 0};
@@ -719,7 +719,7 @@ static const softkin_native *find(const char *key) {
   return NULL;
 }
 
-/* Read the parameters, and compute the constants; false where either fails. */
+/* Read the parameters, and compute the constants; false if either fails. */
 static bool made(const softkin_mechanism *kind, PyObject *given, void *machine) {
   char *parameters = PyMem_Calloc(1, kind->parameters_size == 0 ? 1 : kind->parameters_size);
   Py_ssize_t found;

@@ -73,7 +73,7 @@ typedef struct {
 /** A machine: constants that `mc_kin_type_12_xy_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[MC_KIN_TYPE_12_XY_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, link_length_1, link_length_2,
       link_length_5, offset_a1, offset_a2, min_type2_margin, assembly_sign, product_in_normal_divisor,

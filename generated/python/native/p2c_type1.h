@@ -69,7 +69,7 @@ typedef struct {
 /** A machine: constants that `p2c_type1_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[P2C_TYPE1_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, inner_arm, offset_a1, offset_a2,
       min_type2_margin, assembly_sign, product_in_normal_divisor, twice_outer_arm,

@@ -73,7 +73,7 @@ typedef struct {
 /** A machine: constants that `p2x_type1_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[P2X_TYPE1_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, arm_length_1, arm_length_2, rail_y_1, rail_y_2,
       tcp_offset_1, tcp_offset_2, offset_a1, offset_a2, min_type2_margin, machine_scale, tie,

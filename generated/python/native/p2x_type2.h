@@ -63,7 +63,7 @@ typedef struct {
 /** A machine: constants that `p2x_type2_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[P2X_TYPE2_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, arm_length, tcp_link_distance, offset_a1, offset_a2,
       min_type2_margin, assembly_sign, span_1_x, machine_scale_times_rounding,

@@ -61,7 +61,7 @@ typedef struct {
 /** A machine: constants that `p2y_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[P2Y_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, lowest_x, highest_x, lowest_y, highest_y, offset_a1,
       offset_a2, machine_scale_times_plane;

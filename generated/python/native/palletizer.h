@@ -92,7 +92,7 @@ typedef struct {
 /** A machine: constants that `palletizer_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[PALLETIZER_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_a4, highest_a4, mid_a4, lowest_elbow, highest_elbow, base_height, shoulder_offset,

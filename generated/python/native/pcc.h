@@ -67,7 +67,7 @@ typedef struct {
 /** A machine: constants that `pcc_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[PCC_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_elbow, highest_elbow,
       link_length_1, link_length_2, offset_a1, offset_a2, machine_scale, bound_of_cos_a2_from_a1,

@@ -140,7 +140,7 @@ typedef struct {
 /** A machine: constants that `planar_3rrr_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[PLANAR_3RRR_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       base_1_x, base_1_y, base_2_x, base_2_y, base_3_x, base_3_y, platform_1_x, platform_1_y, platform_2_x,

@@ -60,7 +60,7 @@ typedef struct {
 /** A machine: constants that `polar_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[POLAR_LIMITS];
   double lowest_c, highest_c, mid_c, lowest_r, highest_r, offset_c, offset_r, machine_scale_times_plane,
       machine_scale_times_free_angle, one_by_machine_scale;

@@ -67,7 +67,7 @@ typedef struct {
 /** A machine: constants that `polar_z_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[POLAR_Z_LIMITS];
   double lowest_c, highest_c, mid_c, lowest_r, highest_r, lowest_z, highest_z, offset_c, offset_r, offset_z,
       machine_scale_times_free_angle, one_by_machine_scale;

@@ -75,7 +75,7 @@ typedef struct {
 /** A machine: constants that `pos_rrr_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[POS_RRR_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3, d1, a1,
       a2, d3, a3, d4, offset_a1, offset_a2, offset_a3, machine_scale, effective_q3_2, rounding_q1,

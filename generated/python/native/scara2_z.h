@@ -66,7 +66,7 @@ typedef struct {
 /** A machine: constants that `scara2_z_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[SCARA2_Z_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_z, highest_z, arm_length_1,
       arm_length_2, offset_a1, offset_a2, offset_z, machine_scale, bound_of_cos_a2,

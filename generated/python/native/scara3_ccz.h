@@ -66,7 +66,7 @@ typedef struct {
 /** A machine: constants that `scara3_ccz_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[SCARA3_CCZ_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, link_length_1,
       link_length_2, offset_a1, offset_a2, offset_a3, machine_scale, bound_of_cos_a2,

@@ -80,7 +80,7 @@ typedef struct {
 /** A machine: constants that `scara4_zccc_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[SCARA4_ZCCC_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3, lowest_a4,
       highest_a4, mid_a4, link_length_1, link_length_2, link_length_3, offset_a1, offset_a2, offset_a3,

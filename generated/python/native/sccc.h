@@ -90,7 +90,7 @@ typedef struct {
 /** A machine: constants that `sccc_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[SCCC_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_joint_2, highest_joint_2, lowest_joint_3, highest_joint_3, link_length_1, link_length_2,

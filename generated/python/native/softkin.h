@@ -58,7 +58,7 @@ typedef struct {
   double rotation[3][3];
 } softkin_frame;
 
-/** The range that is tested of an axis or of another quantity: infinite where there is no limit. */
+/** The range that is tested of an axis or of another quantity: infinite if there is no limit. */
 typedef struct {
   double lower, upper;
 } softkin_ends;
@@ -329,7 +329,7 @@ double softkin_nearest_on_arc(double angle, double centre, double half);
 /** Write a status into all slots; true. */
 bool softkin_refuse_all(softkin_status status, softkin_status *statuses, int count);
 int softkin_turn_inside(double axis, double lowest, double highest);
-/** Solve `system` (rows, rows + columns) in place; the determinant. All is zero where it is singular. */
+/** Solve `system` (rows, rows + columns) in place; the determinant. All is zero if it is singular. */
 double softkin_solve(double *system, int rows, int columns);
 softkin_status softkin_window_of(const softkin_limit *limit, double lower, double upper, bool is_tested,
     const double *otherwise, double turns, softkin_window *window, softkin_ends *ends, softkin_refusal *why);

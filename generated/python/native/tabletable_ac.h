@@ -87,7 +87,7 @@ typedef struct {
 /** A machine: constants that `tabletable_ac_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[TABLETABLE_AC_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_a, highest_a, mid_a, lowest_c,
       highest_c, mid_c, pivot_y, pivot_z, tool_length, offset_x, offset_y, offset_z, offset_a, offset_c;

@@ -68,7 +68,7 @@ typedef struct {
 /** A machine: constants that `tgantry3_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[TGANTRY3_LIMITS];
   double lowest_a, highest_a, lowest_b, highest_b, lowest_z, highest_z, lowest_x, highest_x, lowest_y,
       highest_y, offset_a, offset_b, offset_z;

@@ -81,7 +81,7 @@ typedef struct {
 /** A machine: constants that `tripod_linear_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[TRIPOD_LINEAR_LIMITS];
   double lowest_a1, highest_a1, lowest_a2, highest_a2, lowest_a3, highest_a3, outer_radius, inner_radius,
       arm_length, offset_a1, offset_a2, offset_a3, min_type2_margin, tie, sin_rail_angle, cos_rail_angle,

@@ -82,7 +82,7 @@ typedef struct {
 /** A machine: constants that `tripod_rotary_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[TRIPOD_ROTARY_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       arm_length_1, arm_length_2, arm_1_radius, offset_a1, offset_a2, offset_a3, min_type2_margin,

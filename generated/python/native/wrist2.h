@@ -67,7 +67,7 @@ typedef struct {
 /** A machine: constants that `wrist2_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[WRIST2_LIMITS];
   double lowest_a, highest_a, mid_a, lowest_b, highest_b, mid_b, roll_axis_offset_x, roll_axis_offset_y,
       roll_axis_offset_z, tool_side, offset_a, offset_b, tool_length_times_tool_side, one_by_tool_side;

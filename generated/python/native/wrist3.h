@@ -68,7 +68,7 @@ typedef struct {
 /** A machine: constants that `wrist3_init` computes, and that no other call changes. */
 typedef struct {
   softkin_base softkin;
-  /** The ranges in force, infinite where there is no limit. */
+  /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[WRIST3_LIMITS];
   double lowest_a, highest_a, mid_a, lowest_b, highest_b, mid_b, lowest_c, highest_c, mid_c, tool_offset_x,
       tool_offset_y, tool_offset_z, offset_a, offset_b, offset_c;

@@ -290,7 +290,7 @@ def nearest_on_arc(angle: Real, centre: Real, half: Real) -> Real:
 def solve(matrix: Sequence[Reals], right: Sequence[Reals]) -> Reals:
     """The determinant, then the solution by rows: LU decomposition with partial pivoting.
 
-    All of them are zero where the matrix is singular, or a number is NaN or beyond SOLVABLE in size.
+    All of them are zero if the matrix is singular, or a number is NaN or beyond SOLVABLE in size.
     """
     size = len(matrix)
     rows = [[*row, *more] for row, more in zip(matrix, right or [()] * size, strict=True)]

@@ -80,7 +80,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Configurations:
-    """Configurations; where one row stands for all, a column has one entry."""
+    """Configurations; if one row stands for all, a column has one entry."""
 
     branches: tuple[Bytes, ...]
     turns: Turns

@@ -45,7 +45,7 @@ class Coupled(Mechanism):
 
     Axes: those of the position kinematics, then those of the orientation kinematics; the bytes of the configuration
     likewise. An axis or a byte of the second part with a name that the first part has is called `orientation <name>`.
-    An automatic choice counts the rotary axes of both; where they tie, and only linear axes distinguish the branches of
+    An automatic choice counts the rotary axes of both; if they tie, and only linear axes distinguish the branches of
     the position kinematics, it counts these.
     The position is reached or refused; of the rotation, the tool direction comes before the twist.
     Limits and parameters are those of the parts, `position_part` and `orientation_part`. The Jacobian has all six rows.

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from softkin._core import Mechanism
 
 CHOICE = "SOFTKIN_CORE"
-"""The variable of the environment that chooses `python`, or `native`: an error where there is no extension."""
+"""The variable of the environment that chooses `python`, or `native`: an error if there is no extension."""
 _ASKED_FOR = f"{CHOICE} is native, but the extension {EXTENSION}"
 _STATUSES = tuple(Status)
 
@@ -57,7 +57,7 @@ CORE = "python" if _NATIVE is None else "native"
 
 
 def machine_of(robot: Mechanism, *, is_changed: bool = False) -> Any:
-    """The machine in C that the calls use; where a subclass has programs of its own, or is_changed, it answers
+    """The machine in C that the calls use; if a subclass has programs of its own, or is_changed, it answers
     nothing.
     """
     assert _NATIVE is not None
@@ -68,7 +68,7 @@ def machine_of(robot: Mechanism, *, is_changed: bool = False) -> Any:
 
 
 def take_over(cls: type[Mechanism]) -> bool:
-    """Let the native core answer the calls of a class; false where it does not have this machine."""
+    """Let the native core answer the calls of a class; false if it does not have this machine."""
     if cls.KEY not in _KNOWN:
         return False
     for name, made in _CALLS.items():

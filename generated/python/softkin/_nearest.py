@@ -127,7 +127,7 @@ def _with_turns(
 
 
 def _rounded(after: float, before: float) -> float:
-    """The difference, or zero where it is only rounding."""
+    """The difference, or zero if it is only rounding."""
     step = after - before
     return 0.0 if abs(step) <= _SAME * (abs(after) + abs(before)) else step
 
@@ -230,7 +230,7 @@ class _Search:
         self.least: _Cost = (0.0, 0.0)
 
     def run(self, start: Reals) -> Reals | None:
-        """The axes inside all limits that are nearest to the reference; None where no sum of steps is inside."""
+        """The axes inside all limits that are nearest to the reference; None if no sum of steps is inside."""
         self._level(0, start, (0.0, 0.0))
         return self.best
 

@@ -63,7 +63,7 @@ def _table(columns: Reals, shape: tuple[int, ...]) -> Array:
 
 
 def _turning(robot: Mechanism, poses: Poses, near: Array, status: Codes, refused: Codes) -> Turning | None:
-    """The effect of turns, measured at the first pose that is reached; None where no pose is reached."""
+    """The effect of turns, measured at the first pose that is reached; None if no pose is reached."""
     solved = np.argwhere(((status == Status.OK) & (refused == Status.OK)).T)
     if not len(solved):
         return None

@@ -75,5 +75,5 @@ class OrientationKinematics(Mechanism):
 
 
 def turning_axis(image: OrientationImage) -> tuple[Vector, Vector]:
-    """The axis about which a flange turns, in the frames of flange and machine; zero where there is none."""
+    """The axis about which a flange turns, in the frames of flange and machine; zero if there is none."""
     return (image.flange_axis, image.base_axis) if image.freedom == "one" else (_ZERO, _ZERO)

@@ -83,7 +83,7 @@ class Solution(NamedTuple):
     """One slot of the inverse: the axes, or the status that says why there are none."""
 
     configuration: Configuration
-    """The branch bytes of the slot, and the period numbers of its axes (0 where there are none)."""
+    """The branch bytes of the slot, and the period numbers of its axes (0 if there are none)."""
     axes: Reals | None
     status: Status
     others: tuple[Reals, ...] = ()
@@ -91,15 +91,15 @@ class Solution(NamedTuple):
 
 
 class Diagnosis(NamedTuple):
-    """The reason why the inverse refuses; where it does not refuse, status OK with an empty reason."""
+    """The reason why the inverse refuses; if it does not refuse, status OK with an empty reason."""
 
     status: Status
     reason: str
     """The reason, with the name of the quantity that refuses."""
     missing: float
-    """The missing amount of this quantity, in its own unit; 0 where there is no amount."""
+    """The missing amount of this quantity, in its own unit; 0 if there is no amount."""
     turn: int = 0
-    """Where the turn of an axis is the reason: the number of a turn inside the limits; 0 where there is none."""
+    """If the turn of an axis is the reason: the number of a turn inside the limits; 0 if there is none."""
 
     @property
     def in_words(self) -> str:
@@ -121,7 +121,7 @@ class Singularity(NamedTuple):
     is_singular: bool
     """Whether a margin is smaller in size than the parameter `warning_distance`, or the axes allow no pose."""
     margins: Mapping[str, float]
-    """Dimensionless and signed, by name; NaN where the axes allow no pose.
+    """Dimensionless and signed, by name; NaN if the axes allow no pose.
 
     In a machine without lengths (a polar arm, a crane) a margin that is a distance is 0 where an axis is not
     determined, else 1.
@@ -166,7 +166,7 @@ class Parameter:
     low_is_open: bool
     """Whether the value must be more than `low`, and more than LEAST, so that no product of lengths vanishes."""
     default: float | None
-    """None where the parameter must be given."""
+    """None if the parameter must be given."""
 
     @classmethod
     def of(cls, kind: str, name: str, meaning: str, **unusual: Any) -> Self:

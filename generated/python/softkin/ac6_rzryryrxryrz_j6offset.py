@@ -116,7 +116,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset ed59c7855294de2f"
+    KEY = "ac6_rzryryrxryrz_j6offset 05a204f57792e934"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),

@@ -108,7 +108,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel f21f0c1ab2156116"
+    KEY = "ac6_threeparallel e41fa4ddb02eb504"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),

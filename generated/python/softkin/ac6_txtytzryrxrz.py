@@ -81,7 +81,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_TXTYTZRYRXRZ"
-    KEY = "ac6_txtytzryrxrz ac3745f001f1f084"
+    KEY = "ac6_txtytzryrxrz b7d58706e81210a0"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),

@@ -109,7 +109,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof 1b26dfbfc4e932d1"
+    KEY = "articulatedrobot_6dof 290a7a6efce23fd7"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),

@@ -106,7 +106,7 @@ class BipodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Bipod_Rotary"
-    KEY = "bipod_rotary d973252ce7289b03"
+    KEY = "bipod_rotary 88e88a98807c5c5f"
     AXES = (
         Axis(
             name="A1",

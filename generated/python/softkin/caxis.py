@@ -62,7 +62,7 @@ class CAxis(OrientationKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_CAxis"
-    KEY = "caxis b74056cd6dc5d139"
+    KEY = "caxis e1fa21318f0f2d13"
     AXES = (Axis(name="C", kind="rotary", unit="deg", meaning="Turn about the flange's Z", multi_turn=True),)
     PARAMETERS = (
         Parameter.of("angle", "offset_c", "C: axis value at the kinematic zero position"),

@@ -69,7 +69,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_CAxis_Tool"
-    KEY = "caxis_tool c2465179dda5f079"
+    KEY = "caxis_tool 6176b7aa8250fca8"
     AXES = (Axis(name="C", kind="rotary", unit="deg", meaning="Turn about the flange's Z", multi_turn=True),)
     PARAMETERS = (
         Parameter.of("distance", "tool_x", "Flange to the tool, along the turned X"),

@@ -75,7 +75,7 @@ class Crane(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Crane"
-    KEY = "crane 6e08297f6e43ad48"
+    KEY = "crane 75e1449158336155"
     AXES = (
         Axis(name="R", kind="linear", unit="u", meaning="Length of the boom", multi_turn=False),
         Axis(name="Theta", kind="rotary", unit="deg", meaning="Azimuth, from X", multi_turn=True),

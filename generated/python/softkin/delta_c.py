@@ -131,7 +131,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Delta_C"
-    KEY = "delta_c b33a505e3871df14"
+    KEY = "delta_c 15c883462bdc3695"
     AXES = (
         Axis(
             name="A1",

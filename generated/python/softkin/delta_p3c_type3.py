@@ -254,7 +254,7 @@ class DeltaP3CType3(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Delta_P3C_Type3"
-    KEY = "delta_p3c_type3 17515f44d353953e"
+    KEY = "delta_p3c_type3 831c9932bac00101"
     AXES = (
         Axis(
             name="A1",

@@ -152,7 +152,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_DualScara"
-    KEY = "dualscara 891c5bee598d1269"
+    KEY = "dualscara 6c29d7ac9f3c545f"
     AXES = (
         Axis(
             name="A1",

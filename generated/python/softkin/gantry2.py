@@ -64,7 +64,7 @@ class Gantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Gantry2"
-    KEY = "gantry2 d81516d5868406e5"
+    KEY = "gantry2 3c6edd1d7118e93d"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),

@@ -64,7 +64,7 @@ class Gantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Gantry3"
-    KEY = "gantry3 bf0ef3fbc18c0d90"
+    KEY = "gantry3 9b8635e5f566e3b6"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),

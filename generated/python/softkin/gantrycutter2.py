@@ -70,7 +70,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_GantryCutter2"
-    KEY = "gantrycutter2 55e0f1db47350257"
+    KEY = "gantrycutter2 7fa8ca31d0758143"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),

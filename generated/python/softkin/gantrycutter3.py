@@ -71,7 +71,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_GantryCutter3"
-    KEY = "gantrycutter3 d0f3666d5a5bb9f6"
+    KEY = "gantrycutter3 f413443fcdc45772"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),

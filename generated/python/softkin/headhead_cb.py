@@ -82,7 +82,7 @@ class HeadHeadCB(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_HeadHead_CB"
-    KEY = "headhead_cb cdca1607c18332c7"
+    KEY = "headhead_cb 00ce965c8c92fb69"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),

@@ -81,7 +81,7 @@ class HeadTableBC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_HeadTable_BC"
-    KEY = "headtable_bc f329aafef57b31c9"
+    KEY = "headtable_bc 0dd00dddee204bcd"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X: the head against the table", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),

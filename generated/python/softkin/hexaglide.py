@@ -504,7 +504,7 @@ class Hexaglide(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Hexaglide"
-    KEY = "hexaglide b67e60cb2969138b"
+    KEY = "hexaglide 3444f6e9f37d6a67"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="X of carriage 1", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="X of carriage 2", multi_turn=False),

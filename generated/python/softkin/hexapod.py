@@ -373,7 +373,7 @@ class Hexapod(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Hexapod"
-    KEY = "hexapod 0dad3fc2c6cec0c8"
+    KEY = "hexapod 60e034b7f337a521"
     AXES = (
         Axis(name="L1", kind="linear", unit="u", meaning="Length of leg 1, between its joints", multi_turn=False),
         Axis(name="L2", kind="linear", unit="u", meaning="Length of leg 2, between its joints", multi_turn=False),

@@ -67,7 +67,7 @@ class HGantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_HGantry2"
-    KEY = "hgantry2 9e78598f0598e9b5"
+    KEY = "hgantry2 d5e006ff3bb5fb70"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

@@ -67,7 +67,7 @@ class HGantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_HGantry3"
-    KEY = "hgantry3 c582467d2697e1ef"
+    KEY = "hgantry3 506a63bef67aff6b"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

@@ -80,7 +80,7 @@ class Kin5Axes(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_5Axes"
-    KEY = "kin_5axes d8ec3d87f28a9adb"
+    KEY = "kin_5axes 528b8c68a602ff33"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),

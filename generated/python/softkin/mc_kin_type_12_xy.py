@@ -161,7 +161,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
-    KEY = "mc_kin_type_12_xy 22dff642c89e9f90"
+    KEY = "mc_kin_type_12_xy bcc84163af92995f"
     AXES = (
         Axis(
             name="A1",

@@ -106,7 +106,7 @@ class P2CType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type1"
-    KEY = "p2c_type1 e0d5c0d505e5916a"
+    KEY = "p2c_type1 043c00d4b9d2b54c"
     AXES = (
         Axis(
             name="A1",

@@ -110,7 +110,7 @@ class P2CType2(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type2"
-    KEY = "p2c_type2 d1b73181c3c21e2c"
+    KEY = "p2c_type2 3974e8e83958dbf2"
     AXES = (
         Axis(
             name="A1",

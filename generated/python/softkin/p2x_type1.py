@@ -111,7 +111,7 @@ class P2XType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2X_Type1"
-    KEY = "p2x_type1 bae0cb968182aebe"
+    KEY = "p2x_type1 5a9a79084110bd37"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),

@@ -82,7 +82,7 @@ class P2XType2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_P2X_Type2"
-    KEY = "p2x_type2 5c3a211547d8989c"
+    KEY = "p2x_type2 9e72b0ccca9e8469"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),

@@ -66,7 +66,7 @@ class P2Y(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_P2Y"
-    KEY = "p2y a62262f9d10f23f8"
+    KEY = "p2y f699eaab88473243"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Motor 1", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Motor 2", multi_turn=False),

@@ -113,7 +113,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer"
-    KEY = "palletizer 655772c04fc04da7"
+    KEY = "palletizer 33c2c1299b8c168a"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),

@@ -90,7 +90,7 @@ class PCC(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_PCC"
-    KEY = "pcc ff7377018fab78e7"
+    KEY = "pcc c56a681140c43722"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Inner arm about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Outer arm about Z, its absolute angle", multi_turn=True),

@@ -335,7 +335,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Planar_3RRR"
-    KEY = "planar_3rrr f04a9ff596d0873e"
+    KEY = "planar_3rrr 90c76330ef348b1b"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z, from +X", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z, from +X", multi_turn=True),

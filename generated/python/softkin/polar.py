@@ -74,7 +74,7 @@ class Polar(Mechanism):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Polar"
-    KEY = "polar 63e63aa1adf79828"
+    KEY = "polar 7ccdf12d32589107"
     AXES = (
         Axis(name="C", kind="rotary", unit="deg", meaning="Arm about Z", multi_turn=True),
         Axis(name="R", kind="linear", unit="u", meaning="Radius, never negative", multi_turn=False),

@@ -75,7 +75,7 @@ class PolarZ(Mechanism):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Polar_Z"
-    KEY = "polar_z b7a26f180c0cd0f3"
+    KEY = "polar_z 6e4d8915cd88d9f4"
     AXES = (
         Axis(name="C", kind="rotary", unit="deg", meaning="Arm about Z", multi_turn=True),
         Axis(name="R", kind="linear", unit="u", meaning="Radius, never negative", multi_turn=False),

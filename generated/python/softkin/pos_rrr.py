@@ -98,7 +98,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr 18fb3a003eaa5efc"
+    KEY = "pos_rrr 38ea967b87ffff83"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),

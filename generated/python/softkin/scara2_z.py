@@ -87,7 +87,7 @@ class Scara2Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara2_Z"
-    KEY = "scara2_z 0c4d1c1390fbea50"
+    KEY = "scara2_z 9d1a44d7958ea54b"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

@@ -89,7 +89,7 @@ class Scara3CCZ(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_CCZ"
-    KEY = "scara3_ccz 68dfcd641982178f"
+    KEY = "scara3_ccz c945c2d193b1a693"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

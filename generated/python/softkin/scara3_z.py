@@ -91,7 +91,7 @@ class Scara3Z(TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_Z"
-    KEY = "scara3_z ab6a3225eac95e97"
+    KEY = "scara3_z 03e7863d0f3f2b78"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

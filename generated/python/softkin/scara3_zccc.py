@@ -100,7 +100,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_ZCCC"
-    KEY = "scara3_zccc c37e557b133c9995"
+    KEY = "scara3_zccc acde0ce62de32d11"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Column along Z, up", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),

@@ -108,7 +108,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_CCZC_ZCcoupled"
-    KEY = "scara4_cczc_zccoupled d2c53187490f4258"
+    KEY = "scara4_cczc_zccoupled 14a57655ef1f1388"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

@@ -100,7 +100,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCCC"
-    KEY = "scara4_zccc 57234c6f44bf94e3"
+    KEY = "scara4_zccc d3581be5b51c0233"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Column along Z, up", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),

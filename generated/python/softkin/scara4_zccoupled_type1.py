@@ -96,7 +96,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCcoupled_Type1"
-    KEY = "scara4_zccoupled_type1 1ebf86bb9f4c3209"
+    KEY = "scara4_zccoupled_type1 f03510394f90035e"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

@@ -99,7 +99,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_ScaraOnRail"
-    KEY = "scaraonrail 82b5dc69b87378fd"
+    KEY = "scaraonrail 2ddd5431bbd1c5e0"
     AXES = (
         Axis(name="E1", kind="linear", unit="u", meaning="Rail along X: carries the arm", multi_turn=False),
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),

@@ -115,7 +115,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_SCCC"
-    KEY = "sccc 45d9ed73760073a5"
+    KEY = "sccc 89ee8f78ebf25e19"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Link 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Link 2 about Z", multi_turn=True),

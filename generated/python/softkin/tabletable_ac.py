@@ -81,7 +81,7 @@ class TableTableAC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_TableTable_AC"
-    KEY = "tabletable_ac 0df675bdf1d56d08"
+    KEY = "tabletable_ac adb92e54c80bfca3"
     AXES = (
         Axis(
             name="X",

@@ -67,7 +67,7 @@ class TGantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_TGantry2"
-    KEY = "tgantry2 145b33046988b7ea"
+    KEY = "tgantry2 83f275af2946655f"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

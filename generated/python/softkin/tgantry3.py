@@ -67,7 +67,7 @@ class TGantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_TGantry3"
-    KEY = "tgantry3 60518d903a59aa50"
+    KEY = "tgantry3 ebec7448346ecd96"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),

@@ -136,7 +136,7 @@ class TripodLinear(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Linear"
-    KEY = "tripod_linear 279d1c8435a74100"
+    KEY = "tripod_linear 46d2e04366e77b85"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1; positive goes down its rail", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2; positive goes down its rail", multi_turn=False),

@@ -215,7 +215,7 @@ class TripodP3Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_P3Z"
-    KEY = "tripod_p3z a5b56bf0de8617df"
+    KEY = "tripod_p3z cfa8347cda1722dd"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along Z, up", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along Z, up", multi_turn=False),

@@ -144,7 +144,7 @@ class TripodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
-    KEY = "tripod_rotary 969193e67939ff74"
+    KEY = "tripod_rotary 0b83618ba0982885"
     AXES = (
         Axis(
             name="A1",

@@ -88,7 +88,7 @@ class Wrist2(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist2"
-    KEY = "wrist2 93246bd88889b3c3"
+    KEY = "wrist2 c8edbff7c6f33714"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Yaw about Z", multi_turn=True),
         Axis(

@@ -74,7 +74,7 @@ class Wrist3(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist3"
-    KEY = "wrist3 a1d73a058e4cdb01"
+    KEY = "wrist3 2c5bdd974d8824e5"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Turn about Z", multi_turn=True),
         Axis(name="B", kind="rotary", unit="deg", meaning="Turn about the turned -Y", multi_turn=True),

@@ -38,7 +38,7 @@ export function turnOf(value) {
 /**
  * The number of the turn on which an axis that is beyond its limits (degrees) would be inside.
  *
- * Of several the one nearest to the limit that it exceeds; 0 where there is none, or none that a byte can name.
+ * Of several the one nearest to the limit that it exceeds; 0 if there is none, or none that a byte can name.
  */
 export function turnInside(axis, lowest, highest) {
   const turns = axis > highest ? Math.floor((highest - axis) / 360) : -Math.floor((axis - lowest) / 360);

@@ -69,7 +69,7 @@ function refuseRange(parameter) {
   return refuseParameters(`${parameter.name} must be ${rangeOf(parameter)} (${parameter.meaning})`, [parameter.name]);
 }
 
-/** A number, or a flag as true or false; null where it is neither. */
+/** A number, or a flag as true or false; null if it is neither. */
 function parameterValue(parameter, value) {
   if (typeof value !== "number" && typeof value !== "boolean") return null;
   const number = Number(value);

@@ -20,7 +20,7 @@ export function constantsOf(description, programs, parameters) {
 
 /**
  * The range of an axis or of another quantity. values: lower limit with its tolerance, upper limit, whether the limits
- * leave one value for every direction at most, and the middle. ends: the limits, null where there is none.
+ * leave one value for every direction at most, and the middle. ends: the limits, null if there is none.
  *
  * otherwise: the range if no limits are given; turns: with a gear, those of the joint per turn of the axis.
  */

@@ -50,9 +50,9 @@ export function nearestOnArc(angle, centre, half) {
 /**
  * The determinant, then the solution by rows: LU decomposition with partial pivoting.
  *
- * Zeros where the matrix is singular, and where a number is NaN or beyond SOLVABLE in size.
+ * Zeros if the matrix is singular, and where a number is NaN or beyond SOLVABLE in size.
  * @param {number[][]} matrix - by rows (n, n)
- * @param {number[][]} right - by rows (n, m); empty where the determinant alone is wanted
+ * @param {number[][]} right - by rows (n, m); empty if the determinant alone is wanted
  * @returns {number[]} 1 + n m numbers
  */
 export function solveLinear(matrix, right) {

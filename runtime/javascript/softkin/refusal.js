@@ -16,7 +16,7 @@ export class Refusal {
    * What a caller is told.
    * @returns {{status: number, reason: string, unit: string, missing: number, turn: number}} reason: a sentence with
    *   the name of the quantity that refuses, or the meaning of the status; missing: the amount of this quantity, 0
-   *   where there is none; unit: that of the amount, "u" (the user's length unit), "deg" or ""; turn: where the turn of
+   *   if there is none; unit: that of the amount, "u" (the user's length unit), "deg" or ""; turn: where the turn of
    *   an axis is the reason, the number of a turn inside the limits, else 0
    */
   told() {
@@ -26,7 +26,7 @@ export class Refusal {
   }
 }
 
-/** A refusal with a status and, where there is one, a reason, its amount and another turn. */
+/** A refusal with a status and, if there is one, a reason, its amount and another turn. */
 export function refuse(status, reason = "", missing = 0, turn = 0) {
   return new Refusal(status, reason, missing, turn);
 }

@@ -20,18 +20,14 @@ import {
 import { MEANINGS, Status, TIE } from "./constants.js";
 import { bytesOf, numbersOf, parametersOf, poseOf, refuseParameters } from "./input.js";
 import { constantsOf } from "./limits.js";
-import {
-  DEGREE, RADIAN, angleOf, isReasonable, nearestOnArc, nearestPeriod, solveLinear, squareRoot,
-} from "./numbers.js";
+import { isReasonable } from "./numbers.js";
 import { Refusal, inWords, refuse } from "./refusal.js";
 import { findRotation } from "./rotation.js";
 import { everyRoot, nearestRoot } from "./roots.js";
 import { sceneOf } from "./scene.js";
 
-export {
-  DEGREE, MEANINGS, RADIAN, Refusal, Status, angleOf, everyRoot, inWords, isReasonable, nearestOnArc, nearestPeriod,
-  nearestRoot, refuse, refuseParameters, solveLinear, squareRoot, turnInside,
-};
+export * from "./numbers.js";
+export { MEANINGS, Refusal, Status, everyRoot, inWords, nearestRoot, refuse, refuseParameters, turnInside };
 
 /** Plain data that nobody can change. */
 export function freeze(data) {
@@ -64,7 +60,7 @@ export class Machine {
   constructor(description, programs, parameters, { constants, windows }) {
     this.description = description;
     this.parameters = Object.freeze(parameters);
-    /** The limits of axes, then of other quantities: {name, lower, upper}, null where there is none. */
+    /** The limits of axes, then of other quantities: {name, lower, upper}, null if there is none. */
     this.limits = Object.freeze(windows.map(Object.freeze));
     /** Whether the inverse is a search along a joint: then a branch may have several solutions. */
     this.isSearched = Boolean(programs.allJoints) && (!programs.isSearched || programs.isSearched(constants));
@@ -174,7 +170,7 @@ export class Machine {
    *
    * @param {number[]} axes
    * @returns {{status: number, values: Object<string, number>, beyond: ?object}} beyond: the limit that the axes
-   *   exceed, as a refusal; null where they exceed none, or limits are not tested
+   *   exceed, as a refusal; null if they exceed none, or limits are not tested
    */
   limited(axes) {
     const values = this._axes(axes);
@@ -257,7 +253,7 @@ export class Machine {
     return new Array(this.description.periodAxes.length).fill(0);
   }
 
-  /** The axes on the slot that bytes name, or on the nearest of the open ones; where all refuse, the first reason. */
+  /** The axes on the slot that bytes name, or on the nearest of the open ones; if all refuse, the first reason. */
   _choose(given, branches, turns) {
     const found = slotsOf(branches).map(({ signs }) => this._branch(given, signs, turns));
     const answers = found.filter((axes) => !(axes instanceof Refusal));

@@ -63,7 +63,7 @@ def period(axis: float) -> int:
 def turn_inside(axis: float, lowest: float, highest: float) -> int:
     """The number of the turn on which an axis that is beyond its limits (degrees) would be inside.
 
-    Of several the one nearest to the limit that it exceeds; 0 where there is none, or none that a byte can name.
+    Of several the one nearest to the limit that it exceeds; 0 if there is none, or none that a byte can name.
     """
     turns = floor((highest - axis) / 360.0) if axis > highest else -floor((axis - lowest) / 360.0)
     number = period(min(max(axis + 360.0 * turns, -360.0 * 127), 360.0 * 126))

@@ -138,7 +138,7 @@ class Mechanism(Value, ABC):
     NAME: str
     """The name of the function block and of the entry in `catalogue()`."""
     KEY = ""
-    """The digest that the class and its machine in C have in common; empty where there is no C."""
+    """The digest that the class and its machine in C have in common; empty if there is no C."""
     AXES: tuple[Axis, ...]
     PARAMETERS: tuple[Parameter, ...]
     CONFIGURATION: tuple[ConfigurationByte, ...]
@@ -234,7 +234,7 @@ class Mechanism(Value, ABC):
         return Window(low - tolerance, high + tolerance, single, middle)
 
     def _one_sided_window(self, key: str, low: float, high: float, otherwise: tuple[float, float] | None) -> Window:
-        """The range of an axis with one limited end; where the axis always has limits, these are the other end."""
+        """The range of an axis with one limited end; if the axis always has limits, these are the other end."""
         tolerance = LIMIT + sum([LIMIT * abs(end) for end in (low, high) if isfinite(end)])
         if otherwise is not None:
             low, high = max(low, otherwise[0]), min(high, otherwise[1])
@@ -285,8 +285,8 @@ class Mechanism(Value, ABC):
         frame: position (3) and rotation (3 rows of 3), a `Frame` or any pair of sequences, or a matrix (4, 4). A
         rotation with few exact digits, as from single precision, is repaired: the direction of z is kept. No entry of
         R^T R - I may be beyond 0.0001.
-        configuration: see `CONFIGURATION`; None stands for `DEFAULT_CONFIGURATION`. Where it leaves a branch open, the
-        solution nearest to the reference is taken. Where it leaves a period open, an axis whose limits are at most
+        configuration: see `CONFIGURATION`; None stands for `DEFAULT_CONFIGURATION`. If it leaves a branch open, the
+        solution nearest to the reference is taken. If it leaves a period open, an axis whose limits are at most
         350 degrees apart takes its one value inside them; any other axis takes the value nearest to the
         reference. Limits then refuse, and never choose another turn: for a move from point to point name the period of
         an axis with a wider range.
@@ -320,7 +320,7 @@ class Mechanism(Value, ABC):
         return Solutions(self._every_branch(position, rotation, near), every, self._solution)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None where it has no solution.
+        """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None if it has no solution.
 
         The input is trusted: plain tuples of floats, with a rotation that is exact to all digits. An axis may be on any
         turn if no other axis moves with it. Limits are not tested. Without a reference, which stands for zeros, a
@@ -372,7 +372,7 @@ class Mechanism(Value, ABC):
         frame: as for `inverse`. reference: one value for each axis, usually the present axis values.
         measure: `squares`, the least sum of squared differences, or `largest`, the least largest difference (ties: the
         least sum of squares of the turns). weights: a factor of the difference of each axis, at least 0; None counts
-        the rotary axes in degrees, and the linear ones where there are none, as an automatic choice does. Distances
+        the rotary axes in degrees, and the linear ones if there are none, as an automatic choice does. Distances
         that differ by less than its tie (squared 1e-6, times the largest weight squared) go to the lower slot.
         Raises BAD_INPUT, UNREACHABLE or IMPOSSIBLE; the `refusal` is the reason of the nearest miss: the limit that a
         solution exceeds least, as a share of the range, or else the least missing amount of a branch.
@@ -445,8 +445,8 @@ class Mechanism(Value, ABC):
         with the configuration and the reference; from there on the branch stays, and every axis follows on its turn.
         samples: the number of equal steps of each line. singular: margins smaller than this make a singular stretch;
         None stands for the warning distance of the machine.
-        The path stops where there is no answer, where an axis is beyond a limit, or where an axis jumps: see `Path`.
-        It is found between the samples, too. Raises BAD_INPUT for what is no frame, and where there is no frame.
+        The path stops if there is no answer, where an axis is beyond a limit, or where an axis jumps: see `Path`.
+        It is found between the samples, too. Raises BAD_INPUT for what is no frame, and if there is no frame.
         """
         from softkin import _path
 
@@ -827,7 +827,7 @@ class Mechanism(Value, ABC):
         return False
 
     def _beyond_limits(self, axes: Reals) -> Diagnosis | None:
-        """The limit that the axes exceed; None where they exceed none, or limits are not tested."""
+        """The limit that the axes exceed; None if they exceed none, or limits are not tested."""
         return self._limits(axes) if self.checks_limits else None
 
     def _limited(self, call: str, axes: Reals) -> Reals:
@@ -868,7 +868,7 @@ class Mechanism(Value, ABC):
         return rows if isinstance(rows, Status) else tuple(rows[TWIST.index(row)] for row in self.JACOBIAN_ROWS)
 
     def _twist(self, axes: Reals) -> Matrix | Status:
-        """The six rows of the twist. Where the frame keeps its orientation: those of the Jacobian, and zeros."""
+        """The six rows of the twist. If the frame keeps its orientation: those of the Jacobian, and zeros."""
         rows = self._jacobian(axes)
         if isinstance(rows, Status):
             return rows

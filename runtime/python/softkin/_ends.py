@@ -1,4 +1,4 @@
-"""Limits as one mapping: the ends of every axis, None where there is none."""
+"""Limits as one mapping: the ends of every axis, None if there is none."""
 
 from __future__ import annotations
 

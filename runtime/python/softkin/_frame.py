@@ -103,7 +103,7 @@ class Frame(_Parts):
     def quaternion(self) -> tuple[float, float, float, float]:
         """The quaternion x, y, z, w of length one.
 
-        w is at least 0; where it is 0, the first number that is not 0 is positive.
+        w is at least 0; if it is 0, the first number that is not 0 is positive.
         """
         return _quaternion(orthonormalize(self.rotation))
 

@@ -134,7 +134,7 @@ def _typed(parameter: Parameter, number: float) -> float:
 
 
 def unusable(inputs: dict[str, object]) -> str:
-    """A sentence on the first invalid number among inputs; empty where all are valid."""
+    """A sentence on the first invalid number among inputs; empty if all are valid."""
     for what, value in inputs.items():
         for name, number in _named(what, value):
             if not abs(number) <= LARGEST:

@@ -16,7 +16,7 @@ def beyond(
 ) -> Diagnosis:
     """The reason for refusing a value below `lowest` or above `highest`.
 
-    turns: for each axis the number of another turn that is inside its limits, 0 where there is none. The first such
+    turns: for each axis the number of another turn that is inside its limits, 0 if there is none. The first such
     turn gives the reason.
     """
     is_below = not value >= lowest

@@ -61,7 +61,7 @@ def nearest_on_arc(angle: float, centre: float, half: float) -> float:
 def solve(matrix: Sequence[Sequence[float]], right: Sequence[Sequence[float]]) -> tuple[float, ...]:
     """The determinant, then the solution by rows: LU decomposition with partial pivoting.
 
-    Zeros where the matrix is singular, and where a number is NaN or beyond SOLVABLE in size.
+    Zeros if the matrix is singular, and where a number is NaN or beyond SOLVABLE in size.
     matrix, right: by rows; without right-hand sides the determinant alone.
     """
     rows = [[*row, *more] for row, more in zip(matrix, right or [()] * len(matrix), strict=True)]

@@ -52,10 +52,7 @@ EDGES = {
     "KinType12XY": (lambda s: {**TYPE_12, "link_length_5": 700.0 + s}, "link 5"),
     "DeltaP3CType3": (lambda s: delta(340.0 + s), "reach the plate"),
     "TripodP3Z": (lambda s: rails(250.0 + s), "reach the plate"),
-    "TripodLinear": (
-        lambda s: {**UPRIGHT, "outer_radius": 460.0 + s},
-        "reach the plate",
-    ),
+    "TripodLinear": (lambda s: {**UPRIGHT, "outer_radius": 460.0 + s}, "reach the plate"),
 }
 
 

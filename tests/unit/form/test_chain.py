@@ -49,10 +49,7 @@ def test_it_is_the_same_machine(name: str) -> None:
     fixed = {p.symbol: p.nominal for p in form.parameters if p.fixed is not None}
     joints = {j.symbol: rng.uniform(-3.0, 3.0) for j in mechanism.joints}
     for seed in range(3):
-        stated, words = (
-            frame(reworded(mechanism, seed), given | joints),
-            frame(form.chain, given | fixed | joints),
-        )
+        stated, words = (frame(reworded(mechanism, seed), given | joints), frame(form.chain, given | fixed | joints))
         assert np.abs(stated[:3, :3] - words[:3, :3]).max() < 1e-12
         assert np.abs(stated[:3, 3] - words[:3, 3]).max() < 1e-11 * (1.0 + np.abs(stated[:3, 3]).max())
 

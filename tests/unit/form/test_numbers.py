@@ -84,10 +84,7 @@ def matrix(chain: Chain, values: dict[sp.Symbol, float]) -> sp.Matrix:
 
 
 EXACT = (pi / 4, 3 * pi / 4, pi / 3, -2 * pi / 3, 60 * DEGREE, 0.7853981634, pi / 7, sp.Integer(1), pi / 2)
-WRITTEN = st.one_of(
-    st.sampled_from(EXACT),
-    st.floats(-3.0, 3.0, allow_nan=False).map(lambda v: sp.Float(round(v, 3))),
-)
+WRITTEN = st.one_of(st.sampled_from(EXACT), st.floats(-3.0, 3.0, allow_nan=False).map(lambda v: sp.Float(round(v, 3))))
 SIZES = st.one_of(st.integers(-400, 400), st.floats(-2, 2).map(lambda v: round(v, 3)), st.just(Rational(1, 3)))
 
 

@@ -11,7 +11,7 @@ import sympy as sp
 from derive.ir.interpret import run
 from derive.ir.passes import hoist, normalise
 from derive.ir.primitives import Root
-from derive.ir.program import Call, Let, Output, Program, Require, Status, binds, reads, shared
+from derive.ir.program import Call, Let, Output, Program, Require, Status, shared
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import flag, real
 from derive.ir.verify import BrokenProgram, verify
@@ -65,16 +65,16 @@ def test_it_reads_arguments_and_constants() -> None:
     program = caller()
     (call, *_) = program.body
     assert isinstance(call, Call) and call.constants == (K,) and call.arguments == (C, Q)
-    assert reads(call) == {C, Q, K} and program.inputs == (C, K, Q)
+    assert call.reads() == {C, Q, K} and program.inputs == (C, K, Q)
 
 
 def test_only_what_is_read_is_bound() -> None:
     """A call binds only the results that something reads, and stays for its status where nothing reads any."""
     for outputs, bound in (((Y,), (X, Y)), ((), (X,))):
         call = caller(outputs=outputs).body[0]
-        assert binds(call) == bound  # the condition reads x
+        assert call.bound() == bound  # the condition reads x
     unread = normalise("p", (Call(hypotenuse(), ((A, C), (B, Q)), (X, Y)),), [Output("one", sp.Integer(1))])
-    assert binds(unread.body[0]) == ()
+    assert unread.body[0].bound() == ()
     assert run(unread, {n: np.array(-1.0) for n in ("c", "q", "k")})[1] == Status.IMPOSSIBLE  # it can still refuse
 
 

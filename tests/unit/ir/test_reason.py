@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
-from derive.ir.passes import hoist, normalise, untold, with_inputs
+from derive.ir.passes import hoist, normalise, with_inputs, without_reasons
 from derive.ir.primitives import Select
-from derive.ir.program import Let, Output, Program, Require, Status, reads, rewritten
+from derive.ir.program import Let, Output, Program, Require, Status, rewritten
 from derive.ir.program import reason_expressions as told
 from derive.ir.reason import Kind, OtherTurn, Reason, Subject, Unit, Why, about, about_joint
 from derive.ir.symbols import real
@@ -69,7 +69,7 @@ def test_amounts_read_constants_that_are_hoisted() -> None:
 def test_an_amount_does_not_count_as_read() -> None:
     """It is computed where the program refuses, and nowhere else."""
     statement = refusing(Y)
-    assert reads(statement) == {X}
+    assert statement.reads() == {X}
     assert list(told(statement)) == [Y]
 
 
@@ -94,7 +94,7 @@ def test_every_expression_of_a_reason_is_rewritten() -> None:
 
 def test_who_is_told_nothing_computes_nothing() -> None:
     """Without reasons a program neither computes amounts nor reads their inputs."""
-    program = untold(normalise("p", [Let(B, Select(sp.Gt(Y, 0), Y, X)), refusing(B)], OUT))
+    program = without_reasons(normalise("p", [Let(B, Select(sp.Gt(Y, 0), Y, X)), refusing(B)], OUT))
     assert amount_of(program) is None
     assert program.inputs == (X,)
     assert program.requires()[0].condition == sp.Gt(X, 0)

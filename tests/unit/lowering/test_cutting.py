@@ -9,12 +9,11 @@ import sympy as sp
 from derive.algebra.angle_sums import name_of
 from derive.equations.known_turns import Side
 from derive.ir.interpret import run
-from derive.ir.names import Names
 from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let, Output, Program
-from derive.ir.symbols import real
-from derive.lowering.lower import lowered
+from derive.ir.symbols import Names, real
+from derive.lowering.passes import lowered
 
 INPUTS = [real(f"measured_length_{i}") for i in range(150)]
 RESULT = real("result")

@@ -14,7 +14,7 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Status
 from derive.ir.symbols import real
-from derive.lowering.lower import lowered
+from derive.lowering.passes import lowered
 from derive.report.cost import cost_of
 
 A, B, C, D, F, G, H, X, Y, Z = (real(n) for n in ("a", "b", "c", "d", "f", "g", "h", "x", "y", "z"))
@@ -29,64 +29,11 @@ def lets_of(one: Program) -> dict[str, sp.Expr]:
     return {let.name.name: let.value for let in one.lets()}
 
 
-def test_what_depends_on_constants_alone_is_hoisted_under_words() -> None:
-    """Values of constants alone are computed once, under names made of words."""
-    one = program(Let(F, X * C * D + Y), Let(G, C - D + X), outputs=(F, G))
-    (shorter,), hoisted = lowered([one], CONSTANTS)
-    assert {str(let.name): let.value for let in hoisted} == {"c_times_d": C * D, "c_minus_d": C - D}
-    assert lets_of(shorter) == {"f": X * real("c_times_d") + Y, "g": X + real("c_minus_d")}
-
-
-def test_a_hoisted_value_keeps_the_name_that_it_had() -> None:
-    """A hoisted value that has a name keeps it."""
-    one = program(Let(F, C + D), Let(G, F * X), outputs=(G,))
-    (shorter,), hoisted = lowered([one], CONSTANTS)
-    assert [(let.name, let.value) for let in hoisted] == [(F, C + D)] and lets_of(shorter) == {"g": F * X}
-
-
-def test_a_constant_that_is_bound_elsewhere_is_read_by_its_name() -> None:
-    """Or by its negative; what is computed from it and other constants is hoisted all the same."""
-    known = [Let(real("gap"), D - C), Let(real("square"), C * C)]
-    one = program(Let(F, X * (C - D)), Let(G, Y + C * C * D), outputs=(F, G))
-    (shorter,), hoisted = lowered([one], (*CONSTANTS, "gap", "square"), known=known)
-    assert lets_of(shorter)["f"] == -X * real("gap")
-    assert {let.name for let in hoisted}.isdisjoint({let.name for let in known})
-    assert {s.name for s in shorter.inputs} <= {"x", "y", "gap", *(let.name.name for let in hoisted)}
-
-
 def test_two_programs_share_what_is_hoisted() -> None:
     """Equal constants of two programs are hoisted once."""
     first, second = program(Let(F, C * D * X), outputs=(F,)), program(Let(G, C * D * Y), outputs=(G,))
     _, hoisted = lowered([first, Program("other", second.inputs, second.body, second.outputs)], CONSTANTS)
     assert len(hoisted) == 1
-
-
-def test_a_common_divisor_divides_once_and_a_common_factor_multiplies_once() -> None:
-    """A sum whose terms share a divisor divides once, and one whose terms share a factor multiplies once."""
-    one = program(Let(F, X * A / B + Y * Z / B), Let(G, X * A - X * Z + Y), outputs=(F, G))
-    (shorter,), _ = lowered([one], ())
-    assert cost_of(shorter).divisions == 1 and cost_of(shorter).multiplications == 3
-
-
-def test_a_named_value_is_one_factor() -> None:
-    """What a rule of the solver named is not taken apart to find a factor in it."""
-    one = program(Let(F, X * A), Let(G, F + X * B), Let(H, F * Y), outputs=(G, H))
-    (shorter,), _ = lowered([one], ())
-    assert lets_of(shorter)["f"] == A * X and lets_of(shorter)["g"] == F + B * X
-
-
-def test_a_pair_of_terms_that_sums_have_in_common_is_added_once_whatever_its_sign() -> None:
-    """Two sums with the same pair of terms add the pair once, also with opposite signs."""
-    one = program(Let(F, X - Y + A), Let(G, Y - X + B), outputs=(F, G))
-    (shorter,), _ = lowered([one], ())
-    assert cost_of(shorter).additions == 3 and len(shorter.lets()) == 3
-
-
-def test_what_divides_three_values_is_inverted() -> None:
-    """A divisor of three values is inverted once, and multiplied."""
-    one = program(*(Let(name, value / A) for name, value in zip((F, G, H), (X, Y, Z), strict=True)), outputs=(F, G, H))
-    (shorter,), _ = lowered([one], ())
-    assert cost_of(shorter).divisions == 1 and cost_of(shorter).multiplications == 3
 
 
 def test_the_words_of_a_name_are_those_of_its_value() -> None:
@@ -110,25 +57,6 @@ def test_a_factor_takes_the_sign_that_leaves_no_minus_in_front() -> None:
     lets = (Let(F, -X * A - Y * B), Let(G, Y * A - X * B), Let(H, (F * Y - G * X) * A))
     (shorter,), _ = lowered([program(*lets, outputs=(F, G, H))], ())
     assert lets_of(shorter)["h"] == A * (F * Y - G * X)
-
-
-def test_an_equal_value_under_another_name_is_not_computed_again() -> None:
-    """A value and its negative under two names are computed once."""
-    one = program(Let(F, X - Y), Let(G, Y - X), Let(H, G * F), outputs=(F, G, H))
-    (shorter,), _ = lowered([one], ())
-    assert [let.name for let in shorter.lets()] == [F, H] and shorter.outputs[1].value == -F
-
-
-def test_a_condition_stays_where_it_was_and_tells_what_it_told() -> None:
-    """Lowering keeps the status and the note of a condition, and rewrites its expression."""
-    refusal = Require(sp.Gt(X * C * D, Y), Status.UNREACHABLE, "too far")
-    one = program(refusal, Let(F, X / Y), outputs=(F,))
-    (shorter,), _ = lowered([one], CONSTANTS)
-    (kept,) = shorter.requires()
-    assert kept.condition == sp.Gt(X * real("c_times_d"), Y) and (kept.otherwise, kept.note) == (
-        Status.UNREACHABLE,
-        "too far",
-    )
 
 
 def test_a_loop_keeps_what_moves_inside_and_what_stays_outside() -> None:

@@ -9,7 +9,7 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, ToReal, Wrap
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import Sign, count, real
-from derive.lowering.lower import lowered
+from derive.lowering.passes import STRAIGHT_LINE, lowered
 from derive.lowering.unrolling import unroll
 from derive.report.cost import cost_of
 from tests.unit.answers import same, values
@@ -25,7 +25,7 @@ def of(*lets: Let, outputs: tuple[sp.Symbol, ...]) -> Program:
 
 
 def shorter(program: Program, constants: str = "") -> Program:
-    (found,), _ = lowered([program], tuple(constants), modulo_turns=True, inverts=False)
+    (found,), _ = lowered([program], tuple(constants), STRAIGHT_LINE)
     return found
 
 
@@ -63,17 +63,3 @@ def test_minus_signs_that_meet_are_not_written() -> None:
     """S is read by its name, which is the negative of the product, and so is the angle."""
     program = of(Let(S, -X * Y), Let(ANGLE, Atan2(S, C)), Let(A, ANGLE + P), Let(B, S + 1), outputs=(A, B))
     assert values(shorter(program))["angle"] == Atan2(S, C)
-
-
-def test_an_opposite_has_no_name_of_its_own() -> None:
-    """The negative of a sum is read from the sum, and gets no name."""
-    program = of(Let(A, X - Y), Let(B, X - Y + P), Let(C, Y - X + Q), outputs=(A, B, C))
-    found = shorter(program)
-    assert cost_of(found).additions == 3
-    same(program, found)
-
-
-def test_a_division_is_as_good_as_a_product() -> None:
-    """Divisions of the trusted functions are not replaced by products with an inverse."""
-    program = of(Let(A, X / L), Let(B, Y / L), Let(C, P / L), outputs=(A, B, C))
-    assert cost_of(shorter(program)).divisions == 3

@@ -5,12 +5,12 @@ from __future__ import annotations
 import sympy as sp
 
 from derive.ir.passes import normalise
-from derive.ir.primitives import Root, Select
+from derive.ir.primitives import Select
 from derive.ir.program import Let, Output, Program, Require, Solve, Statement, Status
 from derive.ir.symbols import real
 from derive.ir.tree import If, Item
-from derive.lowering.scheduling import scheduled, structured
-from derive.report.cost import cost_of
+from derive.lowering.passes import structured
+from derive.lowering.scheduling import scheduled
 
 A, B, C, D, E, F, R, X, Y = (real(n) for n in "abcdefrxy")
 REGULAR, NEAR = sp.Gt(R, 1), sp.Lt(X, 2)
@@ -25,51 +25,6 @@ def shape(items: tuple[Item, ...]) -> list[object]:
         else:
             found.append(item.name if isinstance(item, Let) else "require")
     return found
-
-
-def test_choices_by_one_condition_are_gathered_with_what_they_alone_need() -> None:
-    """Choices by one condition become one IF, which holds the values that they alone read."""
-    body = [
-        Let(A, Root(X)),
-        Let(B, sp.sin(X)),
-        Let(C, Select(REGULAR, A / R, B)),
-        Let(D, X + 1),
-        Let(E, Select(REGULAR, D / R, B + 1)),
-    ]
-    assert shape(scheduled(body, [C, E])) == [(REGULAR, [A, C, D, E], [C, E])]
-
-
-def test_what_is_read_elsewhere_stays_before() -> None:
-    """A value that something outside of the choice reads stays in front of the IF."""
-    body = [Let(A, Root(X)), Let(C, Select(REGULAR, A, Y)), Let(E, Select(REGULAR, A + 1, Y + 1)), Let(F, A + C + E)]
-    assert shape(scheduled(body, [F])) == [A, (REGULAR, [C, E], [C, E]), F]
-
-
-def test_a_name_for_a_name_disappears_where_nobody_else_reads_it() -> None:
-    """A name that stands for another name on one side is replaced there."""
-    body = [
-        Let(A, Select(REGULAR, R, sp.Integer(1))),
-        Let(B, Select(REGULAR, X / A, Y)),
-        Let(C, Select(REGULAR, Y / A, X)),
-    ]
-    (arms,) = scheduled(body, [B, C])
-    assert isinstance(arms, If)
-    assert arms.holds == (Let(B, X / R), Let(C, Y / R))
-    assert arms.fails == (Let(B, Y), Let(C, X))
-
-
-def test_a_result_is_no_copy_of_what_its_side_computes() -> None:
-    """A side binds a result directly, without an intermediate name."""
-    body = [Let(A, sp.sin(X)), Let(B, Select(REGULAR, A, Y)), Let(C, Select(REGULAR, A + 1, X))]
-    (choice,) = scheduled(body, [B, C])
-    assert isinstance(choice, If) and choice.holds == (Let(B, sp.sin(X)), Let(C, B + 1))
-
-
-def test_a_negative_is_taken_from_what_has_been_computed() -> None:
-    """The negative of a result on the same side is read from that result."""
-    body = [Let(B, Select(REGULAR, X / R, Y)), Let(C, Select(REGULAR, -X / R, Y))]
-    (arms,) = scheduled(body, [B, C])
-    assert isinstance(arms, If) and arms.holds == (Let(B, X / R), Let(C, -B))
 
 
 def test_a_choice_that_a_number_decides_is_decided_with_it() -> None:
@@ -118,25 +73,8 @@ def test_what_only_second_sides_read_is_bound_on_each_of_them() -> None:
     assert shape(scheduled(body, [A, B, C, E])) == [(REGULAR, [A, B], [D, A, B]), (NEAR, [C, E], [D, C, E])]
 
 
-def test_a_single_choice_stays_an_expression() -> None:
-    """A single choice stays an expression, and is no IF."""
-    body = [Let(A, Root(X)), Let(B, Select(REGULAR, A, Y))]
-    assert scheduled(body, [B]) == tuple(body)
-
-
 def refusing(*body: Statement) -> Program:
     return normalise("branch", body, [Output("a", A), Output("b", B)])
-
-
-def test_choices_on_both_sides_of_a_refusal_are_one_where_the_first_stands() -> None:
-    """In a program whose conditions may move, choices on both sides of a refusal become one IF."""
-    program = refusing(
-        Let(A, Select(REGULAR, X, Y)),
-        Require(sp.Gt(A, 0), Status.UNREACHABLE),
-        Let(C, sp.sin(X)),
-        Let(B, Select(REGULAR, Y, C)),
-    )
-    assert shape(structured(program)) == [(REGULAR, [A, B], [A, B]), "require"]
 
 
 def test_a_choice_waits_for_what_it_needs() -> None:
@@ -160,12 +98,3 @@ def test_what_a_later_choice_needs_does_not_go_before_an_earlier_one() -> None:
         Let(E, Select(REGULAR, D, C + 1)),
     ]
     assert shape(scheduled(body, [A, B, D, E])) == [(NEAR, [A, D], [A, D]), (REGULAR, [B, E], [B, E])]
-
-
-def test_a_side_runs_alone() -> None:
-    """The tree gives what the program gives, and computes less."""
-    program = refusing(Let(C, sp.sin(Y)), Let(A, Select(REGULAR, X, C)), Let(B, Select(REGULAR, Y, C + 1)))
-    assert cost_of(program).trigonometric == 1
-    (choice,) = structured(program)
-    assert isinstance(choice, If) and choice.fails == (Let(A, sp.sin(Y)), Let(B, A + 1))
-    assert choice.holds == (Let(A, X), Let(B, Y))

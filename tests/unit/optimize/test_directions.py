@@ -8,14 +8,12 @@ import sympy as sp
 from derive.ir.constants import DEGREE
 from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, Wrap
-from derive.ir.program import Let, Output, Program, Require, Status
+from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import real
 from derive.ir.verify import BrokenProgram
 from derive.optimize.angle_addition import with_added_angles
-from derive.optimize.directions import plain_directions
-from derive.optimize.simplify import shorter
 from derive.optimize.without_periods import angles_modulo_turns
-from tests.unit.answers import same, values
+from tests.unit.answers import plain_directions, same, values
 
 C1, S1, C2, S2, C3, S3, C12, S12, C123, S123 = (
     real(f"{f}_{q}") for q in ("q1", "q2", "q3", "q12", "q123") for f in ("cos", "sin")
@@ -46,17 +44,6 @@ DIRECTION = (
 SUM = (Let(C12, C1 * C2 - S1 * S2, "by the sum"), Let(S12, S1 * C2 + C1 * S2))
 
 
-def test_nothing_is_divided_for_a_direction() -> None:
-    """An angle is taken from a direction that is not divided by its length."""
-    program = of(*DIRECTION, axis(AXIS1, S1, C1), outputs=(AXIS1,))
-    found = values(plain_directions(program))
-    assert found["direction_x_q1"] == Select(REGULAR, U, sp.cos(T)) and found["direction_y_q1"] == Select(
-        REGULAR, V, sp.sin(T)
-    )
-    assert "l" not in found and "cos_q1" not in found
-    same(program, plain_directions(program))
-
-
 def test_nor_for_what_is_made_of_it_in_proportion() -> None:
     """The angle of a vector that is proportional to the direction needs no division, either."""
     made = (Let(real("made_y"), X * C1 - Y * S1), Let(real("made_x"), X * S1 + B * C1))
@@ -74,13 +61,6 @@ def test_what_else_is_made_of_it_keeps_the_division(read: sp.Expr) -> None:
     """The division stays where another value reads sine or cosine."""
     program = of(*DIRECTION, axis(AXIS1, S1, C1), Let(E, read), outputs=(AXIS1, E))
     assert "l" in values(plain_directions(program))
-
-
-def test_a_condition_on_it_keeps_the_division() -> None:
-    """The division stays where a condition reads the cosine."""
-    body = (*DIRECTION, axis(AXIS1, S1, C1), Require(sp.Ge(C1, 0), Status.UNREACHABLE))
-    program = normalise("p", body, [Output("o", AXIS1)])
-    assert plain_directions(program) == program
 
 
 def test_a_divisor_that_is_no_length_is_kept() -> None:
@@ -136,34 +116,6 @@ def test_a_rotated_direction_that_something_else_reads_is_left_alone() -> None:
     assert plain_directions(program) == program
 
 
-def test_what_a_constant_angle_turned_is_turned_back() -> None:
-    """The angle of a direction that a constant angle rotates is a sum with that constant."""
-    lets = (
-        Let(E, Root(A**2 + B**2)),
-        Let(C1, A / E * X - B / E * Y),
-        Let(S1, B / E * X + A / E * Y),
-        Let(U, B * C1 - A * S1),
-        Let(V, R + A * C1 + B * S1),
-        Let(T, A * C1 - B * S1),
-    )
-    program = of(*lets, outputs=(C1, S1, U, V, T))
-    found = values(shorter(program))
-    assert found["u"] == -E * Y and found["v"] == R + E * X
-    assert found["t"] == A * C1 - B * S1  # turned once more it gets no shorter
-    same(program, shorter(program))
-
-
-def test_a_name_that_is_read_as_its_negative_is_bound_as_that() -> None:
-    """A value that is read only as its negative is computed as the negative."""
-    program = of(Let(U, -X - Y, "the sum"), Let(V, -U), Let(R, V * V + X), outputs=(R,))
-    found = shorter(program)
-    assert values(found)["v"] == X + Y and "u" not in values(found)
-    assert found.lets()[0].note == "the sum"
-    same(program, found)
-    twice = of(Let(U, -X - Y), Let(V, -U), Let(R, V * U), outputs=(R,))
-    assert shorter(twice) == twice
-
-
 def test_angles_first_where_nothing_reads_sines_but_the_sum() -> None:
     """Where only a sum of angles reads sines and cosines, the angles are added instead."""
     lets = (
@@ -216,13 +168,6 @@ def test_turns_count_wherever_more_than_a_sine_or_the_nearest_turn_is_taken() ->
         with pytest.raises(BrokenProgram):
             of(*bound, Let(R, value), outputs=(R,))
     assert angles_modulo_turns(of(*bound, outputs=(other,))) == {angle}
-
-
-def test_a_chain_of_negatives_is_bound_throughout() -> None:
-    """Negatives of negatives are resolved, and every name that is read is bound."""
-    program = of(Let(U, -X - Y), Let(V, -U), Let(T, -V), Let(R, T * T + X), outputs=(R,))
-    assert shorter(program).inputs == (X, Y)
-    same(program, shorter(program))
 
 
 def test_a_divisor_that_can_be_negative_turns_the_angle() -> None:

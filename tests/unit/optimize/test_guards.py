@@ -37,40 +37,11 @@ def test_a_bound_that_may_be_positive_is_always_asked(bound: sp.Expr) -> None:
     assert guarded(body) == body
 
 
-def test_what_is_known_of_a_constant_decides() -> None:
-    """The sign of a constant, known from its definition, decides whether the condition is implied."""
-    body = (SQUARE, asked(-D), ROOT)
-    assert isinstance(guarded(body, [Let(D, Y**2)])[1], If) and guarded(body, [Let(D, Y**3)]) == body
-
-
-def test_a_root_that_is_known_later_is_not_taken_before_the_condition() -> None:
-    """A root is not taken before the values that its statement reads, and conditions keep their order."""
-    body = (SQUARE, asked(sp.Integer(-1)), Let(B, sp.sin(X)), Let(A, B * Root(S)))
-    assert guarded(body) == body
-    between = (SQUARE, asked(sp.Integer(-1)), Require(sp.Gt(X, 1), Status.UNREACHABLE), ROOT)
-    assert isinstance(guarded(between)[1], If) and guarded(between)[2] == between[2]
-
-
-def test_a_root_that_something_is_divided_by_is_taken_as_it_was() -> None:
-    """A root in a divisor stays as it is."""
-    body = (SQUARE, asked(sp.Integer(-1)), Let(A, R / Root(S)))
-    assert guarded(body) == body
-
-
 def test_another_comparison_is_always_asked() -> None:
     """A condition that a positive radicand does not imply is always tested."""
     for condition in (sp.Le(S, 1), sp.Gt(S, -1), sp.Ge(S + X, -1)):
         body = (SQUARE, Require(condition, Status.UNREACHABLE), ROOT)
         assert guarded(body) == body
-
-
-def test_as_it_is_written() -> None:
-    """The printed text tests the radicand first, and the bound only where the radicand is not positive."""
-    lines = item_lines(guarded([asked(sp.Float("-1e-12")), ROOT]), Refusals(lambda _: "None"), ScalarPrinter())
-    assert lines == [
-        "if s > 0.0:", "    a = sqrt(s)*r", "else:",
-        "    # out of reach", "    if not (s >= -1e-12):", "        return None", "    a = 0.0",
-    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("square", [4.0, 0.0, -1e-13, -1.0, float("nan"), float("inf")])

@@ -9,8 +9,8 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.ir.primitives import Root, Select
-from derive.ir.program import Let, Require, Status
+from derive.ir.primitives import Select
+from derive.ir.program import Let
 from derive.ir.symbols import names_in, real
 from derive.ir.tree import If, Item
 from derive.lowering.scheduling import scheduled
@@ -49,50 +49,6 @@ def bound_for_sure(items: Iterable[Item], known: frozenset[sp.Symbol]) -> frozen
     return known
 
 
-def names(items: Iterable[Item]) -> list[sp.Symbol]:
-    return [item.name for item in items if isinstance(item, Let)]
-
-
-def test_the_first_side_binds_nothing_for_second_sides_alone() -> None:
-    """A value that only the second side of a later choice reads is bound on the second side alone, as that choice."""
-    body = [
-        Let(P, Select(REGULAR, X, sp.sin(Y))),
-        Let(Q, Select(REGULAR, -X, sp.cos(Y))),
-        Let(A, Root(P)),
-        Let(B, Select(REGULAR, A + 1, Root(Q))),
-        Let(C, Select(REGULAR, A + 2, Root(Q) + Q)),
-    ]
-    (only,) = joined(scheduled(body, [A, B, C]), [A, B, C])
-    assert isinstance(only, If)
-    assert names(only.holds) == [P, A, B, C]
-    assert set(names(only.fails)) == {P, Q, A, B, C} and len(names(only.fails)) == 5
-    assert set(only.names) == {A, B, C}
-
-
-def test_a_choice_by_a_lower_bound_is_decided_where_the_higher_holds() -> None:
-    """Above 2 is above 1; below 2 the second choice is still to be made."""
-    first = If(REGULAR, (Let(A, X), Let(B, -X)), (Let(A, Y), Let(B, Y)), (A, B))
-    later = If(NEAR, (Let(C, A),), (Let(C, B),), (C,))
-    (only,) = joined([first, later], [C])
-    assert isinstance(only, If)
-    assert names(only.holds) == [A, C]
-    assert only.fails[2:] == (later,)
-
-
-def test_what_else_is_read_stays_where_it_is() -> None:
-    """Choices are not joined where the first side's values are read otherwise, at the end, or where a call refuses."""
-    first = If(REGULAR, (Let(A, X),), (Let(A, Y),), (A,))
-    later = If(REGULAR, (Let(B, X),), (Let(B, A + 1),), (B,))
-    refusal = Require(sp.Gt(X, 0), Status.UNREACHABLE)
-    for items, wanted in (
-        ([first, Let(C, A), later], [B, C]),
-        ([first, later], [A, B]),
-        ([first, refusal, later], [B]),
-        ([first, If(sp.Gt(X, 2), (Let(B, X),), (Let(B, A + 1),), (B,))], [B]),
-    ):
-        assert joined(items, wanted) == tuple(items)
-
-
 def test_another_branch_has_values_of_its_own() -> None:
     """Where the names are bound once more, and the condition reads another value, it is another choice."""
     first = If(REGULAR, (Let(A, X), Let(B, -X)), (Let(A, Y), Let(B, Y)), (A, B))
@@ -104,14 +60,6 @@ def test_another_branch_has_values_of_its_own() -> None:
         values = {X: sp.Integer(7), Y: sp.Integer(8), R: sp.Integer(r)}
         before, after = ran([first, later, *again], values), ran(found, values)
         assert {n: before[n] for n in (C, Q)} == {n: after[n] for n in (C, Q)}
-
-
-def test_what_stands_between_and_needs_no_choice_stands_before() -> None:
-    """A statement between the two that reads nothing of the first stands in front of both, once."""
-    first = If(REGULAR, (Let(A, X), Let(B, -X)), (Let(A, Y), Let(B, Y)), (A, B))
-    later = If(REGULAR, (Let(C, A),), (Let(C, B),), (C,))
-    between = Let(P, Root(X))
-    assert joined([first, between, later], [C, P])[0] == between
 
 
 @st.composite

@@ -27,69 +27,16 @@ def values(program: Program) -> dict[str, sp.Expr]:
     return {let.name.name: let.value for let in program.lets()}
 
 
-def test_an_alias_is_folded() -> None:
-    """A name for another name is replaced by that name everywhere."""
-    program = normalise("p", [Let(A, X), Let(B, A + 1), Require(sp.Gt(A, 0), Status.OK)], [Output("o", A * B)])
-    assert values(program) == {"b": X + 1}
-    assert program.requires()[0].condition == sp.Gt(X, 0)
-    assert program.outputs == (Output("o", X * B),)
-
-
-def test_an_alias_of_an_alias_and_a_number_are_folded() -> None:
-    """Chains of names, and names of numbers, are replaced."""
-    program = normalise("p", [Let(A, X), Let(B, A), Let(C, sp.Integer(2))], [Output("o", B * C)])
-    assert program.body == ()
-    assert program.outputs[0].value == 2 * X
-
-
-def test_the_same_let_again_is_dropped() -> None:
-    """A statement that repeats an earlier one is dropped."""
-    program = normalise("p", [Let(A, X + 1), Let(B, A * 2), Let(A, X + 1)], [Output("o", A + B)])
-    assert [let.name for let in program.lets()] == [A, B]
-
-
 def test_another_value_under_the_same_name_is_refused() -> None:
     """Two values under one name raise `BrokenProgram`."""
     with pytest.raises(BrokenProgram, match=r"a is bound twice, to x \+ 1 and to x \+ 2"):
         normalise("p", [Let(A, X + 1), Let(A, X + 2)], [Output("o", A)])
 
 
-def test_what_nothing_needs_disappears() -> None:
-    """A value that nothing reads is dropped, and so are its inputs."""
-    program = normalise("p", [Let(A, X + 1), Let(B, A + Y), Let(C, X * 2)], [Output("o", C)])
-    assert body(program) == [C]
-    assert program.inputs == (X,)
-
-
-def test_a_let_stands_just_before_its_first_use() -> None:
-    """Every value is bound just before the first statement that reads it."""
-    statements = [Let(A, X + 1), Let(B, Y + 1), FAR, Let(C, A * 2), Require(sp.Gt(C, 0), Status.OK), Let(D, B * 3)]
-    program = normalise("p", statements, [Output("o", D)])
-    assert body(program) == [FAR.condition, A, C, sp.Gt(C, 0), B, D]
-
-
-def test_conditions_keep_their_order() -> None:
-    """Conditions stay in the order in which they were written."""
-    conditions = [Require(sp.Gt(s, 0), status) for s, status in ((Y, Status.BAD_INPUT), (X, Status.UNREACHABLE))]
-    assert normalise("p", conditions, []).requires() == tuple(conditions)
-
-
-def test_statements_may_come_in_any_order() -> None:
-    """Statements are put into an order in which every value is bound before it is read."""
-    program = normalise("p", [Let(C, B + 1), Let(B, A + 1), Let(A, X + 1)], [Output("o", C)])
-    assert body(program) == [A, B, C]
-
-
 def test_a_circle_is_refused() -> None:
     """Values that need each other raise `BrokenProgram`."""
     with pytest.raises(BrokenProgram, match="is read before it is bound"):
         normalise("p", [Let(A, B + 1), Let(B, A + 1)], [Output("o", A)])
-
-
-def test_inputs_are_what_is_free_in_the_order_of_their_names() -> None:
-    """The inputs are the names that no statement binds, in alphabetical order."""
-    program = normalise("p", [Let(D, C + X)], [Output("o", D + A * DEGREE)])
-    assert program.inputs == (A, C, X)
 
 
 def test_a_name_is_a_name_whatever_is_known_of_its_sign() -> None:
@@ -129,14 +76,6 @@ def test_hoisting_moves_what_depends_on_constants_alone() -> None:
     assert lowered_second.outputs == (Output("o", A),)
     assert lowered_first.inputs == (A, X)
     assert lowered_second.inputs == (A, X, Y)
-
-
-def test_hoisting_goes_through_lets_and_conditions() -> None:
-    """Hoisting follows chains of values, and leaves conditions where they are."""
-    program = normalise("p", [Let(A, C * 2), Let(B, A + 1), Require(sp.Gt(B, 0), Status.OK)], [Output("o", B + X)])
-    (lowered,), hoisted = hoist([program], ["c"])
-    assert [let.name for let in hoisted] == [A, B]
-    assert body(lowered) == [sp.Gt(B, 0)]
 
 
 def test_a_hoisted_name_makes_way_for_others() -> None:

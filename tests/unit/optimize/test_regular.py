@@ -14,7 +14,7 @@ from derive.description.mechanism import Mechanism
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
-from derive.ir.primitives import Atan2, NearestPeriod, Root, Select
+from derive.ir.primitives import Atan2, NearestPeriod, Select
 from derive.ir.program import Call, FindRoot, Iterate, Let, Output, Program, Require, Solve, Status
 from derive.ir.symbols import flag, real
 from derive.kinematics.kinematics import Kinematics
@@ -38,28 +38,6 @@ def seen(program: Program) -> Program:
 
 def conditions(program: Program) -> list[sp.Basic]:
     return [r.condition for r in program.requires()]
-
-
-def test_first_sides() -> None:
-    """A divisor that a choice keeps from zero is plain, and the condition is asked."""
-    is_long = sp.Gt(LENGTH, 0)
-    one = normalise(
-        "p",
-        [Let(LENGTH, Root(X**2 + Y**2)), Let(AXIS, X / Select(is_long, LENGTH, 1))],
-        [Output("axis", AXIS)],
-    )
-    found = regular(one, ())
-    assert found is not None
-    assert [let.value for let in found.lets()] == [Root(X**2 + Y**2), X / LENGTH]
-    assert conditions(found) == [is_long]
-
-
-def test_what_nothing_needs_is_not_asked() -> None:
-    """The condition of a choice that stands on a second side alone."""
-    inner = Select(sp.Gt(Y, 0), Y, -Y)
-    one = normalise("p", [Let(AXIS, Select(sp.Gt(X, 1), X, inner))], [Output("axis", AXIS)])
-    found = regular(one, ())
-    assert found is not None and conditions(found) == [sp.Gt(X, 1)] and found.outputs[0].value in (X, AXIS)
 
 
 def test_a_choice_of_the_machine_stays() -> None:

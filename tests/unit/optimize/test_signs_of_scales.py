@@ -12,9 +12,9 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, ToReal
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import Sign, count, real
-from derive.lowering.lower import lowered
+from derive.lowering.passes import STRAIGHT_LINE, lowered
 from derive.lowering.unrolling import unroll
-from derive.optimize.directions import plain_directions
+from tests.unit.answers import plain_directions
 
 X, Y, K, COS, SIN, LENGTH, DIVISOR, AXIS = map(real, ("x", "y", "k", "cos_q", "sin_q", "length", "divisor", "axis_q"))
 RNG = np.random.default_rng(5)
@@ -30,7 +30,7 @@ def _scaled(length: sp.Expr, condition: sp.Basic) -> Program:
 
 def mirrored(program: Program) -> Program:
     """The program as a graph, of whose angles the turn is free."""
-    (changed,), _ = lowered([program], (), modulo_turns=True, inverts=False)
+    (changed,), _ = lowered([program], (), STRAIGHT_LINE)
     return changed
 
 

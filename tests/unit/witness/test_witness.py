@@ -75,10 +75,7 @@ WRONG: dict[str, tuple[str, Callable[[Kinematics], Kinematics]]] = {
         "forward kinematics: error",
         lambda k: replace(k, orientation=changed(k.orientation, "r12", lambda r: -r)),
     ),
-    "another image": (
-        "orientation image: error",
-        lambda k: replace(k, image=changed(k.image, "rot_z", lambda r: -r)),
-    ),
+    "another image": ("orientation image: error", lambda k: replace(k, image=changed(k.image, "rot_z", lambda r: -r))),
     "another projection": (
         "projection of the orientation: error",
         lambda k: replace(k, projection=changed(k.projection or k.image, "r21", lambda r: -r)),
@@ -115,10 +112,7 @@ WRONG: dict[str, tuple[str, Callable[[Kinematics], Kinematics]]] = {
         "Jacobian: error",
         lambda k: replace(k, jacobian=changed(k.jacobian, "j34", lambda j: -j)),
     ),
-    "a row of the Jacobian": (
-        "the Jacobian has the rows",
-        lambda k: replace(k, rows=("x", "y", "z", "turn x")),
-    ),
+    "a row of the Jacobian": ("the Jacobian has the rows", lambda k: replace(k, rows=("x", "y", "z", "turn x"))),
     "another exponent": (
         "singularity margins",
         lambda k: replace(k, margins=tuple(replace(m, exponent=2) for m in k.margins)),

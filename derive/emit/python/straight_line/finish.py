@@ -27,7 +27,7 @@ class Function:
 def finish(kin: Kinematics, trusted: Program) -> Function | None:
     """The function that turns axes from trusted input into answers: it chooses turns and tests limits.
 
-    trusted: one branch for such input. None where an axis value alone determines neither its turn nor its limits: with
+    trusted: one branch for such input. None if an axis value alone determines neither its turn nor its limits: with
     gear coupling the reference is compared joint by joint, and a limited quantity depends on several axes.
     """
     if kin.limited or any(joint.coupling != 0 or joint.is_geared for joint in kin.period_joints):

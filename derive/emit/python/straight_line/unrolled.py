@@ -20,33 +20,19 @@ from derive.emit.interface import POSITION, ROTATION
 from derive.emit.python.layout import assigned, repeated, tuple_of
 from derive.emit.python.methods import branch
 from derive.emit.python.printer import ScalarPrinter, primitives_in, spelled
-from derive.emit.python.program import (
-    Argument,
-    Method,
-    constant_lines,
-    constants_of,
-    item_lines,
-    let_lines,
-    unpacked,
-    without_conversions,
-)
+from derive.emit.python.program import Argument, Method, constant_lines, constants_of, item_lines, let_lines, unpacked
 from derive.emit.python.refusal import Refusals, status_of
 from derive.emit.python.straight_line.finish import Function, finish
-from derive.ir.passes import untold
+from derive.ir.passes import without_reasons
 from derive.ir.program import Let, Program, Status
-from derive.ir.symbols import REFUSAL, choices, replaced, suffixed, symbols_of
-from derive.ir.tree import Item
+from derive.ir.symbols import REFUSAL, Sign, choices, replaced, suffixed, symbols_of
+from derive.ir.tree import Item, Tree
 from derive.kinematics.kinematics import Kinematics
-from derive.lowering.scheduling import scheduled
-from derive.optimize.coalesce import coalesced
-from derive.optimize.guards import guarded
-from derive.optimize.inline import inlined, squares_where_read
-from derive.optimize.joining import joined
-from derive.optimize.without_periods import without_chosen_turns
+from derive.lowering.passes import ANY_TURN, NOTHING, UNCONVERTED, WITHOUT_SQUARES, WRITTEN_SHORT, Given, applied
 
 NO_OFFSETS = "no_offsets"
 """Whether all axes have their zero where the joints have it, so that no offset is added."""
-_SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True, is_trusted=True)
+_SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True, for_valid_input=True)
 _FRAME = Argument("frame", "PlainFrame", (POSITION, ROTATION))
 _REFUSED = "refused"
 """The value in place of a refusal, by the number of its status: None, unless a caller asks for the status."""
@@ -88,18 +74,14 @@ def is_trusted(kin: Kinematics) -> bool:
 
 
 def unrolled(kin: Kinematics) -> Unrolled:
-    """The functions on plain numbers. Where digits may be lost they have no answer and return an empty tuple: there the
+    """The functions on plain numbers. If digits may be lost they have no answer and return an empty tuple: there the
     branches are solved one after the other.
     """
     lines_of, kin = straight_lines(kin), without_doubts(kin)
     methods, parts = _methods(kin, lines_of), lines_of.parts
     known = (*kin.setup.lets(), *parts)
     last = finish(kin, lines_of.trusted)
-    functions = (
-        _directions(kin, methods[0], known),
-        _direction(kin, methods[1], known),
-        *((last,) if last else ()),
-    )
+    functions = (_directions(kin, methods[0], known), _direction(kin, methods[1], known), *((last,) if last else ()))
     read = {c for f in functions for c in f.constants} | {s.name for p in parts for s in symbols_of(p.value)}
     taken = sorted(read - {p.name.name for p in parts})
     lines = [line for part in parts for line in let_lines(part, _SCALAR)]
@@ -112,8 +94,8 @@ def unrolled(kin: Kinematics) -> Unrolled:
 
 def trusted_branch(kin: Kinematics) -> Function:
     """The method for trusted input of a machine without branches that never loses digits."""
-    kin = replace(kin, branch=untold(kin.branch))
-    method = _single(kin, without_chosen_turns(trusted(kin)))
+    kin = replace(kin, branch=without_reasons(kin.branch))
+    method = _single(kin, applied(ANY_TURN, trusted(kin), NOTHING))
     written = _Written.of(method, kin.setup.lets())
     values = list(written.values.values())
     lines = [*constant_lines(written.method), *item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)]
@@ -122,7 +104,7 @@ def trusted_branch(kin: Kinematics) -> Function:
 
 def _methods(kin: Kinematics, found: StraightLines) -> tuple[Method, Method]:
     text = "Every slot, the axes in some turn, of input that is trusted."
-    every, one = map(squares_where_read, (found.every, found.one))
+    every, one = (applied(WITHOUT_SQUARES, program, NOTHING) for program in (found.every, found.one))
     return (
         Method("branches", text, every, (_FRAME, _optional(kin), _WHERE_REFUSED), "tuple[Any, ...]", ()),
         _single(kin, one),
@@ -132,14 +114,7 @@ def _methods(kin: Kinematics, found: StraightLines) -> tuple[Method, Method]:
 def _single(kin: Kinematics, program: Program) -> Method:
     sign_values = next(a for a in branch(kin).arguments if a.name == "signs")
     text = "One branch, the axes in some turn, of input that is trusted."
-    return Method(
-        "branch",
-        text,
-        program,
-        (_FRAME, sign_values, _optional(kin)),
-        "Reals | None",
-        (),
-    )
+    return Method("branch", text, program, (_FRAME, sign_values, _optional(kin)), "Reals | None", ())
 
 
 def _optional(kin: Kinematics) -> Argument:
@@ -158,14 +133,13 @@ def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Functi
     """All branches, statements one branch after the other."""
     count = 2 ** len(kin.branches)
     refusals = _refusals(lambda status: repeated(f"{_REFUSED}[{status_of(status)}]", count))
-    written = _Written.of(method, known)
-    items, shorter = coalesced(written.items, list(written.values.values()), signs(kin))
-    values = {name: replaced(value, dict(shorter)) for name, value in written.values.items()}
-    return written.function([*item_lines(items, refusals, _DIRECTIONS), f"return {_slots(kin, values)}"])
+    written = _Written.of(method, known, signs(kin))
+    lines = item_lines(written.items, refusals, _DIRECTIONS)
+    return written.function([*lines, f"return {_slots(kin, written.values)}"])
 
 
 def _direction(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
-    """One branch; where all offsets are zero, a second return statement leaves them out."""
+    """One branch; if all offsets are zero, a second return statement leaves them out."""
     written = _Written.of(method, known)
     lines = item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)
     zero = {joint.offset: sp.Integer(0) for joint in kin.mechanism.joints}
@@ -190,13 +164,11 @@ class _Written:
     """The outputs."""
 
     @classmethod
-    def of(cls, method: Method, known: Sequence[Let]) -> _Written:
-        """known: the bindings of the constants that it reads."""
-        method = replace(method, program=without_conversions(method.program))
-        wanted = [o.value for o in method.program.outputs]
-        items = joined(scheduled(guarded(method.program.body, known), wanted), wanted)
-        items, values = inlined(items, wanted)
-        return cls(method, items, {o.name: replaced(o.value, values) for o in method.program.outputs})
+    def of(cls, method: Method, known: Sequence[Let], signs: Sequence[Sign] = ()) -> _Written:
+        """known: the bindings of the constants that it reads; signs: those of the branches that it holds."""
+        method = replace(method, program=applied(UNCONVERTED, method.program, NOTHING))
+        tree = applied(WRITTEN_SHORT, Tree.of(method.program), Given(known=tuple(known), signs=tuple(signs)))
+        return cls(method, tree.items, {o.name: o.value for o in tree.program.outputs})
 
     def function(self, body: list[str]) -> Function:
         """The function with this body."""

@@ -38,7 +38,7 @@ class Amplitude:
     """Whether h may be negative."""
     is_fixed: bool = False
     """Whether h never vanishes, so that it divides as it is."""
-    told: sp.Expr | None = None
+    shown_factors: sp.Expr | None = None
     """(h - e)(h + e) made of lengths, where the factors are not: the amount of the reason is computed from it."""
     aimable: sp.Basic | None = None
     """Whether h is long enough to determine the angle, where joints can make it vanish; else None."""
@@ -78,7 +78,7 @@ def amplitude_of(problem: Problem, equation: Equation, angle: sp.Symbol, row: Ro
     else:
         scale = equation.scales.get(angle, common * unit)
         divisor, aimable, guard = _vanishing(effective, (common, unit), angle, is_moved=is_moved)
-    right, factors, told = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
+    right, factors, shown_factors = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
     units = (along / divisor, across / divisor)
     size, left = common * divisor, right.xreplace({divisor: effective})
     return Amplitude(
@@ -90,7 +90,7 @@ def amplitude_of(problem: Problem, equation: Equation, angle: sp.Symbol, row: Ro
         determinant,
         scale,
         factors,
-        told=told,
+        shown_factors=shown_factors,
         aimable=aimable,
         left=left,
         square=common**2 * square if _has_no_unit(problem, common**2 * written_out) else None,

@@ -1,6 +1,6 @@
 """Apart:  two equations between which a length was eliminated, where that length drops out of both.
 
-The difference of two equations says nothing where both coefficients of the eliminated length vanish: where one slide is
+The difference of two equations says nothing if both coefficients of the eliminated length vanish: where one slide is
 parallel to another. There the two equations are a pair for the angle u: a1 cos u + b1 sin u = e1,
 a2 cos u + b2 sin u = e2. One root. Where their determinant vanishes, too, nothing determines u.
 """

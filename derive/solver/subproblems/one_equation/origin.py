@@ -2,7 +2,7 @@
 increment.
 
 Some machines state their lengths by the angles at which they stand at the origin, so that lengths are roots. At the
-origin these roots cancel, and e is a multiple of the arm that turns. Where the arm is short, the single terms of e are
+origin these roots cancel, and e is a multiple of the arm that turns. If the arm is short, the single terms of e are
 larger than e by the ratio of rod and arm, and their sum loses as many digits. So e is written as its value at the
 origin plus what the commanded position adds. Let v be the known names that depend on the position, and v0 their values
 at the origin. For e of at most the second degree in v the trapezoidal rule is exact: e = e(v0) + sum (v - v0) (e_v(v) +
@@ -18,7 +18,7 @@ from derive.equations.problem import Equation, Problem
 
 
 def from_origin(problem: Problem, equation: Equation, value: sp.Expr, arm: sp.Expr) -> sp.Expr | None:
-    """The value in this form, where its roots cancel to a multiple of the arm at the origin; None where they do not."""
+    """The value in this form, where its roots cancel to a multiple of the arm at the origin; None if they do not."""
     zero = {c: sp.Integer(0) for c in problem.position}
     moving = {c: c for c in problem.position} | {
         let.name: let.value for let in equation.lets if let.value.free_symbols & zero.keys()

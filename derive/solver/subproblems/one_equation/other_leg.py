@@ -1,7 +1,7 @@
 """The other leg of a swing, from the two equations of the other coordinates.
 
 A step that solves a cos u + b sin u = e for u takes the other leg, a sin u - b cos u, from h^2 - e^2, where h is the
-length of (a, b). Where a chain is nearly stretched along the coordinate of this equation, both are as long as the
+length of (a, b). If a chain is nearly stretched along the coordinate of this equation, both are as long as the
 chain, and their difference has lost the digits of the leg. The squares of the other two coordinates add up to
 H^2 = leg^2 + d^2, in which H is commanded and d known: so leg^2 = (H - d)(H + d), with all digits of H. Where H is
 longer than h, leg^2 = (h - e)(h + e) keeps more digits, and is taken.
@@ -31,7 +31,7 @@ Leg = tuple[sp.Expr, sp.Expr, tuple[Let, ...]]
 def other_leg(
     problem: Problem, equation: Equation, angle: sp.Symbol, leg: sp.Expr, known: tuple[Let, ...]
 ) -> Leg | None:
-    """H and d of this leg; None where no two other equations give them. known: the bindings of the step so far."""
+    """H and d of this leg; None if no two other equations give them. known: the bindings of the step so far."""
     others = [e for e in problem.equations if e.is_length and e.label != equation.label]
     found = (_of_pair(problem, pair, angle, leg, known) for pair in combinations(others, 2))
     return next(filter(None, found), None)
@@ -79,7 +79,7 @@ def _of_pair(
 
 
 def _root_of(problem: Problem, square: sp.Expr) -> sp.Expr | None:
-    """The root of the square of a product of known values; None where the expression is no such square."""
+    """The root of the square of a product of known values; None if the expression is no such square."""
     if problem.unknowns_of(square) or not may_be_square(square, problem.units):
         return None
     for known in problem.units:  # the normal form has 1 - cosine² for sine²

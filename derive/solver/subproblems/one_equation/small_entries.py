@@ -31,7 +31,7 @@ def with_small_entries(
     """The factors 1 - cosine and 1 + cosine, times a scale, and the statements that bind the names in them. A factor
     that is a multiple of one less an entry is computed from the other entries of its column.
 
-    square: the square of the arm with which the entry is compared, by sines and cosines alone; None where it has none.
+    square: the square of the arm with which the entry is compared, by sines and cosines alone; None if it has none.
     """
     column = equation.column
     if column is None:
@@ -51,22 +51,24 @@ def with_small_entries(
 
 
 def _ends(column: Column, factors: Factors) -> tuple[Factors, Factors] | None:
-    """(h, entry) for h - entry and (h, -entry) for h + entry, or the reverse; None where the factors are others."""
+    """(h, entry) for h - entry and (h, -entry) for h + entry, or the reverse; None if the factors are others."""
     less, more = (sp.expand(f) for f in factors)
-    arm, told = (more + less) / 2, (more - less) / 2
-    if told not in (column.entry, -column.entry) or column.entry.free_symbols & arm.free_symbols:
+    arm, known_entry = (more + less) / 2, (more - less) / 2
+    if known_entry not in (column.entry, -column.entry) or column.entry.free_symbols & arm.free_symbols:
         return None
-    return (arm, told), (arm, -told)
+    return (arm, known_entry), (arm, -known_entry)
 
 
-def _with_arm(column: Column, missing: sp.Expr, arm: sp.Expr, told: sp.Expr) -> sp.Expr:
+def _with_arm(column: Column, missing: sp.Expr, arm: sp.Expr, known_entry: sp.Expr) -> sp.Expr:
     """h - entry, with h^2 = 1 - missing: near zero (the others - missing) / (h + entry)."""
-    is_near = sp.Gt(told, _LARGE * column.size)
-    return Select(is_near, (column.others - missing) / (arm + Select(is_near, told, sp.Integer(1))), arm - told)
+    is_near = sp.Gt(known_entry, _LARGE * column.size)
+    return Select(
+        is_near, (column.others - missing) / (arm + Select(is_near, known_entry, sp.Integer(1))), arm - known_entry
+    )
 
 
 def _less_than_one(problem: Problem, square: sp.Expr) -> sp.Expr | None:
-    """One less the square of an arm as a sum of squares, which keeps its digits near zero; None where it is none."""
+    """One less the square of an arm as a sum of squares, which keeps its digits near zero; None if it is none."""
     less = problem.reduce(1 - square)
     number, rest = sp.expand(less).as_coeff_Add()
     units = [cosine(a) ** 2 + sine(a) ** 2 for a in problem.units if less.free_symbols & {cosine(a), sine(a)}]

@@ -37,7 +37,7 @@ class Triangle:
 
 
 def triangle_of(problem: Problem, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr, sp.Expr]) -> Triangle | None:
-    """The triangle in which a right side is the law of cosines; None where the square of the third side is not simpler
+    """The triangle in which a right side is the law of cosines; None if the square of the third side is not simpler
     than the right side.
     """
     common, square, effective = turned

@@ -87,9 +87,9 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
     length, right = amplitude.length, amplitude.right
     size = sp.Abs if amplitude.is_signed else sp.Add
     less, more = amplitude.factors or (in_lengths(length - right), in_lengths(length + right))
-    told = (less, more)
+    named = (less, more)
     (less, more), column = with_small_entries(problem, equation, (less, more), amplitude.square)
-    uncounted = int(sp.count_ops([less, more]) - sp.count_ops(list(told)))
+    uncounted = int(sp.count_ops([less, more]) - sp.count_ops(list(named)))
     larger, leg, holds = tuple[Let, ...](), None, sp.true
     if amplitude.aimable is not None:  # joints change the arm, which may lie along the coordinate
         leg = other_leg(problem, equation, angle, amplitude.determinant, amplitude.naming.lets)
@@ -111,7 +111,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
         Let(less_cos, less, f"law of cosines for {angle.name} ({equation.label}): 1 - cosine, times a scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
         *scale,
-        *_cosine(problem, angle, amplitude, cos_name, (plus_cos - less_cos) / below, told, holds),
+        *_cosine(problem, angle, amplitude, cos_name, (plus_cos - less_cos) / below, named, holds),
         Let(square, less_cos * plus_cos, "sine squared, times the squared scale"),
         Let(sin_name, 2 * sigma * Root(square) / size(below)),
         *(_turned(problem, equation, angle, amplitude, (cos_name, sin_name)) if turned else ()),
@@ -140,9 +140,9 @@ def _cosine(
     """The cosine of the swing, and the condition that it exists. Near the place where the arm vanishes, rounding of the
     equation may move the cosine beyond one: there it is set to one. holds: the condition that the other leg exists.
     """
-    told = sp.Mul(*factors) if amplitude.told is None else amplitude.told
+    shown = sp.Mul(*factors) if amplitude.shown_factors is None else amplitude.shown_factors
     known = (*amplitude.naming.lets, *(s for s in amplitude.guard if isinstance(s, Let)))
-    reason = out_of_reach(angle, told, known)
+    reason = out_of_reach(angle, shown, known)
     if amplitude.aimable is None:
         most: tuple[Let, ...] = ()
         bound: sp.Expr = 1 + BOUNDARY / 2
