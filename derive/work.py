@@ -35,8 +35,8 @@ class TooMuchWork(Exception):
         self.most, self.further, self.unit = most, further, unit
 
     def __str__(self) -> str:
-        told = f", before an expression of {self.further:,} terms" if self.unit == TERMS.name else ""
-        return f"{self.stage} was given up after {self.most:,.0f} {self.unit}{told}"
+        ahead = f", before an expression of {self.further:,} terms" if self.unit == TERMS.name else ""
+        return f"{self.stage} was given up after {self.most:,.0f} {self.unit}{ahead}"
 
 
 @dataclass
