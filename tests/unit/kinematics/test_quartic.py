@@ -125,6 +125,7 @@ def test_an_arm_whose_residual_is_a_conic_is_not_scanned(name: str) -> None:
     assert ("No closed form is known" in told) != search.is_listed
 
 
+@pytest.mark.long
 def test_an_arm_of_six_axes_by_a_table_is_scanned() -> None:
     trial = trial_on_branch(solve_both(searched(ANGLES_AS_NUMBERS)))
     assert quartic_of(trial.statements, trial.value) is None
