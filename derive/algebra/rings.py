@@ -11,8 +11,9 @@ import sympy as sp
 from sympy.polys.galoistools import gf_degree, gf_gcd, gf_strip
 from sympy.polys.rings import PolyElement, PolyRing
 
-from derive.algebra.work import spend, terms_of_products
+from derive.algebra.work import terms_of_products
 from derive.ir.symbols import cosine, sine
+from derive.work import spend
 
 
 def is_rational(expression: sp.Expr) -> bool:

@@ -1,14 +1,10 @@
-"""The terms of products, and the bound of their number, which stands in `derive.work`."""
+"""The number of terms of which a product consists when it is expanded."""
 
 from __future__ import annotations
 
 from math import comb
 
 import sympy as sp
-
-from derive.work import TooMuchWork, at_most, counted, spend, stage
-
-__all__ = ["TooMuchWork", "at_most", "counted", "spend", "stage", "terms_of_products"]
 
 
 def terms_of_products(expression: sp.Expr) -> int:

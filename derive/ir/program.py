@@ -281,11 +281,6 @@ class Program:
         return any(s.refuses for s in self.body)
 
 
-def binds(statement: Statement) -> tuple[sp.Symbol, ...]:
-    """The names that a statement binds, in order."""
-    return statement.bound()
-
-
 def reason_expressions(statement: Statement) -> Iterator[sp.Expr]:
     """The expressions that are computed where a statement refuses, and nowhere else."""
     if isinstance(statement, Require) and statement.reason is not None:

@@ -86,7 +86,7 @@ TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (
 )
 Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 MOST_TERMS = 100_000
-"""The work of one derivation, in terms (`derive.algebra.work`): some seconds."""
+"""The work of one derivation, in terms (`derive.work`): some seconds."""
 
 
 @dataclass(frozen=True)

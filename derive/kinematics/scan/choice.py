@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.algebra.work import TooMuchWork, at_most
 from derive.description.mechanism import Joint, Mechanism, Search, Turning, crossing
 from derive.equations.closures.commanded import closure_at
 from derive.equations.closures.fixed_names import fixed_lets
@@ -32,6 +31,7 @@ from derive.kinematics.scan.quartic import quartic_of
 from derive.kinematics.shared_names import refuse_shared_names
 from derive.solver.solve import MOST_TERMS
 from derive.solver.unsolved import Undetermined, Unsolved, with_advice
+from derive.work import TooMuchWork, at_most
 
 _MOST_TERMS = 4 * MOST_TERMS
 """The work of the trials along all joints."""

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.algebra.work import stage
 from derive.description.mechanism import Branch, DescriptionError, Mechanism
 from derive.equations.axes import axis_lets, frozen_lets, held_lets, reference_lets, reference_value
 from derive.equations.closures.fixed_names import fixed_lets
@@ -20,7 +19,7 @@ from derive.equations.pose_at_axes import Forward
 from derive.geometry.frames import Chain
 from derive.ir.passes import normalise, renamed
 from derive.ir.primitives import Select
-from derive.ir.program import Let, Output, Program, Require, Statement, binds, rewritten
+from derive.ir.program import Let, Output, Program, Require, Statement, rewritten
 from derive.ir.symbols import SIDE, TRIED, branch_sign, called, cosine, count, flag, real, sine
 from derive.kinematics.branches.assignment import Assignment, assign, refuse_unnamed, steps_and_rest, with_branch_signs
 from derive.kinematics.forward import pose_at_axes
@@ -29,6 +28,7 @@ from derive.kinematics.scan.guards import conditions_of, guards_of, room_of
 from derive.kinematics.scan.programs import Trial, trial_of, with_goal
 from derive.kinematics.scan.slopes import slope_name, with_slopes
 from derive.solver.solve import Derivation
+from derive.work import stage
 
 SEARCHED = flag("searched")
 
@@ -185,5 +185,5 @@ def wanted(branch: Branch) -> sp.Symbol:
 def named_apart(statements: Iterable[Statement], word: str, own: Container[sp.Symbol] = ()) -> tuple[Statement, ...]:
     """The statements with the word appended to every name that they bind, except `own` names."""
     kept = list(statements)
-    table = {n: n if n in own else called(f"{n.name}_{word}", n) for s in kept for n in binds(s)}
+    table = {n: n if n in own else called(f"{n.name}_{word}", n) for s in kept for n in s.bound()}
     return tuple(renamed(rewritten(s, lambda e: e.xreplace(table)), lambda n: table[n]) for s in kept)

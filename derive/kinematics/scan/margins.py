@@ -13,7 +13,6 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.algebra.work import stage
 from derive.description.mechanism import Branch, Mechanism, Role
 from derive.equations.axes import reference_value
 from derive.equations.closures.fixed_names import with_fixed_names
@@ -21,7 +20,7 @@ from derive.equations.trigonometry import named_trigonometry
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.primitives import Select, ToReal
-from derive.ir.program import Let, Output, Solve, Statement, binds
+from derive.ir.program import Let, Output, Solve, Statement
 from derive.ir.symbols import FREED, FREED_ANGLE, SCALE, SIDE, TRIED, cosine, real, sine
 from derive.ir.verify import BrokenProgram
 from derive.kinematics.branches.assignment import Assignment
@@ -31,6 +30,7 @@ from derive.kinematics.inverse import Inverse
 from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.kinematics.scan.derivations import SEARCHED, Scanned, named_apart, searched_flag, trial_on_branch, wanted
 from derive.kinematics.scan.programs import GOAL
+from derive.work import stage
 
 DETERMINANT = real("determinant")
 _SAMPLES = 64
@@ -41,13 +41,13 @@ def margin_statements(both: Scanned) -> tuple[tuple[Statement, ...], tuple[Let, 
     """The statements at given axis values, and `branch_<name>` of every branch."""
     mechanism = both.mechanism
     statements: list[Statement] = [*searched_flag(both), *both.forward.statements]
-    own = {name for s in both.forward.statements for name in binds(s)}
+    own = {name for s in both.forward.statements for name in s.bound()}
     margins: dict[str, dict[str, sp.Expr]] = {}
     for word, inverse, assignments in _solved(both):
         values = [Let(real(f"margin_{a.branch.name}"), a.margin(mechanism)) for a in assignments]
         at_axes = derivation_at_axes(mechanism, inverse, both.forward)
         apart = named_apart((*at_axes, *values), word, own)
-        statements += [s for s in apart if not set(binds(s)) & own]
+        statements += [s for s in apart if not set(s.bound()) & own]
         for a in assignments:
             margins.setdefault(a.branch.name, {})[word] = real(f"margin_{a.branch.name}_{word}")
     lets, indicators = _indicators(both)

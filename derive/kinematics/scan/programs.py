@@ -18,7 +18,7 @@ from derive.equations.named_pose import named_pose
 from derive.ir.constants import BOUNDARY, DAMPED, IMPROVEMENTS, MET, NEARLY
 from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, Root, Select
-from derive.ir.program import FindRoot, Iterate, Let, Output, Program, Solve, Statement, Status, binds, rewritten
+from derive.ir.program import FindRoot, Iterate, Let, Output, Program, Solve, Statement, Status, rewritten
 from derive.ir.symbols import (
     COORDINATE_NAMES,
     FREED,
@@ -289,7 +289,7 @@ def names_of_search(mechanism: Mechanism, trial: Trial) -> Iterator[sp.Symbol]:
     yield from (real(n) for n in ("value", "guard", "remainder", "slope", "room", "room_slope", "error"))
     yield from (s.name for s in trial.statements)
     loop, _ = newton(mechanism, [_ZERO] * len(mechanism.solved_joints))
-    yield from (name for s in loop.step for name in binds(s))
+    yield from (name for s in loop.step for name in s.bound())
 
 
 def with_goal(statements: Sequence[Statement]) -> tuple[Statement, ...]:

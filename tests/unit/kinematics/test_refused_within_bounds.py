@@ -10,7 +10,6 @@ from math import inf
 import pytest
 import sympy as sp
 
-from derive.algebra.work import at_most
 from derive.description.mechanism import Mechanism, Parameter, Task, Turning, length, rotary
 from derive.description.validate import validate
 from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
@@ -22,6 +21,7 @@ from derive.kinematics.solution import prepared
 from derive.solver import solve
 from derive.solver.solve import MOST_TERMS
 from derive.solver.unsolved import Exhausted, Unsolved
+from derive.work import at_most
 
 TURNS, SHIFTS = (Rx, Ry, Rz), (Tx, Ty, Tz)
 J = tuple(rotary(f"A{k}", f"axis {k}") for k in range(1, 9))

@@ -65,6 +65,20 @@ def test_pi_is_half_a_turn_and_a_surd_a_root() -> None:
     assert outputs["o"] == pytest.approx(2 * np.pi / 4 + 2 * np.cos(np.pi / 12) + np.sin(np.pi / 5), abs=1e-15)
 
 
+def test_inputs_are_what_is_free_in_the_order_of_their_names() -> None:
+    """The inputs are the names that no statement binds, in alphabetical order."""
+    program = normalise("p", [Let(D, C + X)], [Output("o", D + A * DEGREE)])
+    assert program.inputs == (A, C, X)
+
+
+def test_hoisting_goes_through_lets_and_conditions() -> None:
+    """Hoisting follows chains of values, and leaves conditions where they are."""
+    program = normalise("p", [Let(A, C * 2), Let(B, A + 1), Require(sp.Gt(B, 0), Status.OK)], [Output("o", B + X)])
+    (lowered,), hoisted = hoist([program], ["c"])
+    assert [let.name for let in hoisted] == [A, B]
+    assert body(lowered) == [sp.Gt(B, 0)]
+
+
 def test_hoisting_moves_what_depends_on_constants_alone() -> None:
     """Values of constants alone are moved out of programs, and computed once."""
     first = normalise("first", [Let(A, C * 2), Let(B, A + X)], [Output("o", B * A)])

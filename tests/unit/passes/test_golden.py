@@ -35,7 +35,11 @@ ANSWERS_CHANGE = {
     "without_chosen_turns",
 }  # fmt: skip
 """Passes with other inputs or outputs, for statements in any order, or with other answers at some poses."""
-NAMES = {one.name for one in (*ON_PROGRAMS, *ON_TREES, *ON_DRAFTS)} | {"hoisted"}
+TOGETHER = {
+    "hoisted": OnDrafts((passes.SHORTER[:1],)), "lowered": passes.EVERY, "straight_line": passes.STRAIGHT_LINE,
+}  # fmt: skip
+"""Passes one after the other, and the constants that they hoist."""
+NAMES = {one.name for one in (*ON_PROGRAMS, *ON_TREES, *ON_DRAFTS)} | TOGETHER.keys()
 KEEPING = NAMES - ANSWERS_CHANGE - {one.name for one in ON_TREES}
 
 
@@ -43,8 +47,8 @@ def made(case: Case) -> Program | Tree | None:
     """What a pass makes of the program of a case."""
     name, given, tree = case.path.parent.name, case.given, case.tree
     program = tree.program
-    if name == "hoisted":
-        (program,), parts = lowered([program], given.constants, OnDrafts((passes.SHORTER[:1],)), known=given.known)
+    if name in TOGETHER:
+        (program,), parts = lowered([program], given.constants, TOGETHER[name], known=given.known)
         return replace(program, body=(*parts, *program.body))
     for on_programs in (one for one in ON_PROGRAMS if one.name == name):
         return on_programs.change(program, given)
