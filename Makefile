@@ -17,7 +17,7 @@ BENCH := .venv-bench
 
 WHEEL := .venv-wheel
 
-.PHONY: generate check test quick report bench wheel javascript c clang linuxcnc view prove-linuxcnc
+.PHONY: generate check test sweep quick report bench wheel javascript c clang linuxcnc view prove-linuxcnc
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -49,11 +49,16 @@ check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)
 
 # Compiled modules are kept beside their sources even where the environment says not to: a run starts some hundred Pythons.
-test quick: export PYTHONDONTWRITEBYTECODE =
+test sweep quick: export PYTHONDONTWRITEBYTECODE =
 # The core in C is built into build/native and asked first; where there is no compiler, a line says so.
 test: $(READY)
 	$(RUN) -m tests.native
-	$(RUN) -m pytest -n 2 --dist loadgroup
+	$(RUN) -m pytest -n 2 --dist loadgroup -m "not sweep"
+
+# What takes long: many poses beside singularities, machines that are derived anew, the native core for every mechanism.
+sweep: $(READY)
+	$(RUN) -m tests.native --sweep
+	$(RUN) -m pytest -n 2 --dist loadgroup -m sweep
 
 quick: $(READY)
 	$(RUN) -m pytest -n 2 --dist loadgroup -m quick

@@ -3,6 +3,7 @@
 Every test is given its mechanism, where it has one. Tests of one mechanism run in one process, so that what they share
 is made once, and so do those of one machine that is in no catalogue. `make quick` runs units, and of the catalogue one
 mechanism for each path through the compiler; tests that are marked `slow` or `long` it leaves out.
+`make test` leaves out the slow ones, and `make sweep` runs them.
 
 The process that only hands the tests out reads this file, too: the compiler is imported where it is needed.
 """
@@ -38,6 +39,9 @@ collect_ignore = [] if IS_NATIVE else ["native"]
 ROOT = Path(__file__).parent
 FOLDERS_OF_QUICK = ("unit", "harness", "catalogue", "text", "languages")
 """Where `make quick` looks for tests."""
+SLOW = ("slow",)
+NOT_QUICK = ("slow", "long")
+"""The markers of tests that `make test`, and `make quick`, leave out."""
 LEFT_OUT_AS_A_WHOLE = re.compile(r"^pytestmark = pytest\.mark\.(slow|long)$", re.MULTILINE)
 """What says of a file that none of its tests is quick."""
 ALL_OF_THEM_QUICK = (("unit",), ("harness",))
@@ -140,24 +144,25 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         names = mechanisms_of(item, folders)
         place = f"{file}::{item.name}"
         is_quick = set(names) <= PATHS.keys() if names else folders[:1] in ALL_OF_THEM_QUICK
-        if (is_quick and not _is_left_out(item, place)) or (IS_NATIVE and folders[:1] in ASKED_WHOLE):
+        left_out = SLOW if IS_NATIVE else NOT_QUICK
+        if (is_quick and not _is_left_out(item, place, left_out)) or (IS_NATIVE and folders[:1] in ASKED_WHOLE):
             item.add_marker("quick")
+        elif IS_NATIVE or _is_left_out(item, place, SLOW):
+            item.add_marker("sweep")
         if is_shared_out:
             item.add_marker(pytest.mark.xdist_group(_group_of(item, place, folders, names)))
 
 
 def _is_quick(config: pytest.Config) -> bool:
-    """Whether this is `make quick`: the native core is asked all that is quick, and what is long as well."""
-    return config.option.markexpr == "quick" and not IS_NATIVE
+    """Whether this is `make quick`."""
+    return config.option.markexpr == "quick"
 
 
-def _is_left_out(item: pytest.Item, place: str) -> bool:
-    """Whether a test is slow or long: in all of its cases, or in those that a word of its marker stands in."""
+def _is_left_out(item: pytest.Item, place: str, names: tuple[str, ...]) -> bool:
+    """Whether a test has one of these markers: in all of its cases, or in those that a word of its marker stands in."""
     callspec = getattr(item, "callspec", None)
     case = callspec.id if callspec is not None else ""
-    names, of_the_search = ("slow", "long"), OF_THE_SEARCH + LONG_OF_THE_SEARCH
-    if IS_NATIVE:
-        names, of_the_search = ("slow",), OF_THE_SEARCH
+    of_the_search = OF_THE_SEARCH + (() if names == SLOW else LONG_OF_THE_SEARCH)
     marks = [mark for name in names for mark in item.iter_markers(name)]
     return place.startswith(of_the_search) or any(not m.args or any(word in case for word in m.args) for m in marks)
 

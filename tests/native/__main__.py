@@ -1,7 +1,7 @@
 """`python -m tests.native`: build the native core, and ask it what the tests of the package ask the core in Python.
 
 All mechanisms answer the questions of the corpus and of this folder. Of the tests of the catalogue each runs for a
-mechanism of every path through the compiler; in CI, or with --all, for all mechanisms. What has no native
+mechanism of every path through the compiler; with --sweep, all others run. What has no native
 half is left out: texts, types, derivations, and faults that are planted in the Python.
 """
 
@@ -34,8 +34,8 @@ def main(given: list[str]) -> int:
         print(f"The native half of the tests did not run: {missing}.")
         return 1 if is_required() else 0
     ignored = [f"--ignore={name}" for name in IN_PYTHON_ALONE]
-    every = "--all" in given or is_required()
-    return _run(folder, [*OF_ALL, CATALOGUE, *ignored, *([] if every else ["-m", "quick"])])
+    wanted = "sweep" if "--sweep" in given else "not sweep"
+    return _run(folder, [*OF_ALL, CATALOGUE, *ignored, "-m", wanted])
 
 
 def _run(folder: Path, asked: list[str]) -> int:
