@@ -17,6 +17,7 @@ const { browser, name } = await launched(which).catch((error) => {
   writeFileSync(result, JSON.stringify({ missing: error.message }));
   process.exit(0);
 });
+setTimeout(() => process.exit(3), 480_000).unref(); // what waits for the browser in a page has no end of its own
 const seen = { browser: name, errors: [], pictures: { catalogue: [], own: [] } };
 
 /** A page at a fragment; what its console complains of is kept. */
