@@ -1,4 +1,4 @@
-"""Every chain in six other wordings of its own: in frames that are moved and turned, in link frames at any place, by
+"""Every chain in three other wordings of its own: in frames that are moved and turned, in link frames at any place, by
 tables.
 
 Their form is the same, so what is derived of them is the same: solutions, operations, time, and why it is refused.
@@ -35,7 +35,7 @@ from tests.unit.form.test_chain import frame, in_words
 pytestmark = pytest.mark.slow
 
 MACHINES = {**CHAINS, **{m.name: m for _, m in catalogue() if m.chain is not None}}
-WORDINGS = 6
+WORDINGS = 3
 WAYS: tuple[Callable[[Mechanism, int], Chain], ...] = (reworded, in_link_frames, by_table)
 DERIVED = ("six axes by a table with angles as numbers", "SCARA that is turned where it stands")
 
