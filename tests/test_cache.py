@@ -44,6 +44,7 @@ def generated(folder: Path, capsys: pytest.CaptureFixture[str], *more: str) -> t
     return {str(p.relative_to(output)): p.read_bytes() for p in output.rglob("*") if p.is_file()}, derived, said.err
 
 
+@pytest.mark.slow
 def test_what_did_not_change_is_kept_and_what_did_is_derived(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Only changed mechanisms are derived again, and the files are the same."""
     first, derived, _ = generated(folder, capsys)
@@ -118,6 +119,7 @@ def test_sources_that_change_during_a_run_leave_nothing_behind(
     assert not Path(f"{folder.parent / 'generated'}.cache").exists()
 
 
+@pytest.mark.slow
 def test_check_and_fresh_never_look(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -106,6 +106,7 @@ def refusal(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     return message
 
 
+@pytest.mark.slow("no root has", "under-constrained")
 @pytest.mark.parametrize("what", BROKEN)
 def test_a_broken_file_is_one_clear_message(folder: Path, capsys: pytest.CaptureFixture[str], what: str) -> None:
     """A broken description is refused with one message that names file and fault."""
@@ -155,6 +156,7 @@ def test_no_traceback_and_exit_status_1(folder: Path) -> None:
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_generate_replaces_orphans_and_check_finds_them(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Generating removes files that no mechanism gives, and checking reports them."""
     output = folder.parent / "generated"

@@ -76,6 +76,7 @@ def run(folder: Path, *arguments: str) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 def test_the_changes_work(changed: Path) -> None:
     """The tools are content, the pass has a golden file, the rule solves, and the rest is printed."""
     assert run(changed, "-m", "tests.unit.passes.test_golden") == ""

@@ -27,6 +27,7 @@ def test_the_page_shows_every_program() -> None:
     assert pictures == {f"gallery/pictures/{path.name}" for path in (DOCS / "gallery/pictures").iterdir()}
 
 
+@pytest.mark.slow("dask")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_prints_what_the_page_shows(name: str, tmp_path: Path) -> None:
     """In a process of its own, with its pictures in a temporary folder."""
@@ -41,6 +42,7 @@ def test_a_program_prints_what_the_page_shows(name: str, tmp_path: Path) -> None
         capture_output=True,
         text=True,
         check=False,
+        timeout=300,
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout == output

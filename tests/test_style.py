@@ -20,9 +20,7 @@ IMPORT_LINTER = "from importlinter.cli import lint_imports_command as lint; lint
 TOOLS = {
     "ruff": ("-m", "ruff", "check", "--no-cache", "."),
     "ruff format": ("-m", "ruff", "format", "--check", "--no-cache", "derive", "runtime", "tests", "bench", "prove"),
-    "mypy": ("-m", "mypy", "--strict", "derive", "prove"),
-    "mypy of the runtime": ("-m", "mypy", "--strict", "--explicit-package-bases", "runtime/python/softkin"),
-    "mypy of the generated package": ("-m", "mypy", "--strict", "generated/python/softkin"),
+    "mypy": ("-m", "mypy", "--strict", "derive", "prove", "generated/python/softkin"),
     "directions of imports": ("-c", IMPORT_LINTER),
 }
 ROOM = 16
@@ -36,6 +34,7 @@ LENGTH = 350
 """A file with more lines than this holds more than one idea."""
 
 
+@pytest.mark.slow("mypy")
 @pytest.mark.parametrize("tool", TOOLS)
 def test_clean(tool: str) -> None:
     """The tool finds nothing to complain about."""

@@ -46,6 +46,7 @@ def imported(tmp_path_factory: pytest.TempPathFactory) -> tuple[Project, str]:
     return project, printed.getvalue()
 
 
+@pytest.mark.slow
 def test_a_library_with_every_object(imported: tuple[Project, str]) -> None:
     """The script makes a library that holds every object with its text, and compiles it."""
     project, printed = imported
@@ -60,6 +61,7 @@ def test_a_library_with_every_object(imported: tuple[Project, str]) -> None:
     assert f"{made} in {project.path}; errors of the compiler: 0" in printed
 
 
+@pytest.mark.slow
 def test_descriptions_find_their_pictures(imported: tuple[Project, str]) -> None:
     """The script adds to the library exactly the pictures that descriptions refer to."""
     project, _ = imported
@@ -91,6 +93,7 @@ def _panes(nodes: list[Node]) -> dict[tuple[str, str], tuple[str, str]]:
     return found
 
 
+@pytest.mark.slow
 def test_references_are_placeholders_for_the_newest_library(imported: tuple[Project, str]) -> None:
     """The libraries of the manufacturer are referred to by placeholders for their newest version."""
     (manager,) = (one for one in imported[0].get_children() if isinstance(one, LibraryManager))
@@ -99,6 +102,7 @@ def test_references_are_placeholders_for_the_newest_library(imported: tuple[Proj
     }
 
 
+@pytest.mark.slow
 def test_folders_by_family(imported: tuple[Project, str]) -> None:
     """The objects of the library are in folders by family of mechanisms."""
     (top,) = (one for one in imported[0].get_children() if isinstance(one, Folder))

@@ -72,6 +72,7 @@ def test_everything_reads_back_to_the_text_of_the_files() -> None:
     assert len(read) > 600
 
 
+@pytest.mark.slow
 def test_what_is_read_back_compiles() -> None:
     """The stand-in compiler takes the text from the XML as it takes the files, all methods and interfaces included."""
     read = wholes(parse(EVERYTHING))

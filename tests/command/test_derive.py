@@ -82,6 +82,7 @@ def test_one_command_gives_everything_that_a_user_of_the_machine_needs(scara: Fo
     assert found.strip() == str(scara.path / "build/python/my_scara/__init__.py")
 
 
+@pytest.mark.slow
 def test_deriving_again_changes_nothing_and_another_machine_does_not_replace_it(scara: Folder) -> None:
     """The folder of one machine is never that of another one, nor that of other files."""
     before = {n: (scara.path / "build" / n).read_bytes() for n in scara.names("build")}

@@ -88,6 +88,7 @@ def test_a_description_becomes_a_class(tmp_path: Path, monkeypatch: pytest.Monke
     assert made(**given).forward((10.0,) * len(made.AXES))[0].position
 
 
+@pytest.mark.slow
 def test_the_planes_of_a_platform_derive() -> None:
     derived = derive_one(_run("OWN_MACHINE.md", "guides = tuple(")["MECHANISM"])
     assert derived.evidence is not None

@@ -45,6 +45,7 @@ def test_every_refusal_of_the_guide_has_a_test() -> None:
     assert set(REFUSALS) == set(WRONG) | set(SAID_ELSEWHERE)
 
 
+@pytest.mark.slow("no subproblem")
 @pytest.mark.parametrize("refusal", WRONG)
 def test_it_is_refused_as_the_guide_says(folder: Folder, refusal: str) -> None:
     """One line: file, line, what is wrong, what to do. Status 2, and nothing is written."""
@@ -77,6 +78,7 @@ def test_the_line_is_that_of_the_fault(folder: Folder, refusal: str) -> None:
     assert WRONG[refusal].splitlines()[number - 1].startswith(LINES[refusal])
 
 
+@pytest.mark.slow("planar_3rrr")
 @pytest.mark.parametrize("name", MACHINES)
 def test_the_machine_is_derived_and_every_solution_closes(
     folder: Folder, name: str, monkeypatch: pytest.MonkeyPatch
@@ -133,6 +135,7 @@ def _residual(machine: Mechanism, given: Mapping[str, float]) -> Callable[[Seque
     return of_rods
 
 
+@pytest.mark.slow
 def test_the_walk(folder: Folder) -> None:
     """The commands of the guide, in their order, and the path that is plotted at the end."""
     assert [c for c in COMMANDS if not c.startswith("pip")] == [

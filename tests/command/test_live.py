@@ -101,6 +101,7 @@ print(Rail().forward((1.0, 2.0))[0].position, Rail().inverse_batch([[1.0, 2.0, 0
 """
 
 
+@pytest.mark.slow
 def test_without_an_installed_softkin_the_compiler_brings_it(tmp_path: Path) -> None:
     """The runtime is a part of the compiler; its folder is gone when the program ends."""
     path = tmp_path / "rail.py"
@@ -115,6 +116,7 @@ def test_without_an_installed_softkin_the_compiler_brings_it(tmp_path: Path) -> 
     assert "runtime" in file and not Path(file).exists()
 
 
+@pytest.mark.slow
 def test_an_installed_softkin_of_another_version_is_refused(tmp_path: Path) -> None:
     """Modules are never mixed with a runtime that they were not written for."""
     package = tmp_path / "softkin"

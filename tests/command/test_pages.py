@@ -11,6 +11,7 @@ from derive.command.new import description
 from tests.command.files import RAIL, SCARA, Folder
 
 
+@pytest.mark.slow
 def test_the_page_of_ones_own_machine(folder: Folder) -> None:
     """It is written and named; it holds what was measured, and the names of the machine's package."""
     path = folder.write("scara.py", SCARA)

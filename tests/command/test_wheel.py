@@ -63,6 +63,7 @@ def run(installed: Path, folder: Path, program: str) -> None:
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow
 def test_what_is_installed_derives_a_machine(installed: Path, tmp_path: Path) -> None:
     """No file of the source tree is read: templates and runtime come with the compiler; nor is one of them missing."""
     for name in ("templates", "runtime"):
@@ -96,6 +97,7 @@ assert Rail().forward((1.0, 2.0))[0].position == (1.0, 2.0, 0.0)
 """
 
 
+@pytest.mark.slow
 def test_a_notebook_beside_both_wheels(installed: Path, tmp_path: Path) -> None:
     """No wheel has the files that only build it; a live class needs the modules of the runtime alone."""
     (tmp_path / "rail.py").write_text(RAIL)

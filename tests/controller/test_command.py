@@ -25,6 +25,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_from_standard_input_to_the_page(folder: Path) -> None:
     """The address stands in the first line; what is written into it arrives, scaled; the end of the input is told."""
 
@@ -93,6 +94,7 @@ def test_the_page_of_a_machine_of_ones_own(folder: Path, capsys: pytest.CaptureF
     assert "cannot serve at 192.0.2.1" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_no_other_command_loads_the_servers() -> None:
     """Neither package is imported, nor needed, until a live connection wants it."""
     code = (

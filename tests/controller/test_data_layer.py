@@ -93,6 +93,7 @@ def test_a_lost_controller_is_found_again(tmp_path: Path) -> None:
     asyncio.run(run())
 
 
+@pytest.mark.slow
 def test_a_controller_that_does_not_answer_any_more(tmp_path: Path) -> None:
     """Noticed, and found again, as quickly as by OPC UA."""
 

@@ -134,6 +134,7 @@ def test_a_lost_controller_is_shown_and_found_again(runner: asyncio.Runner, cont
     runner.run(run())
 
 
+@pytest.mark.slow
 def test_a_controller_that_does_not_answer_any_more(runner: asyncio.Runner, controller: Plc, tmp_path: Path) -> None:
     """Its connection is not closed, as where a cable is pulled: the loss shows by its silence alone."""
 
@@ -174,6 +175,7 @@ def test_a_node_that_is_not_there_is_bad_by_itself(runner: asyncio.Runner, contr
     runner.run(run())
 
 
+@pytest.mark.slow
 def test_encryption_and_whom_it_trusts(runner: asyncio.Runner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Encrypted, with user and password, where the authority is known; refused for good where it is not."""
     monkeypatch.setenv("SOFTKIN_USER", USER)

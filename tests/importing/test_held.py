@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.importing.kinematics import described, imported
 from tests.importing.robots import joint, urdf
 from tests.machines.made import built_of
@@ -29,6 +31,7 @@ def _file(folder: Path, text: str) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_an_arm_whose_wrist_axes_miss_each_other_holds_its_last_joint(tmp_path: Path) -> None:
     """Its shoulder is a point, and the axes of A5 and A6 meet; with any other joint held no closed form is known."""
     found = imported(_file(tmp_path, PANDA))

@@ -174,6 +174,7 @@ class Closure:
         mujoco.mj_integratePos(self.model, self.data.qpos, step, 1.0)
 
 
+@pytest.mark.slow("three rods", "at an elbow")
 @pytest.mark.parametrize("name", LOOPS)
 def test_every_solution_closes_the_loops_of_the_file(name: str, tmp_path: Path) -> None:
     loop = LOOPS[name]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from derive.importing.arms.rounded import snapped_robot
@@ -46,6 +46,7 @@ def test_an_angle_that_is_no_rounding_stays(text: str) -> None:
     assert put_back(text) == float(text)
 
 
+@settings(max_examples=30)
 @given(st.integers(1, 48), st.sampled_from("+-"), st.integers(3, 15), st.booleans())
 def test_every_multiple_of_15_degrees_with_any_number_of_decimals(
     multiple: int, sign: str, decimals: int, is_cut: bool

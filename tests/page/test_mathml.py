@@ -5,6 +5,7 @@ from __future__ import annotations
 from xml.etree import ElementTree as ET
 
 import numpy as np
+import pytest
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -65,6 +66,7 @@ def _read(lines: tuple[str, ...]) -> np.ndarray:
     return value_of(list(page), VALUES)
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(expressions, st.sampled_from([30, 60, WIDTH]))
 def test_what_is_printed_is_what_is_meant(expression: sp.Expr, width: int) -> None:

@@ -21,7 +21,7 @@ from derive.report.singular_poses import SINGULAR, SingularPose, singular_pose
 from derive.report.workspace_map import Slice, slices
 from tests.machines.subset_machines import LOOPS
 from tests.mechanisms import kinematics_of, named
-from tests.page.made import NAMES
+from tests.page.made import NAMES, page
 from tests.page.reading import every, has_class, parsed, section
 
 DRAWN = ("Kin_Scara4_ZCcoupled_Type1", "Kin_P2C_Type1", "Kin_Hexapod", "Kin_Polar", "Kin_Crane", "Kin_Wrist2")
@@ -45,6 +45,7 @@ def _found(name: str, margin: str) -> SingularPose | None:
     return singular_pose(machine, _derived(name), margin, drawn_pose(machine).axes)
 
 
+@pytest.mark.slow("Hexaglide")
 @pytest.mark.parametrize("name", SINGULAR_MACHINES)
 def test_the_pose_of_a_picture_is_singular(name: str) -> None:
     """By a measure that knows no margin: for type 1 the Jacobian loses its rank; for type 2 the legs do."""
@@ -142,6 +143,7 @@ def _page(name: str) -> Page:
     return page_of(mechanism, kinematics_of(mechanism))
 
 
+@pytest.mark.slow("Scara4", "Hexapod")
 @pytest.mark.parametrize("name", DRAWN)
 def test_every_picture_is_on_the_page(name: str) -> None:
     """The drawing, a picture for each singularity with a value that is zero, and the maps; the page stays small."""
@@ -207,7 +209,7 @@ def test_a_map_shows_the_two_circles_of_a_five_bar() -> None:
 
 def test_the_index_names_every_page() -> None:
     """Each page with its file, by families."""
-    pages = [_page(name) for name in DRAWN]
+    pages = [page(name) for name in DRAWN]
     index = index_of(pages)
     root: ET.Element = parsed(index)
     links = {a.get("href"): "".join(a.itertext()) for a in every([root], "a")}

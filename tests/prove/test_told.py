@@ -44,7 +44,7 @@ def test_a_table_says_what_failed() -> None:
 
 
 def test_continuous_integration_runs_it_before_the_tests() -> None:
-    """The closing line stays that of the tests."""
+    """The closing lines stay those of the tests."""
     lines = (ROOT / ".ci/run").read_text(encoding="utf-8").splitlines()
-    assert lines[-1] == "make test"
+    assert lines[-2:] == ["make test", "make sweep"]
     assert lines.index("make prove-linuxcnc IF_POSSIBLE=1") < lines.index("make test")

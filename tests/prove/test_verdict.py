@@ -16,6 +16,8 @@ from prove.linuxcnc.twin import Twin
 from prove.linuxcnc.verdict import ALIKE, verdict
 from tests.prove.pretended import ROWS, answers, pretended, stage
 
+pytestmark = pytest.mark.slow("Hexapod")
+
 CHOSEN = [machine.mechanism for machine in MACHINES if Twin(machine).robot.BRANCHES]
 NAMED = {machine.mechanism: machine for machine in MACHINES}
 

@@ -43,7 +43,7 @@ EXACT = "In addition: check of an exact frame"
 REPAIR, CORNERS = "In addition: repair of a frame", "In addition: a branch at a singular pose"
 COINCIDE = 3
 """The branch byte that forward kinematics writes where two branches meet: it leaves the branch open."""
-POSES = 16
+POSES = 8
 REACH = 500.0
 
 

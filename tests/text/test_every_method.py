@@ -12,6 +12,9 @@ from tests.text.units import compiled, public_methods
 
 METHODS = [(mechanism, method) for mechanism in POSITION_KINEMATICS for method in public_methods(mechanism)]
 """Every method that stands in the emitted text. That private ones run is shown statement by statement elsewhere."""
+ITERATED = ("Hexapod", "Hexaglide", "3RRR", "ThreeParallel")
+DEAR = tuple(f"{name}.{method}" for name in ITERATED for method in ("CartesianToAxes", "Diagnose"))
+"""What takes long: inverse kinematics of machines that iterate."""
 EVERYWHERE = (
     "AxesToCartesian",
     "CartesianToAxes",
@@ -40,6 +43,7 @@ def test_every_method_is_here(mechanism: Mechanism) -> None:
     assert {"Initialize", "Jacobian", "AxisVelocities"} <= set(found)
 
 
+@pytest.mark.slow(*DEAR)
 @pytest.mark.long("Hexapod", "P2C_Type1.CartesianToAxes", "Pos_RRR.CartesianToAxes", "ToAxes_Offset", "Diagnose")
 @pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
 def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str) -> None:

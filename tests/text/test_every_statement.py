@@ -42,7 +42,7 @@ OF_THE_BASE = ("Kin_Scara4_ZCcoupled_Type1", "Softkin_Pos_RRR")
 OF_A_DIRECTION = "Softkin_5Axes"
 WITHOUT_TURN = ("Kin_Crane", "Softkin_Gantry2")
 """The blocks whose calls, together, reach every statement of the base block."""
-FEW, A_FEW = 3, 25
+FEW, A_FEW = 3, 9
 """The numbers of samples: a watched call takes its time."""
 POSED = COMPARISONS.keys() - POSELESS
 """The methods that a pose goes into."""

@@ -65,14 +65,17 @@ def check(call: Call, clean: tuple[Any, dict[str, Any]], what: object) -> None:
 
 @pytest.mark.long("Hexapod", "P2C", "Pos_RRR")
 def test_garbage_in_one_number(pairs: tuple[Pair, ...]) -> None:
-    """NaN, an infinite or a huge number in one argument is refused without a fault, and outputs stay as they are."""
-    for one in (pairs[1], pairs[-3]):
+    """NaN, an infinite or a huge number in one argument is refused without a fault, and outputs stay as they are.
+
+    Each is asked of one of two machines.
+    """
+    for one, numbers in ((pairs[1], GARBAGE[::2]), (pairs[-3], GARBAGE[1::2])):
         sample = one.regular[-1]
         for method in methods_of(one.controller):
             fitting = call_of(one, one.controller, method, sample)
             clean = fitting.again().run()
             for name, path in real_inputs(fitting):
-                for garbage in GARBAGE:
+                for garbage in numbers:
                     call = fitting.again()
                     values.put(call.arguments[name], path, garbage)
                     check(call, clean, (name, path, garbage))
@@ -181,7 +184,7 @@ def test_the_largest_numbers(pairs: tuple[Pair, ...]) -> None:
     for one in (pairs[0], pairs[1], pairs[-1]):
         count = len(one.mechanism.joints)
         rng = np.random.default_rng(9)
-        for row in rng.choice((-1e9, -1e5, 0.0, 1.0, 1e9), (50, 2 * count + 3)).tolist():
+        for row in rng.choice((-1e9, -1e5, 0.0, 1.0, 1e9), (20, 2 * count + 3)).tolist():
             axes, reference, position = tuple(row[:count]), tuple(row[count : 2 * count]), tuple(row[2 * count :])
             status, answer = asked(one.robot.forward, axes)
             found = one.controller.forward(axes)

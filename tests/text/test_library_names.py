@@ -55,6 +55,7 @@ def test_every_constant_is_used() -> None:
     assert set(re.findall(r"Softkin_Names\.(\w+)", text)) == set(CONSTANTS)
 
 
+@pytest.mark.slow
 def test_every_block_follows_a_changed_line() -> None:
     """Before Initialize every block answers with the error that the changed line names."""
     found = library("NotInitialized", STRANGE, *UNITS)

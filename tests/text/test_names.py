@@ -115,6 +115,7 @@ def generated(tmp_path: Path, capsys: pytest.CaptureFixture[str], **changes: str
     return capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_mechanism_with_the_name_of_a_block_of_softmotion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A mechanism with the name of a block of SoftMotion is refused, and nothing is written."""
     said = generated(tmp_path, capsys, CODESYS="SINSEGYE")

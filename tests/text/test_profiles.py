@@ -194,6 +194,7 @@ def test_an_unknown_profile_is_refused_at_once(
     assert printed.out == "", "before anything is derived"
 
 
+@pytest.mark.slow
 def test_a_profile_is_generated_and_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Files that are generated for a profile pass the check for that profile alone."""
     folder, output = tmp_path / "mechanisms", tmp_path / "out"

@@ -31,7 +31,7 @@ COINCIDING_METHODS = ("AxesToCartesian", "CartesianToAxes")
 OFFSET_METHODS = ("AxesToConfiguration_Offset", "CartesianToAxes_Offset")
 FEW = 12
 NEARLY = 1e-3
-EVERY = 7
+EVERY = 5
 """The share of the grid at which the slower comparisons are made."""
 
 
@@ -46,6 +46,7 @@ def test_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None
             COMPARISONS[method](one, sample)
 
 
+@pytest.mark.slow("ThreeParallel")
 @pytest.mark.long("Scara4")
 @pytest.mark.parametrize("label", MACHINES)
 def test_near_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
@@ -66,6 +67,7 @@ def test_a_point_off_the_flange_at_quarter_turns(serial_pairs: tuple[SerialPair,
             COMPARISONS[method](one, sample)
 
 
+@pytest.mark.slow("ThreeParallel")
 @pytest.mark.long("Pos_RRR")
 def test_singularities_that_coincide(serial_pairs: tuple[SerialPair, ...]) -> None:
     """Wrist on axis 1, elbow stretched or folded, wrist straight: several at once, exactly and nearly."""
@@ -93,7 +95,7 @@ def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs: tuple[Seria
                 COMPARISONS["CartesianToAxes_Offset"](one, replace(sample, offset=offset))
 
 
-@pytest.mark.long("Pos_RRR")
+@pytest.mark.slow("Palletizer", "Pos_RRR")
 def test_a_point_beside_the_first_axis_of_a_stretched_arm(serial_pairs: tuple[SerialPair, ...]) -> None:
     """Branches meet at two edges of the workspace at once."""
     for one in serial_pairs:

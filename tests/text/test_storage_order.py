@@ -11,7 +11,7 @@ from tests.text.controller import OK, Controller
 from tests.text.pairs import Pair, comparisons_of
 from tests.text.units import compiled
 
-FEW = 10
+FEW = 4
 MACHINES = ("nominal", "random 2", "other", "limited")
 
 

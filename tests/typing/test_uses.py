@@ -48,6 +48,7 @@ def by_pyright(folder: Path) -> set[tuple[str, int]]:
     return {(Path(one["file"]).name, one["range"]["start"]["line"] + 1) for one in found if one["severity"] == "error"}
 
 
+@pytest.mark.slow("by_pyright")
 @pytest.mark.parametrize("checker", [by_mypy, by_pyright])
 def test_strict_checkers(checker: object, tmp_path: Path) -> None:
     """No error in the uses, one on every line with a mistake."""

@@ -13,6 +13,7 @@ const [cataloguePage, ownPage, pictures, result, which] = process.argv.slice(2);
 const LAPTOP = { width: 1366, height: 768 };
 const SMALL = { width: 560, height: 420 };
 const TABLET = { width: 820, height: 1180 };
+setTimeout(() => process.exit(3), 480_000).unref(); // what waits for the browser in a page has no end of its own
 const { browser, name } = await launched(which).catch((error) => {
   writeFileSync(result, JSON.stringify({ missing: error.message }));
   process.exit(0);

@@ -6,9 +6,12 @@ from math import isclose
 from typing import Any
 
 import numpy as np
+import pytest
 import softkin
 
 from tests.view.states import Seen, confirm, robot_of
+
+pytestmark = pytest.mark.slow
 
 
 def test_a_refusal_is_told(seen: Seen) -> None:

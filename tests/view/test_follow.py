@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 import softkin
 
 from derive.view.node import node
@@ -23,6 +24,8 @@ from tests.controller.pages import PATIENCE
 from tests.view.available import available
 from tests.view.driver import prepared
 from tests.view.pages import machine_page
+
+pytestmark = pytest.mark.slow
 
 SCARA = "Kin_Scara4_ZCcoupled_Type1"
 LIMITS = {"A1": [-170, None], "A3": [None, 0]}

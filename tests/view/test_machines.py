@@ -11,6 +11,8 @@ import softkin
 from tests.mechanisms import catalogue
 from tests.view.states import Seen
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("name", [mechanism.name for _, mechanism in catalogue()])
 def test_every_machine_is_drawn(name: str, seen: Seen) -> None:

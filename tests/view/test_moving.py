@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 import softkin
 
 from tests.view.states import Seen, confirm, frame_of, robot_of
+
+pytestmark = pytest.mark.slow
 
 
 def test_the_tool_is_dragged(seen: Seen) -> None:

@@ -6,9 +6,12 @@ import re
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from tests.mechanisms import named
 from tests.view.states import ARM, Seen
+
+pytestmark = pytest.mark.slow
 
 MEGABYTE = 1_000_000
 

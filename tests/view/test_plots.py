@@ -5,9 +5,12 @@ from __future__ import annotations
 import re
 
 import numpy as np
+import pytest
 import softkin
 
 from tests.view.states import Seen, confirm, robot_of
+
+pytestmark = pytest.mark.slow
 
 
 def test_a_line(seen: Seen) -> None:

@@ -14,6 +14,8 @@ import softkin
 
 from tests.view.states import ARM, Seen
 
+pytestmark = pytest.mark.slow
+
 
 def test_an_address_is_restored(seen: Seen) -> None:
     """The address of a pose opens the same pose, to the last digit; that of a refusal the refusal."""

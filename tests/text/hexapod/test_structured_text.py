@@ -119,7 +119,7 @@ def test_without_control_there_is_no_jacobian() -> None:
     assert block.is_singular(axes)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_every_statement_runs() -> None:
     """This file, and what is asked of every block, execute every statement of this one."""
     loops, small = loops_of(MECHANISM), compiled(MECHANISM, matrix_size=36)

@@ -21,9 +21,9 @@ from tests.text.samples import Sample, tilted
 from tests.text.units import compiled
 
 LOOPS = tuple(m for _, m in catalogue() if m.rods)
-POSES = 120
+POSES = 36
 """Regular poses of one machine."""
-BROKEN = 40
+BROKEN = 12
 """Axis values of one machine, drawn without asking whether the loop closes."""
 
 

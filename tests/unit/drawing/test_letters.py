@@ -24,4 +24,4 @@ def test_processes_do_not_disturb_each_other() -> None:
     """Both have the font that this process has opened, and draw at the same time what it draws alone."""
     alone = drawn(0)
     with get_context("fork").Pool(2) as pool:
-        assert set(pool.map(drawn, range(8), chunksize=1)) == {alone}
+        assert set(pool.map_async(drawn, range(8), chunksize=1).get(timeout=120)) == {alone}

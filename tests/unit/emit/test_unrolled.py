@@ -67,7 +67,7 @@ def looped(robot: Mechanism, frame: tuple[object, ...], reference: tuple[float, 
 def test_inverse_all_is_its_branches_one_by_one(description: Description, limit: float | None) -> None:
     """`inverse_all` gives in every slot the answer of one branch alone."""
     robot = robot_of(description, limit)
-    frames, references = samples(robot, 12 if description.search is not None else 60)
+    frames, references = samples(robot, 12 if description.search is not None else 24)
     answers = 0
     for frame, reference in zip(frames, references.tolist(), strict=True):
         wanted = looped(robot, frame, tuple(reference))
@@ -85,7 +85,7 @@ def test_inverse_all_is_its_branches_one_by_one(description: Description, limit:
 def test_inverse_all_without_its_limits_answers_what_is_beyond_them(description: Description) -> None:
     """Limits that are not tested still say which turn an axis takes, where one value is inside."""
     robot = robot_of(description, 20.0, check_limits=False)
-    frames, references = samples(robot, 6 if description.search is not None else 30)
+    frames, references = samples(robot, 3 if description.search is not None else 15)
     for frame, reference in zip(frames, references.tolist(), strict=True):
         wanted = looped(robot, frame, tuple(reference))
         for found, axes in zip(robot.inverse_all(frame, reference), wanted, strict=True):
@@ -153,7 +153,7 @@ def check_same(description: Description, robot: Mechanism, found: tuple[float, .
 def test_a_batch_of_all_branches_is_its_rows(description: Description) -> None:
     """A batch of all branches gives the axes and statuses of single calls."""
     robot = robot_of(description, 120.0)
-    frames, references = samples(robot, 12 if description.search is not None else 60)
+    frames, references = samples(robot, 12 if description.search is not None else 24)
     positions, rotations = np.array([f[0] for f in frames]), np.array([f[1] for f in frames])
     positions[5] = np.nan
     axes, statuses = robot.inverse_all_batch(positions, rotations, references)

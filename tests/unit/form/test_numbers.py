@@ -88,7 +88,7 @@ WRITTEN = st.one_of(st.sampled_from(EXACT), st.floats(-3.0, 3.0, allow_nan=False
 SIZES = st.one_of(st.integers(-400, 400), st.floats(-2, 2).map(lambda v: round(v, 3)), st.just(Rational(1, 3)))
 
 
-@pytest.mark.long
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(st.lists(st.tuples(WRITTEN, SIZES), min_size=1, max_size=4))
 def test_a_chain_with_names_is_the_same_chain(numbers: list[tuple[object, object]]) -> None:

@@ -112,7 +112,7 @@ def random_program(draw: st.DrawFn) -> Program:
 
 
 @pytest.mark.slow
-@settings(max_examples=150)
+@settings(max_examples=50)
 @given(random_program(), st.integers(0, 2**16))
 def test_values_stay_the_same(one: Program, seed: int) -> None:
     """A lowered program has the outputs of the program before."""

@@ -14,7 +14,7 @@ E1, A1, A2, A3, A4, A5, A6 = (rotary(name, f"turn {name}") for name in ("E1", "A
 ARM = Rz(A1) * Ry(A2) * Tz(540) * Ry(A3) * Tx(540) * Rx(A4) * Ty(150) * Ry(A5) * Rx(A6) * Tx(160)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_held_turn_keeps_its_value_at_a_planted_pose() -> None:
     """The other references are far away; that of a held joint is where the pose was planted."""
     table = Mechanism(
