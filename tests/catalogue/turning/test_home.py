@@ -11,7 +11,7 @@ from tests.catalogue.closure import Array
 from tests.catalogue.turning_machines import TurningMachine, turning_machine
 
 COUNT = 1500
-POSES = 4
+POSES = 2
 """At which all solutions are sought by brute force."""
 TILT = np.array([[1.0, 0.0, 0.0], [0.0, 0.6, -0.8], [0.0, 0.8, 0.6]])
 
