@@ -53,6 +53,7 @@ def distances_of(machine: Machine, answers: list[Array], references: Array) -> A
     return np.nan_to_num(np.stack([squared(machine, a, references) for a in answers]), nan=np.inf)
 
 
+@pytest.mark.slow("Hexaglide", "Planar", "ThreeParallel")
 def test_an_open_branch_is_the_nearest(machines: tuple[Machine, ...]) -> None:
     """An open branch is that of the solution nearest to the reference."""
     for machine in machines:
@@ -82,6 +83,7 @@ def test_an_open_branch_is_the_nearest(machines: tuple[Machine, ...]) -> None:
             assert nearest_slots == set(range(len(answers)))
 
 
+@pytest.mark.slow("Planar", "ThreeParallel")
 @pytest.mark.long("Pos_RRR")
 def test_a_tie_goes_to_the_lowest_slot(machines: tuple[Machine, ...]) -> None:
     """Half-way between two slots, and less than the tie's width off it, slot 0 answers; beyond it the nearer one."""

@@ -79,6 +79,7 @@ def check_both_ends(machine: Machine, axes: Array, key: str, value: float) -> No
             assert outcome(machine.changed(**limits, check_limits=False), machine, axes) is Status.OK
 
 
+@pytest.mark.slow("Hexaglide")
 @pytest.mark.long
 def test_every_axis_has_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     """Both limits of every axis refuse poses beyond them."""

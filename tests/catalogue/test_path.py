@@ -77,6 +77,7 @@ def test_an_automatic_branch_stays_on_a_regular_way(machines: tuple[Machine, ...
         assert np.abs(found - axes).max() < TOLERANCE
 
 
+@pytest.mark.slow("60.0-", "359.0-", "800.0-")
 @pytest.mark.parametrize("direction", [1, -1])
 @pytest.mark.parametrize("width", [60.0, 340.0, 359.0, 361.0, 800.0])
 def test_through_a_limit(mechanism: Mechanism, machines: tuple[Machine, ...], width: float, direction: int) -> None:

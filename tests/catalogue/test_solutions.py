@@ -43,6 +43,7 @@ def test_the_slots_are_the_roots_of_the_closure(machines: tuple[Machine, ...]) -
     assert counts == {most} or not machines[0].branches_meet_together
 
 
+@pytest.mark.slow("Hexaglide", "ThreeParallel")
 @pytest.mark.long("Pos_RRR")
 def test_where_the_closure_has_no_root_no_slot_answers(machines: tuple[Machine, ...]) -> None:
     """Positions from the middle of the machine to twice its reach: two branches of a serial one answer together, or

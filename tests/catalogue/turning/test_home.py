@@ -53,6 +53,7 @@ def test_every_pose_around_home_is_found_in_the_configuration_of_home(machines: 
         assert (written[:, : machine.robot.BRANCHES] == home_slot(machine)[: machine.robot.BRANCHES]).all()
 
 
+@pytest.mark.slow("Hexaglide")
 def test_the_inverse_accepts_what_is_in_the_mode_of_home(machines: tuple[TurningMachine, ...]) -> None:
     """In every slot: the sign of det A, and its least size, by definition; a slot that is refused is in the other mode,
     too near, or out of reach.
