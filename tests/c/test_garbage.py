@@ -116,6 +116,7 @@ def test_no_build_that_takes_nan_for_a_number(option: str) -> None:
         assert "they remove the tests for NaN" in refused_in(folder, option, *include, "-c", source), source
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("options", ["-O3 -funsafe-math-optimizations", "-Ofast -fno-fast-math"])
 def test_a_build_that_is_allowed_refuses_nan(options: str) -> None:
     """Other options change digits, and no refusal."""

@@ -53,6 +53,7 @@ STOPPED = {
 """What stops the program, which has no answer then."""
 
 
+@pytest.mark.slow("trials", "curve", "tangents", "one search")
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_planted_fault_is_found(fault: str) -> None:
     """Some answer differs from that of Python, or the program is stopped."""

@@ -124,6 +124,7 @@ def test_the_program_of_the_readme() -> None:
     assert found == f"{printed[2]}\n"
 
 
+@pytest.mark.slow
 def test_optimised_and_for_cpp() -> None:
     """No warning where the compiler looks deeper; C++ reads the headers (that of the search is the longest source)."""
     parts = [part_of(name) for name in ("Kin_Scara4_ZCcoupled_Type1", "Kin_Ac6_RZRYRYRXRYRZ_J6Offset")]

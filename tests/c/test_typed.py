@@ -16,6 +16,7 @@ from tests.mechanisms import named
 TYPED = Path(__file__).with_name("typed.c")
 
 
+@pytest.mark.slow("Kin_Ac6")
 @pytest.mark.parametrize(
     ("name", "options"),
     [

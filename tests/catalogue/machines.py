@@ -204,7 +204,7 @@ def machines_of(mechanism: Mechanism) -> tuple[Machine, ...]:
         "equal": nominal | {name: np.copysign(250.0, nominal[name]) for name in lengths},
         "unequal": nominal | {name: np.copysign(v, nominal[name]) for name, v in zip(lengths, UNEQUAL, strict=False)},
     }
-    found |= {f"random {k}": _random(mechanism, rng) for k in (1, 2, 3)}
+    found |= {f"random {k}": _random(mechanism, rng) for k in (1, 2)}
     return tuple(machine(mechanism, label, given) for label, given in found.items())
 
 

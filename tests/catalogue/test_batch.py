@@ -13,7 +13,7 @@ from tests.catalogue.machines import Machine
 from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal
 
-ROWS = 120
+ROWS = 100
 
 
 def mixed(machine: Machine, rng: Generator) -> tuple[Array, Array, Array, Array]:

@@ -79,11 +79,11 @@ def test_reach_and_hole(machines: tuple[Machine, ...]) -> None:
         first, second = lengths(machine)[:2]
         for edge in (first + second, abs(first - second)):
             for relative in BESIDE:
-                frames = at_wrist_distance(machine, edge * (1 + relative), 6)
+                frames = at_wrist_distance(machine, edge * (1 + relative), 3)
                 squares = [squared_sine(machine, p, r) for p, r in zip(*frames, strict=True)]
                 for slot in slots(machine):
                     configuration = slot + (0,) * len(machine.robot.PERIOD_AXES)
-                    found, statuses = inverse(machine.robot, *frames, configuration, at_home(machine, 6))
+                    found, statuses = inverse(machine.robot, *frames, configuration, at_home(machine, 3))
                     for square, status in zip(squares, statuses, strict=True):
                         if abs(square + BOUNDARY) > BOUNDARY / 10:
                             assert status == (Status.OK if square > -BOUNDARY else Status.UNREACHABLE), (

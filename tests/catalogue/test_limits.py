@@ -25,7 +25,7 @@ FIRST_TURN = 99.0
 
 def poses(machine: Machine, seed: int) -> Array:
     """Axis values that the vendor's limit ranges allow, on the first turn."""
-    axes = machine.draw(2000, np.random.default_rng(seed), farthest=FIRST_TURN)
+    axes = machine.draw(500, np.random.default_rng(seed), farthest=FIRST_TURN)
     fits = np.ones(len(axes), dtype=bool)
     for i, joint in enumerate(machine.mechanism.joints):
         low, high = joint.limit_range or (-1e6, 1e6)
@@ -79,6 +79,7 @@ def check_both_ends(machine: Machine, axes: Array, key: str, value: float) -> No
             assert outcome(machine.changed(**limits, check_limits=False), machine, axes) is Status.OK
 
 
+@pytest.mark.slow("Hexaglide")
 @pytest.mark.long
 def test_every_axis_has_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     """Both limits of every axis refuse poses beyond them."""

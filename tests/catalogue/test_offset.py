@@ -14,7 +14,7 @@ from tests.catalogue.loci import loci
 from tests.catalogue.machines import Machine
 from tests.catalogue.refusals import refusal
 
-POSES = 150
+POSES = 40
 POINTS = 12
 ROUND_TRIP = 1e-8
 REGULAR = 0.03

@@ -36,7 +36,7 @@ EXECUTED = ("MC_KIN_TYPE_12_XY", "Kin_Tripod_Rotary")
 DECADES = 3.0
 FEWER_DECADES = {"Kin_Delta_P3C_Type3": 1.0}
 """Twelve lengths: of a wider spread hardly any machine closes."""
-MACHINES, PERTURBED = 25, 6
+MACHINES, PERTURBED = 10, 6
 ATTEMPTS, FEWEST = 1000, 5
 """Loops of random lengths seldom close."""
 REGULAR = 0.01

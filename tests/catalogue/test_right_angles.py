@@ -13,6 +13,7 @@ from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine, machine
 from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal
+from tests.catalogue.shares import share
 from tests.catalogue.test_round_trip import slots
 
 pytestmark = pytest.mark.serial
@@ -88,10 +89,12 @@ def test_every_pose_goes_round(grid: tuple[Machine, Array]) -> None:
     assert (chosen.robot.forward_batch(found)[2] == configurations)[regular].all()
 
 
+@pytest.mark.slow("ThreeParallel")
 def test_every_pose_is_solved_on_every_slot(grid: tuple[Machine, Array]) -> None:
     """At right angles every slot that answers reaches the pose, and at least one slot answers."""
     chosen, axes = grid
     axes = axes[possible(chosen, axes)]
+    axes = axes[share(len(axes))]
     frames = chosen.closure.poses(axes)
     robot = chosen.changed(check_limits=False)
     answers = np.zeros(len(axes), dtype=int)

@@ -11,7 +11,7 @@ from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
 from tests.catalogue.references import held_at
 
-POSES = 500
+POSES = 300
 AXES = 1e-9
 """Degrees or lengths: how well axis values are found again at a regular pose."""
 FRAME = 1e-12
@@ -77,7 +77,7 @@ def test_inverse_all_holds_every_branch_in_its_slot(machines: tuple[Machine, ...
     """`inverse_all` has in each slot the answer of the inverse for its bytes."""
     for machine in machines:
         robot = machine.changed(check_limits=False)  # near the end of an axis the other branch may be beyond it
-        axes = machine.draw(20, np.random.default_rng(5))
+        axes = machine.draw(10, np.random.default_rng(5))
         for values, position, rotation in zip(axes, *machine.closure.poses(axes), strict=True):
             found = robot.inverse_all((position, rotation), values)
             assert [s.configuration[: robot.BRANCHES] for s in found] == slots(machine)
@@ -94,7 +94,7 @@ def test_inverse_all_holds_every_branch_in_its_slot(machines: tuple[Machine, ...
 def test_a_scalar_inverse_is_the_batch_inverse(machines: tuple[Machine, ...]) -> None:
     """Single calls and batches of the inverse agree."""
     for machine in machines:
-        axes = machine.draw(50, np.random.default_rng(6))
+        axes = machine.draw(25, np.random.default_rng(6))
         positions, rotations = machine.closure.poses(axes)
         _, _, configurations, _ = machine.robot.forward_batch(axes)
         found, _ = machine.robot.inverse_batch(positions, rotations, configurations, axes)

@@ -11,6 +11,7 @@ from softkin import Status
 LINKS = {"d1": 89.0, "a2": -425.0, "a3": -392.0, "d4": 109.0, "d5": 94.0, "d6": 82.0}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("elbow", [0.0, 180.0])
 @pytest.mark.parametrize("beside", [40.0, 4.0, 0.4, 0.04])
 def test_poses_at_two_edges_come_back(elbow: float, beside: float) -> None:

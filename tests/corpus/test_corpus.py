@@ -17,6 +17,7 @@ KINDS = {"regular", "singular", "garbage", "rotation", "bytes", "reach", "limits
 """What every mechanism with axes and branches is asked about."""
 
 
+@pytest.mark.slow("Kin_Ac6_RZ", "ThreeParallel", "Planar", "Hexaglide")
 @pytest.mark.parametrize("name", NAMES)
 def test_answers_are_those_recorded(name: str) -> None:
     """The package gives the recorded answer to every recorded question."""

@@ -56,6 +56,7 @@ def planted(file: str, found: str, wrong: str) -> Callable[[str, str], str]:
     return change
 
 
+@pytest.mark.slow("trials", "curve", "tangents", "one search")
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_planted_fault_is_found(fault: str) -> None:
     """Some answer differs from that of Python."""

@@ -11,6 +11,7 @@ from tests.javascript import comparison
 from tests.languages.language import JAVASCRIPT, LANGUAGES, Language
 
 
+@pytest.mark.slow("Ac6_RZ", "ThreeParallel", "Planar")
 @pytest.mark.long("Hexapod", "P2C_Type1", "Pos_RRR", "Wrist2", "Ac6_RZ", "-C")
 @pytest.mark.parametrize("language", LANGUAGES, ids=str)
 @pytest.mark.parametrize("name", DIMENSIONS)

@@ -9,9 +9,12 @@ import pytest
 
 from derive.description.mechanism import Mechanism
 from tests.languages.language import LANGUAGES, Answer, C, Language
+from tests.machines.collection import COSTLY
 from tests.machines.made import made
 from tests.machines.odd_names import ODD
 from tests.machines.spoken import BASE, HELD, confirm_natural_names, spoken
+
+pytestmark = pytest.mark.slow(*COSTLY, "coordinates of", "names of", "words of", "constants")
 
 OTHER_INT = "joints called Arm and Offset"
 """It has an `int_length` beside `int`, which C calls so elsewhere."""
@@ -28,9 +31,10 @@ def test_a_machine_of_the_user(language: Language, name: str) -> None:
 
 
 @EVERY
-def test_a_reference_that_is_needed(language: Language) -> None:
+@pytest.mark.parametrize("name", (HELD,))
+def test_a_reference_that_is_needed(language: Language, name: str) -> None:
     """A held joint has no value without a reference: that is said, and not guessed."""
-    machine = made(HELD)
+    machine = made(name)
     frame = {"position": [0.0] * 3, "rotation": np.eye(3).tolist()}
     calls = [["inverse", frame, None, None], ["inverseAll", frame, None]]
     given = {"parameters": dict(machine.robot.parameters), "calls": calls}

@@ -58,6 +58,7 @@ def test_no_warnings(name: str, tmp_path: Path) -> None:
         run(tmp_path, "-std=c99", *STRICT, *includes("master"), "-fsyntax-only", path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "stub", "options"),
     [
@@ -73,6 +74,7 @@ def test_optimised(name: str, stub: str, options: tuple[str, ...], tmp_path: Pat
         run(tmp_path, *options, *strict, *includes(stub), "-Os", "-Wframe-larger-than=2560", "-c", path)
 
 
+@pytest.mark.slow("coordinates of", "names of", "words of", "constants")
 @pytest.mark.parametrize("stub", STUBS)
 @pytest.mark.parametrize("name", ODD)
 def test_natural_names(name: str, stub: str) -> None:

@@ -323,3 +323,11 @@ MACHINES: Mapping[str, Mechanism] = {
     **TASK_MACHINES,
     **SWEPT,
 }
+COSTLY = (
+    "an elbow that is held", "arm in metres", "arm of a URDF file", "arm with a wrist that is bent",
+    "arm with three parallel axes", "across its last axis", "by a table with angles", "by a table, the last held",
+    "head points, beside its axis", "may lie on its second axis", "seven axes beside each other",
+    "three axes that miss", "three axes with offsets", "tilting arm points", "with a wrist",
+    "with an elbow and a wrist", "wrist goes sideways",
+)  # fmt: skip
+"""Words of those that take seconds to be derived: `make sweep` asks them."""

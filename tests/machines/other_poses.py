@@ -68,8 +68,10 @@ class Platform:
         lost: list[Solved] = []
         kept: list[Solved] = []
         for frame in self.frames(0.9, 1.2):
+            if min(len(lost), len(kept)) == _WANTED:
+                break
             for solution in self.open_robot.inverse_all(frame):
-                if solution.axes is None or len(lost) >= _WANTED <= len(kept):
+                if solution.axes is None:
                     continue
                 group = kept if self.finds(frame, solution.axes) else lost
                 if len(group) < _WANTED and (found := self._solved(frame, solution)) is not None:

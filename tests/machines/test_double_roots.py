@@ -25,6 +25,8 @@ from tests.mechanisms import kinematics_of
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled_text
 
+pytestmark = pytest.mark.slow
+
 ZERO = dict(zip(POINTS, (("beside_3",), ("beside_3", "beside_4")), strict=True))
 DECADES = (-1.0, -2.0, -2.7, -3.0, -3.5, -4.0, -5.0, -6.0, -8.0, -10.0, -12.0)
 EVERY = pytest.mark.parametrize("name", POINTS)

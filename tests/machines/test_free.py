@@ -18,6 +18,7 @@ def far_from(machine: Made, axes: Array) -> Array:
     return np.asarray(axes + rng.uniform(-1.0, 1.0, axes.shape) * sizes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FREED)
 def test_no_pose_is_lost_from_a_far_reference(name: str) -> None:
     """Nor where the free angle is near its threshold: half of its digits are then in the pose."""
@@ -36,6 +37,7 @@ def test_no_pose_is_lost_from_a_far_reference(name: str) -> None:
         assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FREED)
 def test_the_block_moves_a_free_angle_to_the_same_place(name: str) -> None:
     machine = made(name)

@@ -196,6 +196,7 @@ def test_a_gear_of_any_size_and_sign(gear: float) -> None:
             assert status == OK and (np.abs(np.array(found[:3]) - axes) <= 1e-7 * scale).all()
 
 
+@pytest.mark.slow
 def test_axes_that_do_not_repeat_after_360_degrees_are_no_modulo_axes() -> None:
     """SoftMotion's modulo axes have a period of 360 degrees: all others are declared linear, like a quill."""
     kinds = {

@@ -7,9 +7,12 @@ import pytest
 import softkin
 from softkin import KinematicsError
 
+from tests.machines.collection import COSTLY
 from tests.machines.grid import grid, margins
 from tests.machines.held_machines import HELD
 from tests.machines.made import made
+
+pytestmark = pytest.mark.slow(*COSTLY)
 
 _CLOSED = 1e-9
 

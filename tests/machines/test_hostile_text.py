@@ -35,6 +35,8 @@ from tests.machines.hostile import MADE, MARKS, UNPRINTED, hostile, plain
 from tests.machines.made import imported_class
 from tests.text.units import compiled_text
 
+pytestmark = pytest.mark.slow("loop")
+
 EVERY = pytest.mark.parametrize("name", MADE)
 FREE = {"source", "summary", "title", "notes", "meaning", "meanings", "message"}
 """The fields that hold a text for people; every other text is a name, or a word of a list."""

@@ -12,12 +12,14 @@ from softkin import KinematicsError, Status
 
 from tests.machines import angle_machines
 from tests.machines.chain_machines import BENT_WRISTS, CHAIN_SOLUTIONS
-from tests.machines.collection import MACHINES, PARAMETERS_DECIDE
+from tests.machines.collection import COSTLY, MACHINES, PARAMETERS_DECIDE
 from tests.machines.grid import grid, is_own, margins
 from tests.machines.made import Array, Made, made
 from tests.machines.subset_machines import SUBSET_SOLUTIONS
 from tests.machines.task_machines import TASK_SOLUTIONS
 from tests.text.controller import OK
+
+pytestmark = pytest.mark.slow(*COSTLY)
 
 EVERY = pytest.mark.parametrize("name", MACHINES)
 EXPECTED = {
@@ -77,6 +79,12 @@ def is_searched(machine: Made) -> bool:
 Answers = Iterator[tuple[tuple[int, ...], Sequence[float] | None]]
 
 
+def own_grid(machine: Made) -> Array:
+    """Poses of the grid at which the machine may stand; of a search, which takes long, each third."""
+    axes = grid(machine)
+    return axes[is_own(machine, axes)][:: 3 if is_searched(machine) else 1]
+
+
 def answers(machine: Made, frame: softkin.Frame, axes: list[float]) -> Answers:
     """The answer on every branch. A search sorts what it finds for all branches by the signs at the root, and a double
     root has none; a call for one branch does not.
@@ -113,8 +121,7 @@ def test_the_number_of_solutions(name: str) -> None:
 @EVERY
 def test_every_solution_closes_and_no_pose_is_lost(name: str) -> None:
     machine = made(name)
-    axes = grid(machine)
-    axes = axes[is_own(machine, axes)]
+    axes = own_grid(machine)
     assert len(axes) > 50
     positions, rotations = machine.closure.poses(axes)
     slots, statuses = machine.robot.inverse_all_batch(positions, rotations, axes)
@@ -129,8 +136,7 @@ def test_every_solution_closes_and_no_pose_is_lost(name: str) -> None:
 def test_an_answer_closes_from_any_reference(name: str) -> None:
     """A joint that is free where the machine is singular keeps its reference, and the others follow it."""
     machine = made(name)
-    axes = grid(machine)
-    axes = axes[is_own(machine, axes)]
+    axes = own_grid(machine)
     positions, rotations = machine.closure.poses(axes)
     held = [j in machine.mechanism.held_joints for j in machine.mechanism.joints]
     turned = np.random.default_rng(6).uniform(-1.0, 1.0, axes.shape) * np.where(machine.closure.angles, 170.0, 0.5)

@@ -12,6 +12,8 @@ from derive.mechanism import Mechanism, Task, Vendor, X, Y, assembly, branch, le
 from derive.vectors import cross, minus, vector
 from tests.machines.made import built_of, imported_class
 
+pytestmark = pytest.mark.slow
+
 GIVEN = {"arm_length_1": 400.0, "arm_length_2": 380.0, "crank": 100.0, "base_width": 300.0}
 L1, L2, CRANK, WIDTH = (length(name, name.replace("_", " "), nominal=value) for name, value in GIVEN.items())
 S, A = linear("S", "carriage along X"), rotary("A", "crank on the carriage")

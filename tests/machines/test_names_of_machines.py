@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 import softkin
 
 from derive.emit.python import package
@@ -52,6 +53,7 @@ def test_no_machine_has_a_name_of_the_package() -> None:
     assert [n for n in sorted(beside) if n.islower() and "__" not in n and module_name(f"Kin_{n}") == n] == []
 
 
+@pytest.mark.slow
 def test_both_can_be_had(tmp_path: Path) -> None:
     """A package of machines that are called so, and used."""
     for path, text in package.files([package.part(build(named(name))) for name in NAMES]).items():

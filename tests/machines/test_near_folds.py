@@ -16,8 +16,11 @@ import softkin
 
 from derive.description.mechanism import Role
 from tests.machines.chain_machines import OF_DEGREE_FOUR
+from tests.machines.collection import COSTLY
 from tests.machines.made import Array, made
 from tests.machines.searched_machines import POINTS
+
+pytestmark = pytest.mark.slow(*COSTLY)
 
 ARMS = {**OF_DEGREE_FOUR, **POINTS}
 EVERY = pytest.mark.parametrize("name", ARMS)

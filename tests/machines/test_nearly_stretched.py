@@ -10,9 +10,12 @@ from itertools import product
 import numpy as np
 import pytest
 
+from tests.machines.collection import COSTLY
 from tests.machines.grid import every_pose_is_met
 from tests.machines.made import Array, Made, made
 from tests.text.controller import OK
+
+pytestmark = pytest.mark.slow(*COSTLY)
 
 EVERY = pytest.mark.parametrize("name", ("seven axes", "arm in metres with a held turn of its upper arm"))
 _SMALL = (0.0, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3)

@@ -33,6 +33,8 @@ from tests.text.shapes import names as names_in
 from tests.text.test_second_grammar import declaring
 from tests.text.units import compiled_text
 
+pytestmark = pytest.mark.slow("coordinates of", "names of", "words of", "constants")
+
 EVERY = pytest.mark.parametrize("name", ODD)
 REACH = 700.0
 
@@ -152,6 +154,7 @@ def test_batches_answer_the_same(name: str) -> None:
     assert np.abs(back - axes[rows]).max() <= 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["Kin_P2X_Type1", "Kin_Scara4_ZCcoupled_Type1", "Softkin_DualScara"])
 def test_parameters_with_the_names_of_what_their_own_derivation_finds(name: str) -> None:
     """The worst that can be asked for: the parameters of a mechanism are called like values of its own programs."""

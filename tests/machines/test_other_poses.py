@@ -24,6 +24,8 @@ from tests.mechanisms import kinematics_of
 from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.units import compiled_text, text_of
 
+pytestmark = pytest.mark.slow("3-RRR on a lift")
+
 EVERY = pytest.mark.parametrize("name", (*CATALOGUE, *OWN))
 WORDS = "forward kinematics from the home pose does not find this pose again"
 _NEAR = 2e-4

@@ -13,6 +13,8 @@ from tests.machines.grid import corners, every_pose_is_met
 from tests.machines.made import made
 from tests.machines.parallel_machines import PARALLEL
 
+pytestmark = pytest.mark.slow
+
 _CLOSED = 1e-10
 
 

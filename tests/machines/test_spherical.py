@@ -20,6 +20,8 @@ from tests.machines.spherical_machines import A1, SPHERICAL
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled_text
 
+pytestmark = pytest.mark.slow
+
 EVERY = pytest.mark.parametrize("name", SPHERICAL)
 Matrix = NDArray[np.float64]
 

@@ -10,6 +10,8 @@ from tests.machines.chain_machines import WRIST_BEYOND_QUARTIC
 from tests.machines.made import made
 from tests.text.controller import OK
 
+pytestmark = pytest.mark.slow
+
 _MOVED = 1e-6
 
 

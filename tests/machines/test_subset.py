@@ -48,6 +48,7 @@ def missed(mechanism: Mechanism, robot: softkin.Mechanism, axes: Array, position
     return max(abs(float(e.subs(named))) for e in mechanism.equations) / 200.0**2
 
 
+@pytest.mark.slow("upright")
 @pytest.mark.parametrize("name", LOOPS)
 def test_a_loop_closes_in_both_languages(name: str) -> None:
     robot, controller = loop(name)
@@ -75,6 +76,7 @@ def test_a_loop_closes_in_both_languages(name: str) -> None:
     assert closed > 20
 
 
+@pytest.mark.slow("upright")
 @pytest.mark.parametrize("name", LOOPS)
 def test_the_jacobian_of_a_loop_is_that_of_its_differences(name: str) -> None:
     """Also where a refusal has decided the very value that the program gives."""
@@ -94,6 +96,7 @@ def test_the_jacobian_of_a_loop_is_that_of_its_differences(name: str) -> None:
     assert compared > 5
 
 
+@pytest.mark.slow("upright")
 @pytest.mark.parametrize("name", LOOPS)
 def test_a_loop_refuses_what_it_cannot_command(name: str) -> None:
     robot, controller = loop(name)

@@ -14,6 +14,8 @@ from derive.kinematics.reference_cases import Called
 from derive.pipeline import derive_one
 from derive.report.self_test import self_test
 
+pytestmark = pytest.mark.slow("p2c")
+
 LOOPS = ("kin_p2x_type2", "kin_p2c_type1")
 LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tests.native.build import EXTENSION, ROOT, SANITIZED, SHARED, SOURCES, built, compiler
 
-FEW = ("articulatedrobot_6dof", "crane", "wrist2", "scara4_zccoupled_type1", "pos_rrr")
+FEW = ("ac6_txtytzryrxrz", "crane", "wrist2", "scara4_zccoupled_type1", "pos_rrr")
 """The machines of the extension that is built for this: their formulas are tested elsewhere, in all machines."""
 CODE = """
 import warnings
@@ -20,7 +20,7 @@ import softkin
 from tests.native import machines
 from tests.native.garbage import frames, rows
 from tests.native.machines import native, outcome
-for name in ("Kin_ArticulatedRobot_6DOF", "Kin_Crane", "Kin_Wrist2", "Kin_Scara4_ZCcoupled_Type1", "Kin_Pos_RRR"):
+for name in ("Kin_Ac6_TXTYTZRYRXRZ", "Kin_Crane", "Kin_Wrist2", "Kin_Scara4_ZCcoupled_Type1", "Kin_Pos_RRR"):
     robot, width = native(name), len(softkin.catalogue()[name].AXES)
     machine, good = robot._machine, machines.poses(name, 2)
     for axes in rows(width):

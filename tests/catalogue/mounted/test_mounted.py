@@ -35,6 +35,7 @@ def moving(sample: Sample) -> bool:
     return sample.robot.ROLE != "orientation"
 
 
+@pytest.mark.slow("Hexaglide", "Kin_Hexapod")
 @pytest.mark.long("Ac6")
 @EVERY_MECHANISM
 def test_its_frames_are_those_of_the_tool(mechanism: Mechanism) -> None:

@@ -11,7 +11,7 @@ from tests.catalogue.closure import Array
 from tests.catalogue.turning_machines import TurningMachine, turning_machine
 
 COUNT = 1500
-POSES = 4
+POSES = 2
 """At which all solutions are sought by brute force."""
 TILT = np.array([[1.0, 0.0, 0.0], [0.0, 0.6, -0.8], [0.0, 0.8, 0.6]])
 
@@ -53,6 +53,7 @@ def test_every_pose_around_home_is_found_in_the_configuration_of_home(machines: 
         assert (written[:, : machine.robot.BRANCHES] == home_slot(machine)[: machine.robot.BRANCHES]).all()
 
 
+@pytest.mark.slow("Hexaglide")
 def test_the_inverse_accepts_what_is_in_the_mode_of_home(machines: tuple[TurningMachine, ...]) -> None:
     """In every slot: the sign of det A, and its least size, by definition; a slot that is refused is in the other mode,
     too near, or out of reach.

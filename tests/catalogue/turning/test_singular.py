@@ -71,6 +71,7 @@ def _status(machine: TurningMachine, position: np.ndarray, rotation: np.ndarray,
     return Status.OK
 
 
+@pytest.mark.slow("Hexaglide", "Planar")
 def test_a_path_into_a_type_2_singularity_is_stopped_before(machines: tuple[TurningMachine, ...]) -> None:
     """The platform turns about z, in the configuration of home, until a leg ends or nothing holds it: until then it is
     in the mode of the machine, and what stops it there is the margin, which has become small.

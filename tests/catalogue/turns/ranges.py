@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-WIDTHS = (180.0, 340.0, 350.0, 351.0, 359.0, 360.0, 361.0, 400.0, 540.0, 700.0)
+WIDTHS = (180.0, 340.0, 350.0, 351.0, 360.0, 361.0, 540.0)
 GAP_THAT_NO_STEP_CROSSES = 10.0
-STEPS = (1e-9, 1e-6, 1e-3, 0.1, 1.0, 9.0)
+STEPS = (1e-9, 1e-6, 0.1, 9.0)
 """Degrees; the last one is the longest that a path takes."""
 FEW_WIDTHS = (340.0, 350.0, 351.0, 360.0, 540.0)
 FEW_STEPS = (1e-6, 9.0)
