@@ -9,8 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
-from importlib import import_module
-from itertools import chain
+from multiprocessing import get_all_start_methods, get_context
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +29,9 @@ from derive.kinematics.kinematics import Evidence, Kinematics
 from derive.work import STEPS, TooMuchWork, at_most
 
 PROCESSES = 2
+_ROOMS = ("emit.picture.page", "emit.softmotion.pictures", "kinematics.build", "report.self_test", "witness")
+_LOADED = [__name__, *(f"derive.{room}" for room in _ROOMS)]
+"""The modules that deriving needs."""
 WRITTEN = (python.name, StructuredTextFiles.name)
 """The languages that are written unless others are asked for."""
 _OTHERS: tuple[Language, ...] = (javascript, c, linuxcnc)
@@ -118,13 +120,12 @@ def attempts(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES)
     if not work.missing:
         yield from (kept for kept in work.kept if kept is not None)
         return
-    _load()
     first, *others = work.missing
-    made = _attempt(profile, wanted, first)  # here: what it fills, templates and caches, all processes have then
-    # What is derived lives as long as its process: looking for garbage among it finds nothing, and takes a tenth of the
-    # time. A command has disabled that itself, other callers have not.
-    with ProcessPoolExecutor(max_workers=min(PROCESSES, max(1, len(others))), initializer=gc.disable) as pool:
-        derived = chain([made], pool.map(partial(_attempt, profile, wanted), others))
+    if not others:
+        yield from (_attempt(profile, wanted, first) if kept is None else kept for kept in work.kept)
+        return
+    with workers(len(work.missing)) as pool:
+        derived = pool.map(partial(_attempt, profile, wanted), work.missing)
         try:
             for kept in work.kept:
                 yield next(derived) if kept is None else kept
@@ -132,10 +133,16 @@ def attempts(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES)
             pool.shutdown(cancel_futures=True)
 
 
-def _load() -> None:
-    """Load what deriving needs, once for all processes that are then started."""
-    for room in ("emit.picture.page", "emit.softmotion.pictures", "kinematics.build", "report.self_test", "witness"):
-        import_module(f"derive.{room}")
+def workers(tasks: int) -> ProcessPoolExecutor:
+    """The processes of a run, which have loaded what deriving needs.
+
+    Where that is possible, a process without threads starts them: a copy of one with threads may wait for ever for a
+    lock that a thread has held. What is derived lives as long as its process: looking for garbage among it finds
+    nothing, and takes a tenth of the time.
+    """
+    context = get_context("forkserver" if "forkserver" in get_all_start_methods() else "spawn")
+    context.set_forkserver_preload(_LOADED)
+    return ProcessPoolExecutor(min(PROCESSES, tasks), mp_context=context, initializer=gc.disable)
 
 
 def derive_one(

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import gc
 import os
 import sys
 import webbrowser
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,7 +17,7 @@ from derive.command.stages import Stages
 from derive.description.catalogue import Entry, catalogue
 from derive.description.mechanism import Mechanism
 from derive.faults import Failure, GenerationError, error, failure
-from derive.pipeline import PROCESSES, Report, derive_and_measure
+from derive.pipeline import Report, derive_and_measure, workers
 from derive.progress import Progress
 
 if TYPE_CHECKING:
@@ -100,7 +98,7 @@ def _page(mechanism: Mechanism, stage: Report, viewer: str) -> Page:
 
 def _pages(entries: tuple[Entry, ...], has_viewer: bool) -> Iterator[Page | Failure]:
     """The pages in the order of the catalogue."""
-    with ProcessPoolExecutor(max_workers=min(PROCESSES, len(entries)), initializer=gc.disable) as pool:
+    with workers(len(entries)) as pool:
         yield from pool.map(partial(_attempt, has_viewer), entries)
 
 
