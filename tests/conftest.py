@@ -39,7 +39,7 @@ collect_ignore = [] if IS_NATIVE else ["native"]
 ROOT = Path(__file__).parent
 FOLDERS_OF_QUICK = ("unit", "harness", "catalogue", "text", "languages")
 """Where `make quick` looks for tests."""
-SLOW = ("slow",)
+SLOW, BROAD = ("slow",), ("broad",)
 NOT_QUICK = ("slow", "long")
 """The markers of tests that `make test`, and `make quick`, leave out."""
 LEFT_OUT_AS_A_WHOLE = re.compile(r"^pytestmark = pytest\.mark\.(slow|long)$", re.MULTILINE)
@@ -144,10 +144,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         names = mechanisms_of(item, folders)
         place = f"{file}::{item.name}"
         is_quick = set(names) <= PATHS.keys() if names else folders[:1] in ALL_OF_THEM_QUICK
-        left_out = SLOW if IS_NATIVE else NOT_QUICK
-        if (is_quick and not _is_left_out(item, place, left_out)) or (IS_NATIVE and folders[:1] in ASKED_WHOLE):
+        is_quick |= IS_NATIVE and folders[:1] in ASKED_WHOLE
+        is_broad = _is_left_out(item, place, BROAD) and not set(names) <= PATHS.keys()
+        if is_quick and not _is_left_out(item, place, SLOW if IS_NATIVE else NOT_QUICK):
             item.add_marker("quick")
-        elif IS_NATIVE or _is_left_out(item, place, SLOW):
+        elif IS_NATIVE or is_broad or _is_left_out(item, place, SLOW):
             item.add_marker("sweep")
         if is_shared_out:
             item.add_marker(pytest.mark.xdist_group(_group_of(item, place, folders, names)))
@@ -162,7 +163,7 @@ def _is_left_out(item: pytest.Item, place: str, names: tuple[str, ...]) -> bool:
     """Whether a test has one of these markers: in all of its cases, or in those that a word of its marker stands in."""
     callspec = getattr(item, "callspec", None)
     case = callspec.id if callspec is not None else ""
-    of_the_search = OF_THE_SEARCH + (() if names == SLOW else LONG_OF_THE_SEARCH)
+    of_the_search = {SLOW: OF_THE_SEARCH, BROAD: ()}.get(names, OF_THE_SEARCH + LONG_OF_THE_SEARCH)
     marks = [mark for name in names for mark in item.iter_markers(name)]
     return place.startswith(of_the_search) or any(not m.args or any(word in case for word in m.args) for m in marks)
 

@@ -17,6 +17,8 @@ from tests.corpus.dimensions import DIMENSIONS
 from tests.linuxcnc import module
 from tests.mechanisms import kinematics_of, named
 
+pytestmark = pytest.mark.broad
+
 NAN, INFINITY = float("nan"), float("inf")
 ODD = (NAN, INFINITY, -INFINITY, 1e300, -1e300, 1e9, 1.0000001e9, 5e-324, -0.0, 1e-160)
 NAME = "Kin_Scara4_ZCcoupled_Type1"

@@ -22,6 +22,8 @@ from tests.command.files import Folder, python
 from tests.command.guide import COMMANDS, MACHINES, PROGRAMS, REFUSALS, TEXT, pattern
 from tests.command.wrong import WRONG
 
+pytestmark = pytest.mark.slow
+
 SOLUTIONS = {"arm_on_track": 2, "palletizer": 4, "five_bar": 4, "trunnion": 2, "planar_3rrr": 6}
 SAID_ELSEWHERE = {
     "… must not vanish: slides would be parallel": "a machine says it, when it is set up: tests/machines",
@@ -45,7 +47,6 @@ def test_every_refusal_of_the_guide_has_a_test() -> None:
     assert set(REFUSALS) == set(WRONG) | set(SAID_ELSEWHERE)
 
 
-@pytest.mark.slow("no subproblem")
 @pytest.mark.parametrize("refusal", WRONG)
 def test_it_is_refused_as_the_guide_says(folder: Folder, refusal: str) -> None:
     """One line: file, line, what is wrong, what to do. Status 2, and nothing is written."""
@@ -78,7 +79,6 @@ def test_the_line_is_that_of_the_fault(folder: Folder, refusal: str) -> None:
     assert WRONG[refusal].splitlines()[number - 1].startswith(LINES[refusal])
 
 
-@pytest.mark.slow("planar_3rrr")
 @pytest.mark.parametrize("name", MACHINES)
 def test_the_machine_is_derived_and_every_solution_closes(
     folder: Folder, name: str, monkeypatch: pytest.MonkeyPatch
@@ -135,7 +135,6 @@ def _residual(machine: Mechanism, given: Mapping[str, float]) -> Callable[[Seque
     return of_rods
 
 
-@pytest.mark.slow
 def test_the_walk(folder: Folder) -> None:
     """The commands of the guide, in their order, and the path that is plotted at the end."""
     assert [c for c in COMMANDS if not c.startswith("pip")] == [

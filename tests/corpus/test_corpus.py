@@ -12,12 +12,13 @@ from tests.corpus.comparison import differences
 from tests.corpus.recording import NAMES, RECORDED, compared, read
 from tests.corpus.robots import Robot, robot
 
+pytestmark = pytest.mark.broad
+
 SHOWN = 5
 KINDS = {"regular", "singular", "garbage", "rotation", "bytes", "reach", "limits", "parameters", "facts"}
 """What every mechanism with axes and branches is asked about."""
 
 
-@pytest.mark.slow("Kin_Ac6_RZ", "ThreeParallel", "Planar", "Hexaglide")
 @pytest.mark.parametrize("name", NAMES)
 def test_answers_are_those_recorded(name: str) -> None:
     """The package gives the recorded answer to every recorded question."""

@@ -11,6 +11,8 @@ import pytest
 from tests.importing.kinematics import UNSNAPPED, by_yourdfpy, described, differences, imported
 from tests.importing.robots import joint, urdf
 
+pytestmark = pytest.mark.slow
+
 AXES = (
     "1 0 0",
     "-1 0 0",

@@ -16,6 +16,8 @@ from derive.importing.formats.urdf import read_urdf
 from tests.importing.kinematics import imported
 from tests.importing.robots import COLLECTION, WRITTEN, File, joint, urdf, written
 
+pytestmark = pytest.mark.slow
+
 Array = NDArray[np.float64]
 SEEDS = 8
 ROWS: Mapping[str, tuple[tuple[str, str], ...]] = {

@@ -14,6 +14,8 @@ from derive.importing.robot import UnreadableRobot
 from tests.importing.kinematics import Array, described, imported
 from tests.machines.made import built_of, imported_class
 
+pytestmark = pytest.mark.slow
+
 
 @dataclass(frozen=True)
 class Loop:
@@ -174,7 +176,6 @@ class Closure:
         mujoco.mj_integratePos(self.model, self.data.qpos, step, 1.0)
 
 
-@pytest.mark.slow("three rods", "at an elbow")
 @pytest.mark.parametrize("name", LOOPS)
 def test_every_solution_closes_the_loops_of_the_file(name: str, tmp_path: Path) -> None:
     loop = LOOPS[name]

@@ -15,6 +15,8 @@ from tests.importing.kinematics import UNSNAPPED, by_yourdfpy, described, differ
 from tests.importing.test_mjcf import by_mujoco
 from tests.machines.made import built_of
 
+pytestmark = pytest.mark.slow
+
 FILES = Path(__file__).parent / "files"
 SOLUTIONS = {
     "namespace_and_tabs.urdf": 4,

@@ -9,12 +9,11 @@ import pytest
 
 from derive.description.mechanism import Mechanism
 from tests.languages.language import LANGUAGES, Answer, C, Language
-from tests.machines.collection import COSTLY
 from tests.machines.made import made
 from tests.machines.odd_names import ODD
 from tests.machines.spoken import BASE, HELD, confirm_natural_names, spoken
 
-pytestmark = pytest.mark.slow(*COSTLY, "coordinates of", "names of", "words of", "constants")
+pytestmark = pytest.mark.slow
 
 OTHER_INT = "joints called Arm and Offset"
 """It has an `int_length` beside `int`, which C calls so elsewhere."""

@@ -17,6 +17,8 @@ from tests.linuxcnc.machine import NAMES, Machine, about, differs, machine_of, r
 from tests.linuxcnc.module import LETTERS, STUBS, Module, Pose, module_of
 from tests.mechanisms import kinematics_of, named
 
+pytestmark = pytest.mark.broad
+
 NAN, INFINITY = float("nan"), float("inf")
 ODD = (NAN, INFINITY, -INFINITY, 1e300, -1e300, 1e9, 1.0000001e9, 5e-324, -0.0, 1e-160)
 SCARA, ARM, TRUNNION = "Kin_Scara4_ZCcoupled_Type1", "Kin_ArticulatedRobot_6DOF", "Softkin_TableTable_AC"

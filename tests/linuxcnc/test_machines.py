@@ -18,6 +18,8 @@ from tests.machines.subset_machines import LOOPS, SUBSETS
 from tests.machines.task_machines import TASK_MACHINES
 from tests.mechanisms import kinematics_of
 
+pytestmark = pytest.mark.slow
+
 STEP = 1e-4
 EVERY = {**MACHINES, **TASK_MACHINES, **SUBSETS, **LOOPS}
 OWN = {

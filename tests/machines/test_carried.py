@@ -20,6 +20,8 @@ from tests.machines.carried import A1, A2, CARRIED, TIP, C, five_bar
 from tests.machines.made import Array, Made, made
 from tests.text.controller import OK
 
+pytestmark = pytest.mark.slow
+
 EVERY = pytest.mark.parametrize("name", CARRIED)
 EXPECTED = {
     "linear delta with a reversed C": 4,

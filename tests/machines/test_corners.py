@@ -9,16 +9,17 @@ import numpy as np
 import pytest
 from softkin import Frame
 
-from tests.machines.collection import COSTLY, MACHINES
+from tests.machines.collection import MACHINES
 from tests.machines.grid import corners, every_pose_is_met
 from tests.machines.made import made
+
+pytestmark = pytest.mark.slow
 
 _EVERY = 12
 _CLOSED = 1e-9
 """An angle that only an entry of a rotation near one tells is known to half of the digits."""
 
 
-@pytest.mark.slow(*COSTLY)
 @pytest.mark.parametrize("name", MACHINES)
 def test_no_pose_is_lost_where_singularities_meet(name: str) -> None:
     """As a batch every pose is met; one by one, in all solutions, so is each twelfth."""

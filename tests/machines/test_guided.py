@@ -22,7 +22,7 @@ from tests.machines.made import Array, built_of, imported_class
 from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.units import compiled_text
 
-pytestmark = pytest.mark.slow("3-RRR on a lift", "planes form a T")
+pytestmark = pytest.mark.slow
 
 EVERY = pytest.mark.parametrize("name", GUIDED)
 TILTING = [name for name, m in GUIDED.items() if m.task.turning is Turning.DIRECTION]

@@ -33,6 +33,8 @@ from tests.text.controller import OK, Controller
 from tests.text.units import compiled_text
 from tests.view.node_page import page_module
 
+pytestmark = pytest.mark.slow
+
 KINDS = pytest.mark.parametrize("kind", (GIVEN, OWN, IMPORTED))
 STATED = pytest.mark.parametrize("kind", (OWN, IMPORTED))
 

@@ -27,7 +27,7 @@ from tests.text.controller import OK
 WITHIN = 3e-11
 """Of what is missed: an angle is free below 1e-11 of its scale, and two may be, each with a chord of 2."""
 EVERY = pytest.mark.parametrize("name", KINDS)
-pytestmark = pytest.mark.slow("axes last")
+pytestmark = pytest.mark.slow
 
 
 def lost(machine: Sized, count: int, seed: int, each: int = 1) -> list[tuple[str, str, list[float]]]:

@@ -24,7 +24,7 @@ from tests.mechanisms import kinematics_of
 from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.units import compiled_text, text_of
 
-pytestmark = pytest.mark.slow("3-RRR on a lift")
+pytestmark = pytest.mark.slow
 
 EVERY = pytest.mark.parametrize("name", (*CATALOGUE, *OWN))
 WORDS = "forward kinematics from the home pose does not find this pose again"

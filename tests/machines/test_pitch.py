@@ -33,6 +33,8 @@ from tests.machines.task_machines import (
 )
 from tests.text.controller import OK
 
+pytestmark = pytest.mark.slow
+
 FOLLOWING = {**WITH_PITCH, **WITH_PITCH_AND_ROLL}
 EVERY = pytest.mark.parametrize("name", FOLLOWING)
 

@@ -18,6 +18,8 @@ from tests.machines.collection import MACHINES
 from tests.machines.guided import GUIDED
 from tests.page.reading import every, parsed, section
 
+pytestmark = pytest.mark.slow
+
 OWN = {name: MACHINES[name] for name in ("rail and arm with two links", "arm with four axes", "arm on a track")}
 OWN |= {name: MACHINES[name] for name in ("SCARA that bends to the left alone",)}
 OWN |= {name: GUIDED[name] for name in ("Z3 head with slides",)}

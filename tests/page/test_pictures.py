@@ -24,6 +24,8 @@ from tests.mechanisms import kinematics_of, named
 from tests.page.made import NAMES, page
 from tests.page.reading import every, has_class, parsed, section
 
+pytestmark = pytest.mark.slow
+
 DRAWN = ("Kin_Scara4_ZCcoupled_Type1", "Kin_P2C_Type1", "Kin_Hexapod", "Kin_Polar", "Kin_Crane", "Kin_Wrist2")
 SINGULAR_MACHINES = tuple(n for n in NAMES if n not in ("Kin_Tool",) and named(n).joints)
 _SMALL = 1e-4
@@ -45,7 +47,6 @@ def _found(name: str, margin: str) -> SingularPose | None:
     return singular_pose(machine, _derived(name), margin, drawn_pose(machine).axes)
 
 
-@pytest.mark.slow("Hexaglide")
 @pytest.mark.parametrize("name", SINGULAR_MACHINES)
 def test_the_pose_of_a_picture_is_singular(name: str) -> None:
     """By a measure that knows no margin: for type 1 the Jacobian loses its rank; for type 2 the legs do."""
@@ -143,7 +144,6 @@ def _page(name: str) -> Page:
     return page_of(mechanism, kinematics_of(mechanism))
 
 
-@pytest.mark.slow("Scara4", "Hexapod")
 @pytest.mark.parametrize("name", DRAWN)
 def test_every_picture_is_on_the_page(name: str) -> None:
     """The drawing, a picture for each singularity with a value that is zero, and the maps; the page stays small."""

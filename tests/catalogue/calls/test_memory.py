@@ -9,6 +9,8 @@ import pytest
 
 from tests.catalogue.calls.robots import NAMES, poses, robots
 
+pytestmark = pytest.mark.broad
+
 MANY = 100_000
 MOST = 1.3
 SLOW = ("Kin_Ac6_RZRYRYRXRYRZ_J6Offset", "Kin_Hexapod", "Softkin_Hexaglide", "Softkin_Planar_3RRR")

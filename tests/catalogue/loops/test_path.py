@@ -10,6 +10,8 @@ from tests.catalogue.closure import Array
 from tests.catalogue.loop_machines import LoopMachine
 from tests.catalogue.test_path import TOLERANCE, follow
 
+pytestmark = pytest.mark.slow
+
 STEPS = 500
 SIZES = (60.0, 30.0, 15.0, 8.0, 4.0, 2.0, 1.0)
 """The amplitude of the axes, in degrees or lengths: the path stays regular."""

@@ -21,6 +21,8 @@ from derive.vectors import minus, triple, vector
 from derive.witness import Disagreement
 from derive.witness.exact.proof import check_exactly
 
+pytestmark = pytest.mark.slow
+
 SLIDES = P1, P2, P3 = tuple(linear(f"P{k}", "slide") for k in (1, 2, 3))
 A1, A4, A5, A6 = (rotary(f"A{k}", "turn") for k in (1, 4, 5, 6))
 ROD = length("rod", "rods", nominal=0.5)

@@ -23,6 +23,8 @@ from derive.witness import roots, witness
 from derive.witness.closure import closure_of
 from derive.witness.samples import regular_samples
 
+pytestmark = pytest.mark.slow
+
 UNITS = [1.0, 1e-3, 2e-6, 60.0]
 
 
@@ -73,7 +75,6 @@ def six_legs(unit: float) -> Mechanism:
 KINDS: dict[str, tuple[Callable[[float], Mechanism], int]] = {"flat": (flat_platform, 1), "six": (six_legs, 1)}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("unit", UNITS)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_machine_is_accepted_in_every_unit(kind: str, unit: float) -> None:
