@@ -39,9 +39,8 @@ collect_ignore = [] if IS_NATIVE else ["native"]
 ROOT = Path(__file__).parent
 FOLDERS_OF_QUICK = ("unit", "harness", "catalogue", "text", "languages")
 """Where `make quick` looks for tests."""
-SLOW, BROAD = ("slow",), ("broad",)
-NOT_QUICK = ("slow", "long")
-"""The markers of tests that `make test`, and `make quick`, leave out."""
+SLOW, BROAD, NOT_QUICK = ("slow",), ("broad",), ("slow", "long")
+"""The markers of tests that `make test` leaves out, in all cases or for most mechanisms, and that `make quick` does."""
 LEFT_OUT_AS_A_WHOLE = re.compile(r"^pytestmark = pytest\.mark\.(slow|long)$", re.MULTILINE)
 """What says of a file that none of its tests is quick."""
 ALL_OF_THEM_QUICK = (("unit",), ("harness",))
@@ -50,26 +49,6 @@ ASKED_WHOLE = (("native",), ("corpus",))
 """The folders that are asked about all mechanisms with the native core, where the catalogue is about the quick ones."""
 OF_ONE_MECHANISM = {"hexapod": "Kin_Hexapod", "search": "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"}
 """Folders of tests about one mechanism, which their parameters do not name."""
-OF_THE_SEARCH = (
-    "catalogue/search/test_both_ways.py::test_every_solution",
-    "catalogue/search/test_both_ways.py::test_right_angles",
-    "catalogue/search/test_planted.py",
-    "unit/kinematics/test_quartic.py::test_an_arm_whose_residual",
-    "unit/kinematics/test_search_choice.py",
-)
-"""Tests of the search along a joint that are slow; all others have a marker where they stand."""
-LONG_OF_THE_SEARCH = (
-    "catalogue/search/test_both_ways.py::test_a_path_in_one_configuration_is_followed",
-    "catalogue/search/test_both_ways.py::test_batches_are_scalar_calls",
-    "catalogue/search/test_single_precision.py::test_beyond_that_it_is_refused",
-    "unit/kinematics/test_conic.py::test_all_roots_of_random_conics",
-    "unit/kinematics/test_flags.py::test_a_search_and_its_loop_count_and_ask",
-    "unit/description/test_refusals.py::test_a_root_scan_needs_names",
-    "unit/kinematics/test_quartic.py::test_the_residual",
-    "unit/kinematics/test_refusals.py::test_a_trial_that_is_out_of_reach_elsewhere",
-    "unit/witness/test_exact.py::test_what_cannot_be_asked_is_said",
-)
-"""Those that are long."""
 SHARED_BY_A_FILE = ("codesys/", "text/selftest/", "text/test_portable.py", "text/test_second_grammar.py", "unit/")
 """Tests that share more with those of their file than with those of their mechanism: all units compiled together, a
 grammar."""
@@ -145,10 +124,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         place = f"{file}::{item.name}"
         is_quick = set(names) <= PATHS.keys() if names else folders[:1] in ALL_OF_THEM_QUICK
         is_quick |= IS_NATIVE and folders[:1] in ASKED_WHOLE
-        is_broad = _is_left_out(item, place, BROAD) and not set(names) <= PATHS.keys()
-        if is_quick and not _is_left_out(item, place, SLOW if IS_NATIVE else NOT_QUICK):
+        is_broad = _is_marked(item, BROAD) and not set(names) <= PATHS.keys()
+        if is_quick and not _is_marked(item, SLOW if IS_NATIVE else NOT_QUICK):
             item.add_marker("quick")
-        elif IS_NATIVE or is_broad or _is_left_out(item, place, SLOW):
+        elif IS_NATIVE or is_broad or _is_marked(item, SLOW):
             item.add_marker("sweep")
         if is_shared_out:
             item.add_marker(pytest.mark.xdist_group(_group_of(item, place, folders, names)))
@@ -159,13 +138,12 @@ def _is_quick(config: pytest.Config) -> bool:
     return config.option.markexpr == "quick"
 
 
-def _is_left_out(item: pytest.Item, place: str, names: tuple[str, ...]) -> bool:
+def _is_marked(item: pytest.Item, names: tuple[str, ...]) -> bool:
     """Whether a test has one of these markers: in all of its cases, or in those that a word of its marker stands in."""
     callspec = getattr(item, "callspec", None)
     case = callspec.id if callspec is not None else ""
-    of_the_search = {SLOW: OF_THE_SEARCH, BROAD: ()}.get(names, OF_THE_SEARCH + LONG_OF_THE_SEARCH)
     marks = [mark for name in names for mark in item.iter_markers(name)]
-    return place.startswith(of_the_search) or any(not m.args or any(word in case for word in m.args) for m in marks)
+    return any(not m.args or any(word in case for word in m.args) for m in marks)
 
 
 def _group_of(item: pytest.Item, place: str, folders: tuple[str, ...], names: list[str]) -> str:

@@ -49,7 +49,6 @@ def test_no_pose_is_lost(name: str) -> None:
     assert [pose for machine in sized(KINDS[name]) for pose in lost(machine, 400, 31)] == []
 
 
-@pytest.mark.slow
 @EVERY
 def test_no_pose_of_many_is_lost(name: str) -> None:
     """The same for many poses."""
@@ -83,7 +82,6 @@ def is_met(machine: Sized, axes: list[float], answer: Array) -> bool:
     return bool(machine.missed(np.array([axes]), np.array([answer])).max() <= WITHIN)
 
 
-@pytest.mark.slow
 def test_the_block_loses_no_pose() -> None:
     """In executed Structured Text."""
     machine, rows = asked(90)
@@ -95,7 +93,6 @@ def test_the_block_loses_no_pose() -> None:
         assert is_met(machine, axes, answer[: len(axes)])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("language", ["c", "javascript"])
 def test_other_languages_lose_no_pose(language: str) -> None:
     machine, rows = asked(600)

@@ -29,7 +29,6 @@ def swing(machine: LoopMachine, axis: int) -> Array:
     return next(way for way in ways if machine.is_possible(way[::40]).all() and machine.is_possible(way[::4]).all())
 
 
-@pytest.mark.long
 def test_across_half_turns(machines: tuple[LoopMachine, ...]) -> None:
     """No jump anywhere, whichever axis crosses; the way is regular, so automatic bytes keep to it as well."""
     for axis, machine in enumerate(machines[2:]):

@@ -28,6 +28,7 @@ def test_the_reported_configuration_leads_back(lateral: float) -> None:
     assert max(miss(a, lateral, frame(b, lateral)) for a, b in zip(found, axes, strict=True)) < 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lateral", (0.0, *LATERALS))
 def test_right_angles_with_the_reference_at_the_same_axes(lateral: float) -> None:
     """Poses with all joints at right angles are solved with the reference at the same axes."""
@@ -40,6 +41,7 @@ def test_right_angles_with_the_reference_at_the_same_axes(lateral: float) -> Non
     assert max(miss(a, lateral, frame(b, lateral)) for a, b in zip(found, axes, strict=True)) < 1e-10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lateral", LATERALS)
 def test_every_solution_is_found(lateral: float) -> None:
     """The witness asks the same of more poses and machines, before anything is generated."""
@@ -127,6 +129,7 @@ def test_without_the_offset_there_is_no_second_crossing() -> None:
     assert error.value.status is Status.UNREACHABLE
 
 
+@pytest.mark.long
 def test_a_path_in_one_configuration_is_followed() -> None:
     """Small steps with the reference at the previous result: where the path keeps its
     configuration, it is found again.
@@ -162,6 +165,7 @@ def test_garbage_ends_in_a_status() -> None:
     assert error.value.status is Status.BAD_INPUT
 
 
+@pytest.mark.long
 def test_batches_are_scalar_calls() -> None:
     """A batch gives the axes and statuses of single calls."""
     robot = arm(-35.0)

@@ -16,6 +16,8 @@ from tests.catalogue.shares import share
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled
 
+pytestmark = pytest.mark.slow
+
 STRAIGHT = float(np.degrees(np.arctan2(ARM["d4"], -ARM["a3"])))
 REGULAR = 1e-3
 """Where the smallest singular value of the scaled Jacobian is larger, a pose is regular."""
@@ -110,7 +112,6 @@ def test_a_folded_elbow_puts_the_wrist_on_the_first_axes(
     assert np.abs(turned - rotations).max() < 1e-9
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS[1:])
 @pytest.mark.parametrize("lateral", OFFSETS)
 def test_a_hundred_thousand_planted_poses(kind: str, lateral: float) -> None:

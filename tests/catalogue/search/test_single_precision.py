@@ -38,6 +38,7 @@ def _reached(pose: Array, position: tuple[float, ...], matrix: Array) -> None:
     assert np.abs(pose[:3, :3] - repaired(matrix)).max() < 1e-11
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("lateral", (0.0, LATERALS[0]))
 def test_beyond_that_it_is_refused(lateral: float) -> None:
     """A rotation with a larger error is refused, in Python and by the block."""

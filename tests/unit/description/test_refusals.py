@@ -219,6 +219,7 @@ def test_unsolved(kind: str) -> None:
         build(mechanism)
 
 
+@pytest.mark.long
 def test_a_root_scan_needs_names() -> None:
     """Its roots are told apart by a crossing, and its other branches are those of the description."""
     arm = named("Kin_Ac6_RZRYRYRXRYRZ_J6Offset")

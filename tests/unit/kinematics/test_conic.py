@@ -65,6 +65,7 @@ def distance(one: Array | float, other: Array | float) -> Array:
     return np.abs(np.angle(np.exp(1j * (np.asarray(one) - np.asarray(other)))))
 
 
+@pytest.mark.long
 def test_all_roots_of_random_conics() -> None:
     """As many as there are, to rounding."""
     rng = np.random.default_rng(1)

@@ -61,6 +61,7 @@ def test_parameters_are_read_in_their_types(kinematics: Kinematics) -> None:
         assert all(is_count(names[f"sigma_{b.name}"]) for b in kinematics.branches if f"sigma_{b.name}" in names)
 
 
+@pytest.mark.long
 def test_a_search_and_its_loop_count_and_ask() -> None:
     """The flags and counts of the root scan are Booleans and integers."""
     kin = kinematics_of(named("Kin_Ac6_RZRYRYRXRYRZ_J6Offset"))

@@ -89,6 +89,7 @@ def test_what_cancels_is_seen() -> None:
     assert quartic is not None and {*quartic.plain} == {1}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ARMS)
 def test_the_residual_of_an_arm_is_its_conic(name: str) -> None:
     """On both sides, where the arm is within its reach."""
@@ -113,6 +114,7 @@ def test_the_residual_of_an_arm_is_its_conic(name: str) -> None:
     assert is_within.sum() > 30 and apart[is_within].max() < 1e-11
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*ARMS, *SEARCHED])
 def test_an_arm_whose_residual_is_a_conic_is_not_scanned(name: str) -> None:
     """And its notes say so; all others are scanned as before."""

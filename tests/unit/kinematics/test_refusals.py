@@ -117,6 +117,7 @@ def test_a_search_that_leaves_two_conditions(searched: Mechanism, monkeypatch: p
     assert "known, 2 conditions are left, not one; search another joint, or leave search= out" in said
 
 
+@pytest.mark.long
 def test_a_trial_that_is_out_of_reach_elsewhere(searched: Mechanism, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(derivations, "guards_of", lambda _: None)
     said = refused(lambda: derivations.solve_both(searched))

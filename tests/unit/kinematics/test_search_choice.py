@@ -18,6 +18,8 @@ from tests.machines.chain_machines import ANGLES_AS_NUMBERS, OF_DEGREE_FOUR
 from tests.unit.kinematics.inventions import invention
 from tests.unit.solver.test_fast_refusals import JOINTS, LENGTHS, L
 
+pytestmark = pytest.mark.slow
+
 A1, A2, A3, A4, A5, A6 = JOINTS[:6]
 ELBOW = Rz(A1) * Tx(L[6]) * Ry(A2) * Tz(L[1]) * Ry(A3) * Tx(L[2])
 ARM = Rz(A1) * Ry(A2) * Tz(L[1]) * Ry(A3) * Tx(L[2]) * Rx(A4)

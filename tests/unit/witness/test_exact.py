@@ -83,6 +83,7 @@ def test_gears_are_exact_too(name: str) -> None:
     assert exact.trials == 3, exact.but
 
 
+@pytest.mark.long
 def test_what_cannot_be_asked_is_said() -> None:
     searched = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
     exact = check_exactly(kinematics_of(named(searched)), named(searched))

@@ -78,7 +78,6 @@ def found(kin: Kinematics, described: Mechanism) -> Exact:
         return Exact(0, "refused")
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("make", [leaning_slides, added_angles, leaning_boom, linear_delta])
 def test_odd_numbers(make: Callable[[Random], Mechanism], seed: int) -> None:

@@ -101,7 +101,6 @@ def short_tip(unit: float) -> Mechanism:
     )
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("unit", [1.0, 1e-3])
 def test_no_solution_is_counted_before_it_is_found(unit: float) -> None:
     """A joint that hardly moves the tool leaves a small residual far away from its solution."""
@@ -118,7 +117,6 @@ def test_no_solution_is_counted_before_it_is_found(unit: float) -> None:
     assert roots.is_solution(one, found).all() and not roots.is_solution(one, away).any()
 
 
-@pytest.mark.long
 def test_a_solution_that_no_start_finds_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     """The slots hold it, and the closure says that it is one."""
     link = length("l1", "upper arm", nominal=300.0), length("l2", "forearm", nominal=200.0)
@@ -129,7 +127,6 @@ def test_a_solution_that_no_start_finds_is_counted(monkeypatch: pytest.MonkeyPat
     assert solutions(witness(build(two), two)) == 2
 
 
-@pytest.mark.long
 def test_a_leg_whose_sign_a_branch_tells_keeps_it() -> None:
     """A description that names both signs of a length has both solutions."""
     base = length("base", "anchors", nominal=420.0)
@@ -141,7 +138,6 @@ def test_a_leg_whose_sign_a_branch_tells_keeps_it() -> None:
         assert solutions(witness(build(described), described)) == count
 
 
-@pytest.mark.long
 def test_fewer_solutions_than_branches_are_told_as_what_was_seen() -> None:
     """Two rods on slides have four branches; those of the other assembly mode are no solutions of this machine."""
     told: list[str] = []
@@ -151,7 +147,6 @@ def test_fewer_solutions_than_branches_are_told_as_what_was_seen() -> None:
     assert seen < 4 and f"up to {seen} solutions seen, of 4 branches" in told[-1]
 
 
-@pytest.mark.long
 def test_the_number_of_solutions_is_the_largest_of_all_poses() -> None:
     """A five-bar has poses with four solutions in one assembly mode, and the first poses of its machines have less."""
     sizes = (("base", 160.0), ("arm", 210.0), ("rod", 330.0))
