@@ -28,10 +28,10 @@ from derive.faults import Failure, GenerationError, failure, one_line
 from derive.kinematics.kinematics import Evidence, Kinematics
 from derive.work import STEPS, TooMuchWork, at_most
 
-PROCESSES = 2
+_PROCESSES = 2
 _ROOMS = ("emit.picture.page", "emit.softmotion.pictures", "kinematics.build", "report.self_test", "witness")
 _LOADED = [__name__, *(f"derive.{room}" for room in _ROOMS)]
-"""The modules that deriving needs."""
+"""The modules that deriving needs, which the processes have before they begin."""
 WRITTEN = (python.name, StructuredTextFiles.name)
 """The languages that are written unless others are asked for."""
 _OTHERS: tuple[Language, ...] = (javascript, c, linuxcnc)
@@ -117,15 +117,13 @@ def work_of(entries: Sequence[Entry], cache: Cache | None, foundation: str) -> W
 
 def attempts(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES) -> Iterator[Built | Failure]:
     """What came of every mechanism, in the order of the catalogue. wanted: the languages that are written of it."""
-    if not work.missing:
-        yield from (kept for kept in work.kept if kept is not None)
-        return
-    first, *others = work.missing
-    if not others:
-        yield from (_attempt(profile, wanted, first) if kept is None else kept for kept in work.kept)
+    attempt = partial(_attempt, profile, wanted)
+    if len(work.missing) < 2:  # here: no process has to be started
+        alone = map(attempt, work.missing)
+        yield from (next(alone) if kept is None else kept for kept in work.kept)
         return
     with workers(len(work.missing)) as pool:
-        derived = pool.map(partial(_attempt, profile, wanted), work.missing)
+        derived = pool.map(attempt, work.missing)
         try:
             for kept in work.kept:
                 yield next(derived) if kept is None else kept
@@ -134,15 +132,15 @@ def attempts(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES)
 
 
 def workers(tasks: int) -> ProcessPoolExecutor:
-    """The processes of a run, which have loaded what deriving needs.
+    """The processes for so many tasks. They are no copies of this one: a copy waits for ever for a lock that another
+    thread holds at that moment.
 
-    Where that is possible, a process without threads starts them: a copy of one with threads may wait for ever for a
-    lock that a thread has held. What is derived lives as long as its process: looking for garbage among it finds
-    nothing, and takes a tenth of the time.
+    What is derived lives as long as its process: looking for garbage among it finds nothing, and takes a tenth of the
+    time.
     """
     context = get_context("forkserver" if "forkserver" in get_all_start_methods() else "spawn")
     context.set_forkserver_preload(_LOADED)
-    return ProcessPoolExecutor(min(PROCESSES, tasks), mp_context=context, initializer=gc.disable)
+    return ProcessPoolExecutor(min(_PROCESSES, tasks), mp_context=context, initializer=gc.disable)
 
 
 def derive_one(

@@ -17,8 +17,8 @@ from pathlib import Path
 PACKAGES = ("package.json", "package-lock.json")
 """The files that state which packages are installed, and in which versions."""
 _MARK = ".lockfile-digest"
-_LONGEST = 540
-"""How long Node.js may run (seconds)."""
+_LONGEST = 540.0
+"""Seconds after which a command has failed: it waits for a network, or a browser, that does not answer."""
 
 
 class MissingTool(Exception):
@@ -73,10 +73,7 @@ def _is_for(modules: Path, wanted: str) -> bool:
 
 
 def run(command: list[str], folder: Path, **more: str) -> subprocess.CompletedProcess[str]:
-    """Run a command in a folder, with this Node.js first on the path; `more` is added to the environment.
-
-    One that does not end, because it waits for the network, has failed.
-    """
+    """Run a command in a folder, with this Node.js first on the path; `more` is added to the environment."""
     path = os.pathsep.join([str(node().parent), os.environ.get("PATH", "")])
     environment = {**os.environ, "PATH": path, **more}
     try:
@@ -84,4 +81,4 @@ def run(command: list[str], folder: Path, **more: str) -> subprocess.CompletedPr
             command, cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=_LONGEST
         )
     except subprocess.TimeoutExpired:
-        return subprocess.CompletedProcess(command, 1, "", f"it did not end within {_LONGEST} s")
+        return subprocess.CompletedProcess(command, 1, "", f"it did not end within {_LONGEST:g} s")

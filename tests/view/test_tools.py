@@ -65,6 +65,13 @@ def test_what_npm_cannot_bring_is_told(tmp_path: Path, npm: list[Path], monkeypa
     assert list((tmp_path / "packages").iterdir()) == []
 
 
+def test_what_does_not_end_has_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As npm does where a network does not answer."""
+    monkeypatch.setattr(node, "_LONGEST", 0.5)
+    with pytest.raises(subprocess.CalledProcessError):
+        node.run([str(node.node()), "-e", "setTimeout(() => {}, 60000)"], tmp_path).check_returncode()
+
+
 @pytest.mark.parametrize("is_ci", [True, False])
 def test_a_missing_browser(is_ci: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In CI it is a fault; elsewhere the tests of the viewer are left out, and the summary says so in one line."""
