@@ -9,6 +9,8 @@ from tests.corpus.recording import read
 from tests.javascript.comparison import differences
 from tests.languages.language import C
 
+pytestmark = pytest.mark.slow
+
 ARM = "Kin_Scara4_ZCcoupled_Type1"
 ELBOW = "Kin_ArticulatedRobot_6DOF"
 SEARCHED = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
@@ -53,7 +55,6 @@ STOPPED = {
 """What stops the program, which has no answer then."""
 
 
-@pytest.mark.slow("trials", "curve", "tangents", "one search")
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_planted_fault_is_found(fault: str) -> None:
     """Some answer differs from that of Python, or the program is stopped."""

@@ -10,6 +10,8 @@ import pytest
 from tests.importing.kinematics import UNSNAPPED, by_yourdfpy, described, differences, imported
 from tests.importing.robots import COLLECTION, WRITTEN, File, written
 
+pytestmark = pytest.mark.slow
+
 EXACT = 1e-12
 """Of the size of the machine, and of one radian."""
 

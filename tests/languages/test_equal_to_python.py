@@ -10,6 +10,8 @@ from tests.corpus.recording import read
 from tests.javascript import comparison
 from tests.languages.language import JAVASCRIPT, LANGUAGES, Language
 
+pytestmark = pytest.mark.broad
+
 
 @pytest.mark.slow("Ac6_RZ", "ThreeParallel", "Planar")
 @pytest.mark.long("Hexapod", "P2C_Type1", "Pos_RRR", "Wrist2", "Ac6_RZ", "-C")

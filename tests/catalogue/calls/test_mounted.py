@@ -20,6 +20,8 @@ from softkin._start import IterativeForward
 from tests.catalogue.calls.mountings import BASE, EVERY, limited, machines, radian, tool_of
 from tests.catalogue.calls.robots import Axes, frame_at
 
+pytestmark = pytest.mark.broad
+
 EVERY_NAME = pytest.mark.parametrize("name", EVERY)
 
 

@@ -14,6 +14,8 @@ from tests.catalogue.loops.crossings import Crossing, crossing_of
 from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.units import compiled
 
+pytestmark = pytest.mark.slow
+
 LEAST, SINGULAR = 1e-3, 1e-3
 """The default of the least margin, and what `IsSingularity` calls singular."""
 BEFORE = 10.0 ** -np.arange(2.0, 10.5, 0.5)
@@ -60,7 +62,6 @@ def determinant(machine: LoopMachine, axes: Array, position: Array) -> float:
     return float(np.linalg.det(machine.closure.by_position(joints, position[None]))[0])
 
 
-@pytest.mark.long
 def test_the_closure_itself_is_lost_there(crossings: list[Crossing]) -> None:
     """Just before and just behind, det A of the closure is next to nothing and has opposite signs; the legs move on."""
     for line in crossings:
@@ -77,7 +78,6 @@ def test_the_closure_itself_is_lost_there(crossings: list[Crossing]) -> None:
         assert np.sign(values[0]) == np.sign(values[1]) == -np.sign(values[2])
 
 
-@pytest.mark.long
 def test_a_path_is_stopped_before_the_crossing(crossings: list[Crossing]) -> None:
     """Small steps with the last answer as reference: answers without a jump, then refusals alone, in both languages."""
     for line in crossings:
@@ -107,7 +107,6 @@ def test_a_path_is_stopped_before_the_crossing(crossings: list[Crossing]) -> Non
         assert margin(machine, last) < 0.5  # the way goes far enough to be about this singularity
 
 
-@pytest.mark.long
 def test_nearer_than_the_threshold_it_is_flagged(crossings: list[Crossing]) -> None:
     """With the refusal switched off the inverse answers up to the crossing, and `IsSingularity` warns before it."""
     for line in crossings:
@@ -126,7 +125,6 @@ def test_nearer_than_the_threshold_it_is_flagged(crossings: list[Crossing]) -> N
             assert asked(machine.robot, position, line.configuration, line.axes) is None
 
 
-@pytest.mark.long
 def test_the_least_margin_is_sharp(machines: tuple[LoopMachine, ...]) -> None:
     """A hair below the margin of a pose answers, a hair above refuses: every call that solves, in both languages."""
     for machine in machines:
@@ -166,7 +164,6 @@ def test_the_other_assembly_mode_is_refused(machines: tuple[LoopMachine, ...]) -
         assert (other.robot.inverse_batch(positions, rotations, configurations, axes)[1] == Status.OK).all()
 
 
-@pytest.mark.long
 def test_forward_has_one_solution_a_side(machines: tuple[LoopMachine, ...]) -> None:
     """Newton's method from many places finds two poses at regular axis values, and each assembly
     mode is one of them.

@@ -19,7 +19,7 @@ from tests.catalogue.references import held_at
 from tests.catalogue.search.arms import frame as frame_of_arm
 from tests.text.samples import tilted
 
-pytestmark = pytest.mark.long("Hexapod")
+pytestmark = [pytest.mark.long("Hexapod"), pytest.mark.broad]
 
 EVERY_MECHANISM = pytest.mark.parametrize("mechanism", EVERY, ids=lambda m: m.name)
 ASIDE = Frame((25.0, 0.0, 0.0))

@@ -15,6 +15,8 @@ from tests.catalogue.turns.callers import InPython, OnController
 from tests.catalogue.turns.following import Make, check_anywhere, check_edges, follow
 from tests.catalogue.turns.ranges import FEW_STEPS, FEW_WIDTHS, GAP_THAT_NO_STEP_CROSSES, STEPS, WIDTHS, Range, placed
 
+pytestmark = pytest.mark.broad
+
 THOROUGH = tuple(m for m in MECHANISMS if m.name in FULL)
 BOTH = pytest.mark.parametrize("make", [InPython, OnController])
 
