@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from typing import Any
 from derive.emit.language import TEMPLATES
 
 _FILE = TEMPLATES / "st" / "softmotion.toml"
+_SCOPE = re.compile(r"(VAR\w*(?: CONSTANT)?) ")
 
 
 @dataclass(frozen=True)
@@ -159,7 +161,7 @@ def _loaded(profile: str | None, text: str) -> Contract:
         _signatures(data.pop("own")),
         _signatures(supplied, "PROTECTED"),
         _needing(supplied),
-        frozenset(key for key, table in supplied.items() if table.get("turning", False)),
+        frozenset(key for key, table in supplied.items() if "turning" in table),
         _signatures(overridable, "PROTECTED"),
         _needing(overridable),
         _signatures(data.pop("offered"), "PROTECTED"),
@@ -206,7 +208,14 @@ def _version(text: str) -> tuple[int, ...]:
 
 
 def _signatures(methods: Mapping[str, Any], access: str = "PUBLIC") -> dict[str, Signature]:
-    return {
-        name: Signature(name, m["returns"], tuple(Parameter(*p) for p in m["parameters"]), access)
-        for name, m in methods.items()
-    }
+    return {name: _signature(name, m if isinstance(m, list) else m["signature"], access) for name, m in methods.items()}
+
+
+def _signature(name: str, stated: Sequence[str], access: str) -> Signature:
+    """A signature as the file states it: `["INT", "VAR_IN_OUT CONSTANT a : REAL; b : REAL", "VAR_OUTPUT c : INT"]`."""
+    returns, *groups = stated
+    parameters: list[Parameter] = []
+    for group in groups:
+        _, scope, text = _SCOPE.split(group)
+        parameters += (Parameter(scope, *one.split(" : ")) for one in text.split("; "))
+    return Signature(name, returns, tuple(parameters), access)
