@@ -21,8 +21,8 @@ from derive.emit.c import package as c
 from derive.emit.javascript import package as javascript
 from derive.emit.language import Language, Part
 from derive.emit.linuxcnc import package as linuxcnc
-from derive.emit.named_package import NamedPackage
 from derive.emit.python import package as python
+from derive.emit.python.package import NamedPackage
 from derive.emit.softmotion.library import StructuredTextFiles, most_axes
 from derive.faults import Failure, GenerationError, failure, one_line
 from derive.kinematics.kinematics import Evidence, Kinematics

@@ -3,7 +3,6 @@
 It may import every other folder.
 
 catalogue: `generate` and `check` without a file: all mechanisms, one output folder
-doing: what a command is doing, in words, while a stage takes long
 explain: `explain`: the derivation of a machine, step by step
 line: the commands and their options, and the status of a run
 live: `live`: serve the page of a machine, and move it with the values of a controller

@@ -23,7 +23,7 @@ from derive.command import catalogue, explain, live, new, own, report, view
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
 from derive.faults import GenerationError, error
-from derive.importing import line as importing
+from derive.importing import importing
 from derive.output import ForeignFolder
 from derive.pipeline import LANGUAGES
 

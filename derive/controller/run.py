@@ -7,16 +7,16 @@ import contextlib
 import ipaddress
 import socket
 import sys
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from pathlib import Path
+from typing import Protocol
 
 from derive.controller.addresses import Kind
 from derive.controller.admission import new_token
-from derive.controller.connection import Source, keep
 from derive.controller.credentials import Credentials, are_given, credentials
 from derive.controller.feed import Condition, Feed, Status
 from derive.controller.messages import about_the_machine
-from derive.controller.refusal import Refused
+from derive.controller.refusal import Lost, Refused
 from derive.controller.settings import Settings
 from derive.controller.stream import Stream
 
@@ -107,3 +107,31 @@ def _teller(say: Callable[[str], None]) -> Callable[[Condition], None]:
             say(text)
 
     return hear
+
+
+WAIT = 1.0
+"""Seconds from a loss to the next try: a controller that is back is found within three."""
+
+
+class Source(Protocol):
+    """Where axis values come from."""
+
+    async def run(self, feed: Feed) -> None:
+        """Read into the feed until the source is over; raises `Lost`, or `Refused` where it can never be."""
+
+
+async def keep(source: Source, feed: Feed, wait: Callable[[float], Awaitable[None]] = asyncio.sleep) -> None:
+    """Read until the source is over, connecting again after every loss. Raises `Refused`."""
+    while True:
+        feed.tell(Status.CONNECTING, feed.condition.message)
+        try:
+            await source.run(feed)
+        except Lost as problem:
+            feed.tell(Status.LOST, str(problem), WAIT)
+            await wait(WAIT)
+        except Refused as problem:
+            feed.tell(Status.REFUSED, str(problem))
+            raise
+        else:
+            feed.tell(Status.ENDED, "the values are over")
+            return

@@ -16,8 +16,7 @@ from derive.drawing.loop import loop_scene
 from derive.drawing.pose import Pose, drawn_pose, nominal_machine, pose_at, values_at
 from derive.drawing.scene import Scene, Segment, Spot, Turn
 from derive.ir.program import Status
-from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.reference_cases import Reals
+from derive.kinematics.kinematics import Kinematics, Reals
 from derive.kinematics.sampling import sample_axes
 from derive.plate.plate import home_position
 from derive.report.reference_calls import Machine, branches

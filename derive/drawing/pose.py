@@ -12,9 +12,8 @@ from derive.drawing.labels import Values
 from derive.drawing.scene import Frame, frame_of
 from derive.ir.interpret import evaluate
 from derive.ir.program import Status
-from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.kinematics import Bytes, Kinematics, Reals
 from derive.kinematics.parameters import shown_values
-from derive.kinematics.reference_cases import Bytes, Reals
 from derive.kinematics.sampling import sample_axes
 from derive.report.reference_calls import FRAME, Machine, are_inside, forward, machine_with, margins
 

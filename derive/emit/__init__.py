@@ -19,7 +19,6 @@ interface: the programs of a machine as functions: summary, arguments and result
 javascript/: JavaScript
 language: the protocol of an output language
 linuxcnc/: kinematics modules of LinuxCNC
-named_package: the Python package under another name
 native: the native core of the Python package: the C of its machines
 page/: the derivation of a machine as HTML
 picture/: the drawing of a machine as PNG and SVG

@@ -7,12 +7,13 @@ from functools import cache
 from hashlib import sha256
 from typing import Any
 
+import sympy as sp
 from jinja2 import Environment
 
 from derive.emit.c import lanes
 from derive.emit.c import package as c
-from derive.emit.c.arc_tangent import horner
 from derive.emit.c.layout import laid_out, page
+from derive.emit.c.printer import number
 from derive.emit.language import GENERATED, environment, runtime
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
@@ -20,6 +21,10 @@ from derive.kinematics.kinematics import Kinematics
 FOLDER = "native"
 """The folder beside the package whose files are compiled, and never imported."""
 _DIGITS = 16
+_COUNT = 11
+_EXACT_DIGITS = 40
+_TOP = (sp.sqrt(2) - 1) ** 2
+"""The square of tan 22.5°."""
 
 
 def key(kin: Kinematics) -> str:
@@ -96,3 +101,33 @@ def _templates() -> Environment:
 def _digest(files: Mapping[str, str]) -> str:
     text = "\0".join(part for path in sorted(files) for part in (path, files[path]))
     return sha256(text.encode()).hexdigest()[:_DIGITS]
+
+
+@cache
+def coefficients() -> tuple[float, ...]:
+    """The coefficients of p, from that of 1 on, in atan t = t + t z p(z) with z = t², for t from 0 to tan 22.5°: angles
+    of all octants follow by symmetry. A compiler can vectorise it, unlike a call of the C library.
+
+    p interpolates at Chebyshev's nodes: with eleven coefficients its error is below rounding.
+    """
+    angles = ((2 * k + 1) * sp.pi / (2 * _COUNT) for k in range(_COUNT))
+    nodes = [sp.N((1 + sp.cos(angle)) * _TOP / 2, _EXACT_DIGITS) for angle in angles]
+    powers = sp.Matrix(_COUNT, _COUNT, lambda i, j: nodes[i] ** j)
+    values = sp.Matrix([(sp.atan(sp.sqrt(z)) / sp.sqrt(z) - 1) / z for z in nodes])
+    return tuple(float(c) for c in powers.LUsolve(values))
+
+
+def horner(square: str) -> tuple[str, str]:
+    """The terms of p with even and with odd powers, in C: two chains, which a processor computes side by side.
+
+    square: the name of z².
+    """
+    even, odd = (_nested(coefficients()[start::2], square) for start in (0, 1))
+    return even, odd
+
+
+def _nested(numbers: tuple[float, ...], square: str) -> str:
+    first, *others = (number(value) for value in numbers)
+    if len(others) < 2:
+        return " + ".join([first, *(f"{square}*{other}" for other in others)])
+    return f"{first} + {square}*({_nested(numbers[1:], square)})"

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism
+from derive.equations.problem import StepDeterminant
 from derive.ir.constants import DEGREE, LARGEST
 from derive.ir.primitives import Atan2, NearestPeriod, Select, ToReal, Wrap
-from derive.ir.program import Let, Require, Status
+from derive.ir.program import Let, Require, Statement, Status
 from derive.ir.reason import Why, about_input
 from derive.ir.symbols import compared, cosine, flag, real, sine
 
@@ -150,3 +152,14 @@ def held_lets(joint: Joint) -> tuple[Let, ...]:
     if not joint.is_angle:
         return (value,)
     return (value, Let(cosine(joint.symbol), sp.cos(joint.symbol)), Let(sine(joint.symbol), sp.sin(joint.symbol)))
+
+
+@dataclass(frozen=True)
+class Forward:
+    """The pose as statements: joint values, cosines and sines, position; and the entries of the rotation."""
+
+    statements: tuple[Statement, ...]
+    position: tuple[sp.Expr, ...]
+    rotation: tuple[sp.Expr, ...]
+    determinant: StepDeterminant | None = None
+    """The determinant of the step with two solutions: its sign is the assembly mode."""

@@ -8,11 +8,8 @@ exact: exact numbers for those of a closed loop
 gears: gears that stand in a chain, moved to the joints
 headings: the letter x, y or z along which every line of a chain lies, and the turns between their frames
 inner_names: the names that the inputs of a machine have inside a derivation
-lines: a chain as lines of its zero pose
-loop_angles: names for the angles of a closed loop that stand as numbers in sines and cosines
-machine: all rules, in their order
+lines: a chain as lines of its zero pose, and the point of every turn on its line
+machine: all rules, in their order; rods that end at the commanded point
 named_angles: names for the angles of a chain that are no right angles
-numbers: names for the numbers of a chain
-points: the point of every turn on its own line, which the shifts lead to
-rods: rods of a closed loop that end at the commanded point itself
+numbers: names for the numbers of a chain, and for the angles of a loop
 """

@@ -16,8 +16,7 @@ import sympy as sp
 
 from derive.description.mechanism import Mechanism, Turning
 from derive.form.headings import Turns, along_link, orientation, product, toward
-from derive.form.lines import SAME, Arm, Array, arm_of
-from derive.form.points import points
+from derive.form.lines import SAME, Arm, Array, arm_of, points
 from derive.geometry.frames import Chain, Factor, Motion
 
 _DECIMALS = 13

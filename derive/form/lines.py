@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import sympy as sp
@@ -155,3 +156,36 @@ def about(axis: int, angle: float) -> Array:
     matrix[i, i] = matrix[j, j] = cosine
     matrix[j, i], matrix[i, j] = sine, -sine
     return matrix
+
+
+_PARALLEL = 0.05
+"""Lines at a smaller angle (radians) count as parallel here: the feet are far away."""
+
+
+def points(lines: Sequence[Line], origin: Array) -> list[Array]:
+    """The point of every turn on its own line, which the shifts lead to: the foot of the common perpendicular with the
+    line before (Denavit and Hartenberg), on a parallel line the point nearest to the one before. The way along a line
+    stands in front of its turn. origin: that of the base, for lines that are all parallel.
+    """
+    found: list[Array] = []
+    feet = [_foot(second, first) for first, second in pairwise(lines)]
+    before = next((foot for pair in pairwise(lines) if (foot := _foot(*pair)) is not None), origin)
+    for line, foot in zip(lines, [None, *feet], strict=False):
+        before = _nearest(line, before) if foot is None else foot
+        found.append(before)
+    return found
+
+
+def _foot(line: Line, other: Line) -> Array | None:
+    """The point of a line nearest to another; None if they are (nearly) parallel."""
+    cosine = float(line.direction @ other.direction)
+    determinant = 1.0 - cosine**2
+    if determinant < _PARALLEL**2:
+        return None
+    along = (line.direction - cosine * other.direction) @ (other.point - line.point) / determinant
+    return np.asarray(line.point + np.outer(line.direction, along))
+
+
+def _nearest(line: Line, point: Array) -> Array:
+    """The point of a line that is nearest to a point."""
+    return np.asarray(line.point + np.outer(line.direction, line.direction @ (point - line.point)))

@@ -14,7 +14,8 @@ from derive.description.amounts import in_radians, number_in, without_decimals
 from derive.description.dimensions import Parameter, Role
 from derive.description.mechanism import Mechanism
 from derive.form.exact import is_right
-from derive.form.named_angles import NamedAngle, NamedAngles
+from derive.form.inner_names import with_symbols
+from derive.form.named_angles import NamedAngle, NamedAngles, of_degrees
 from derive.geometry.frames import Chain, Factor, Motion
 from derive.ir.constants import DEGREE
 from derive.ir.symbols import Names, cosine, sine
@@ -87,3 +88,26 @@ def fixed_numbers(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
             radians = sp.Float(p.nominal) * sp.pi / 180
             found |= {sine(p.symbol): sp.sin(radians).evalf(), cosine(p.symbol): sp.cos(radians).evalf()}
     return found
+
+
+def with_named_loop_angles(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with names for the angles whose sines and cosines stand in the equations of its loop as numbers.
+
+    Each becomes a fixed angle of at most 45 degrees, and right angles; one that SymPy writes as roots stays as it is.
+    """
+    if mechanism.chain is not None or mechanism.is_turning_loop:
+        return mechanism
+    functions = {f for e in mechanism.equations for f in e.atoms(sp.sin, sp.cos) if f.is_number}
+    table: dict[sp.Expr, sp.Expr] = {}
+    angles: dict[sp.Expr, NamedAngle] = {}
+    for one in sorted(functions, key=sp.default_sort_key):
+        quarters = sp.Integer(round(float(2 * one.args[0] / sp.pi)))
+        rest = sp.nsimplify(one.args[0] - quarters * sp.pi / 2)
+        size = sp.Abs(rest)
+        angle = angles.setdefault(size, of_degrees(size * 180 / sp.pi))
+        table[one] = one.func(quarters * sp.pi / 2 + sp.sign(rest) * angle.symbol * DEGREE)
+    if not table:
+        return mechanism
+    fixed = tuple(map(fixed_angle, angles.values()))
+    renamed: Mechanism = with_symbols(mechanism, table)
+    return replace(renamed, home=mechanism.home, parameters=(*mechanism.parameters, *fixed))

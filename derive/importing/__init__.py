@@ -7,7 +7,6 @@ branches: the branches of common arms: shoulder, elbow, wrist
 expressions: amounts of a chain as Python text
 formats/: the readers of robot files
 importing: the whole import: read, undo rounding, bring into the simple form, write, report
-line: the command line of an import
 naming: names of axes, parameters and blocks, made of the names in the file
 report: the report of an import for its user
 robot: the content of a robot file, as data that are independent of the file format

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from derive.description.amounts import almost_right_angles
 from derive.description.mechanism import DescriptionError, Mechanism, Turning
-from derive.equations.axes import finite
+from derive.equations.axes import Forward, finite
 from derive.equations.limits import limits_program
-from derive.equations.pose_at_axes import Forward
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.program import Let, Output, Program, Statement

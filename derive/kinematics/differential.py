@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import sympy as sp
 
 from derive.description.mechanism import DescriptionError, Mechanism, Turning
+from derive.equations.axes import Forward
 from derive.equations.chain_splits import is_spatial
 from derive.equations.closures.fixed_names import with_fixed_names
 from derive.equations.named_pose import named_pose
 from derive.equations.pitch.chain import followed_factors
-from derive.equations.pose_at_axes import Forward
 from derive.equations.trigonometry import named_trigonometry
 from derive.geometry.frames import Chain, Motion
 from derive.geometry.pose import Screw, pose_of

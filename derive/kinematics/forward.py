@@ -7,13 +7,12 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.description.mechanism import Mechanism, Turning
-from derive.equations.axes import finite, frozen_lets, joint_lets
+from derive.equations.axes import Forward, finite, frozen_lets, joint_lets
 from derive.equations.chain_splits import is_spatial
 from derive.equations.closures.commanded import heading_of
 from derive.equations.closures.fixed_names import all_angles, angles_of, fixed_lets, signs_of
 from derive.equations.closures.stated import position_closure
 from derive.equations.named_pose import named_pose
-from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import Problem
 from derive.equations.trigonometry import heading_at_joints, named_trigonometry
 from derive.geometry.pose import pose_of

@@ -19,8 +19,7 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 from derive.description.mechanism import Branch, Joint, Limited, Mechanism, Parameter
-from derive.ir.program import Program, shared
-from derive.kinematics.reference_cases import SelfTest
+from derive.ir.program import Program, Status, shared
 
 if TYPE_CHECKING:  # the witness reads programs alone, and nothing of how they were derived is loaded with it
     from derive.kinematics.solution import Solution
@@ -239,3 +238,45 @@ class Kinematics:
         """
         angles = tuple(j for j in self.mechanism.joints if j.is_angle)
         return angles or self.mechanism.joints
+
+
+Reals = tuple[float, ...]
+Bytes = tuple[int, ...]
+
+
+class Called(Enum):
+    """The method that a case calls."""
+
+    INITIALIZE = 0
+    FORWARD = 1
+    INVERSE = 2
+    SINGULARITY = 3
+
+
+@dataclass(frozen=True)
+class Case:
+    """A call with its expected answer: frame and configuration of forward kinematics, the axes of the inverse."""
+
+    called: Called
+    machine: int
+    status: Status = Status.OK
+    axes: Reals = ()
+    reference: Reals = ()
+    frame: Reals = ()
+    """The position, then the rotation by rows."""
+    configuration: Bytes = ()
+    is_singular: bool = False
+    operations: int = 0
+    """The largest number of floating operations of the call; a loop counts as often as the reference ran it."""
+    budget: int = 0
+    """The operations that a cycle of a controller may need for the case: more than those of the call."""
+
+
+@dataclass(frozen=True)
+class SelfTest:
+    """Machines by their parameters, and cases in the order in which they run: the first case of a machine initialises
+    it.
+    """
+
+    machines: tuple[Mapping[str, float], ...]
+    cases: tuple[Case, ...]

@@ -15,9 +15,8 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.description.mechanism import Mechanism, Turning
-from derive.equations.axes import finite, joint_lets
+from derive.equations.axes import Forward, finite, joint_lets
 from derive.equations.closures.fixed_names import fixed_lets, with_fixed_names
-from derive.equations.pose_at_axes import Forward
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.constants import CONVERGED, FREE_ANGLE, PLANE
 from derive.ir.passes import normalise

@@ -14,9 +14,8 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from derive.description.mechanism import DescriptionError, Mechanism, Turning
-from derive.equations.axes import axis_lets, joint_lets, reference_value
+from derive.equations.axes import Forward, axis_lets, joint_lets, reference_value
 from derive.equations.closures.fixed_names import fixed_lets
-from derive.equations.pose_at_axes import Forward
 from derive.ir.interpret import evaluate, run
 from derive.ir.passes import normalise, renamed
 from derive.ir.program import Let, Output, Require, Statement, Status, rewritten

@@ -11,7 +11,6 @@ reasons: the reasons of refusals in words
 reference_calls: the answers of the methods of a block, by the reference interpreter
 self_test: the calls of the self-test, with their answers
 singular_poses: poses in which one margin vanishes
-used: the equations from which a step was made
 workspace_map: slices through the workspace: solutions and margins at each point
 zero_directions: the direction of each axis in the zero pose, in words
 """

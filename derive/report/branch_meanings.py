@@ -11,8 +11,7 @@ from itertools import islice
 import numpy as np
 
 from derive.ir.program import Status
-from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.reference_cases import Reals
+from derive.kinematics.kinematics import Kinematics, Reals
 from derive.report.reference_calls import Machine, branches_at, forward, forward_at, machine_with
 from derive.work import stage
 

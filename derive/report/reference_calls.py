@@ -16,9 +16,8 @@ from derive.ir.constants import EDGE, FREE_ANGLE, TIE
 from derive.ir.interpret import Array, Repeats, evaluate, repeats_counted, run
 from derive.ir.program import Program, Status
 from derive.ir.symbols import ROTATION_ENTRIES, branch_sign
-from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.kinematics import Bytes, Kinematics, Reals
 from derive.kinematics.parameters import TIE_OF_LENGTHS
-from derive.kinematics.reference_cases import Bytes, Reals
 from derive.kinematics.sampling import size_of
 from derive.plate.plate import home_position, home_rotation
 

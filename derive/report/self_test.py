@@ -16,9 +16,8 @@ from derive.description.mechanism import DescriptionError, Joint, Role
 from derive.ir.constants import LARGEST, SINGULAR
 from derive.ir.interpret import Array
 from derive.ir.program import Status
-from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.kinematics import Bytes, Called, Case, Kinematics, Reals, SelfTest
 from derive.kinematics.parameters import has_length
-from derive.kinematics.reference_cases import Bytes, Called, Case, Reals, SelfTest
 from derive.kinematics.sampling import sample_axes
 from derive.report.effort import with_operations
 from derive.report.reference_calls import Machine, branches, forward, inverse, machine_with, margins

@@ -23,7 +23,7 @@ from derive.ir.passes import normalise
 from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Why
 from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, branch_sign, cosine, sine
-from derive.kinematics.reference_cases import Reals
+from derive.kinematics.kinematics import Reals
 from derive.kinematics.sampling import sample_axes, size_of
 from derive.plate.legs import angles, by_angles
 from derive.plate.passive import commanded, renamed_in

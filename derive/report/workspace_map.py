@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from derive.ir.interpret import run
 from derive.ir.program import Status
 from derive.ir.symbols import branch_sign
-from derive.kinematics.reference_cases import Reals
+from derive.kinematics.kinematics import Reals
 from derive.kinematics.sampling import sample_axes, size_of
 from derive.report.reference_calls import FRAME, Machine, are_inside
 

@@ -29,8 +29,8 @@ from derive.solver.meeting_axes import circles_and_spheres
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from derive.solver.positive_steps import known_signs, where_roots_meet, with_known_signs
 from derive.solver.residuals import left_alone, left_of_positions, left_of_rotation, unknowns_in
-from derive.solver.subproblems.affine import affine
 from derive.solver.subproblems.affine_system import (
+    affine,
     affine_across,
     affine_along,
     affine_along_or_free,

@@ -11,14 +11,12 @@ checks: the checks of forward kinematics, Jacobian and margins, and how errors a
 closure: the closure equations as CasADi functions
 disagreement: the errors if a derived formula is wrong, and if there is no pose to measure
 exact/: forward and inverse kinematics against the closure in a finite field, where it holds or not
-frames: the frames of a chain, multiplied out factor by factor
+frames: the frames of a chain, multiplied out factor by factor; CasADi functions over rows of samples
 home_samples: axis values of a loop that turns its platform, around its home pose
 inverse: the checks of the inverse: every slot, the way back, no solution missing
-jointless: the check of a mechanism without joints
 orientation: the check of the orientations that a flange can have
 planted: poses close to where branches of a root scan meet
 roots: all solutions of the closure for a pose, from many starts
-rows: CasADi functions over rows of samples
 samples: machines and regular poses, drawn from a fixed seed
 terms: expressions of a description as CasADi expressions
 """
@@ -34,8 +32,7 @@ from derive.witness.closure import closure_of
 from derive.witness.disagreement import Disagreement, NoPose
 from derive.witness.exact.proof import check_exactly
 from derive.witness.inverse import all_slots, check_inverse, check_offset, check_solutions
-from derive.witness.jointless import check_jointless
-from derive.witness.orientation import check_orientation
+from derive.witness.orientation import check_jointless, check_orientation
 from derive.witness.samples import regular_samples
 from derive.work import stage
 

@@ -23,8 +23,7 @@ from derive.geometry.frames import Motion
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import Array
 from derive.ir.symbols import COORDINATE_NAMES, real
-from derive.witness.frames import followed_axes, followed_pose, frame_at, joint_values, moved_by, turn
-from derive.witness.rows import Rows
+from derive.witness.frames import Rows, followed_axes, followed_pose, frame_at, joint_values, moved_by, turn
 from derive.witness.terms import Symbols, Term, term
 
 LEAST_MARGIN = 1e-6

@@ -8,9 +8,9 @@ from derive.ir.interpret import Array, run
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Freedom, Kinematics
 from derive.witness.checks import CLOSURE_TOLERANCE, run_regular, worst
-from derive.witness.closure import POSE
+from derive.witness.closure import POSE, Closure
 from derive.witness.disagreement import Disagreement
-from derive.witness.samples import SEED, Samples, describe
+from derive.witness.samples import SEED, Samples, describe, random_machines
 
 _SWING = np.radians(150.0)
 """The largest tilt of a commanded tool direction that must still be projected."""
@@ -57,3 +57,19 @@ def _swings(count: int) -> Array:
     cross[:, 2, 1], cross[:, 1, 2] = np.cos(azimuth), -np.cos(azimuth)
     sine, versine = np.sin(tilt)[:, None, None], 1.0 - np.cos(tilt)[:, None, None]
     return np.asarray(np.eye(3) + sine * cross + versine * cross @ cross)
+
+
+def check_jointless(kin: Kinematics, closure: Closure) -> tuple[int, float]:
+    """Check the frame of every random machine. Returns the number of machines and the largest error."""
+    values = random_machines(kin, np.random.default_rng(SEED))
+    parameters = np.stack([values[name] for name in closure.parameters], axis=1)
+    outputs, status = run(kin.forward, values)
+    count = len(parameters)
+    pose = np.stack([np.broadcast_to(outputs[name], count) for name in POSE], axis=1)
+    expected = closure.frame(np.zeros((count, 0)), parameters)[:, :, 0]
+    reach = np.maximum(np.abs(expected[:, :3]).max(axis=1, keepdims=True), np.finfo(float).tiny)
+    unit = np.where(np.arange(len(POSE)) < 3, reach, 1.0)
+    error = float(np.max(np.abs(pose - expected) / unit))
+    if error > CLOSURE_TOLERANCE or np.any(status != Status.OK):
+        raise Disagreement(f"the frame of a mechanism without joints: error {error:.1e}")
+    return count, error

@@ -11,8 +11,7 @@ from pathlib import Path
 import pytest
 
 from derive.command import stages as of_machine
-from derive.command.doing import doing
-from derive.command.stages import Stages
+from derive.command.stages import Stages, doing
 from derive.lowering import writing
 from derive.progress import Patience, Progress
 from tests.command.files import RAIL, ROOT, Folder
@@ -134,7 +133,7 @@ def test_what_the_compiler_is_doing(folder: Folder, monkeypatch: pytest.MonkeyPa
 
 ENDLESS = """
 import threading
-from derive.command.doing import doing
+from derive.command.stages import doing
 from derive.description.catalogue import load
 from pathlib import Path
 import os, time

@@ -13,8 +13,7 @@ from urllib.parse import urlsplit
 
 import aiohttp
 
-from derive.controller.connection import Source
-from derive.controller.run import live, source_of, who
+from derive.controller.run import Source, live, source_of, who
 from derive.controller.settings import Security, Settings, settings_of
 from tests.controller.controllers import Wire
 

@@ -11,11 +11,10 @@ from pathlib import Path
 import aiohttp
 import pytest
 
-from derive.controller.connection import WAIT, keep
 from derive.controller.feed import Feed, Status
 from derive.controller.reading import Unusable
 from derive.controller.refusal import Lost, Refused
-from derive.controller.run import live
+from derive.controller.run import WAIT, keep, live
 from derive.controller.server import MOST_PAGES
 from derive.controller.settings import Settings
 from derive.controller.sources.pace import ANSWER

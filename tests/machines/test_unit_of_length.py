@@ -10,7 +10,7 @@ from derive.description.catalogue import MECHANISMS, load
 from derive.description.mechanism import Mechanism, Role
 from derive.ir.program import Status
 from derive.kinematics.build import build
-from derive.kinematics.reference_cases import Called
+from derive.kinematics.kinematics import Called
 from derive.pipeline import derive_one
 from derive.report.self_test import self_test
 

@@ -18,7 +18,7 @@ from derive.kinematics.lost_digits.doubts import without_meeting
 from derive.kinematics.scan.choice import with_search
 from derive.kinematics.scan.derivations import solve_both
 from derive.kinematics.solution import prepared
-from derive.report.used import equations_of
+from derive.report.derived import equations_of
 from derive.solver.solve import Step
 from tests.mechanisms import kinematics_of, named
 from tests.page.made import NAMES, page, samples, spelled, spelling, tree

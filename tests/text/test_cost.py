@@ -17,8 +17,8 @@ from derive.emit.python.entries import module_name
 from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select
 from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Solve, Status
 from derive.ir.symbols import SCALE, real
+from derive.kinematics.kinematics import Called
 from derive.kinematics.parameters import machine_parameters
-from derive.kinematics.reference_cases import Called
 from derive.kinematics.sampling import sample_axes
 from derive.plate.plate import home_position
 from derive.report.cost import Cost, cost_of, costs_of, expression_cost, solve_cost

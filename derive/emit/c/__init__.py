@@ -2,7 +2,6 @@
 
 It may import no other folder of `emit`. It writes these files on demand, and the native core of the Python package.
 
-arc_tangent: the arc tangent as a polynomial, for several poses at a time
 description: the tables of a machine: axes, parameters, configuration, limits, margins
 every_branch: all branches as one function
 functions: the function of each program, with its arguments and the places of its results
@@ -11,6 +10,5 @@ layout: indents, comments and long statements
 package: the files of a mechanism, and those that all share
 printer: expressions
 program: a program as a function with early returns
-refusal: how a function refuses
 setup: the function that computes the constants of a machine
 """

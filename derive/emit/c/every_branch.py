@@ -9,8 +9,7 @@ from derive.description.mechanism import Joint
 from derive.emit.braces import block
 from derive.emit.c.functions import FRAME
 from derive.emit.c.printer import C, status, type_of
-from derive.emit.c.program import Body, function_of, taken
-from derive.emit.c.refusal import Refusals
+from derive.emit.c.program import Body, Refusals, function_of, taken
 from derive.emit.every_branch import EveryBranch, every_branch, is_unrolled, signs, without_doubts
 from derive.emit.interface import read_by
 from derive.ir.program import Require, Status

@@ -18,8 +18,16 @@ from derive.emit.c.functions import FRAME, Function, functions, rotation_functio
 from derive.emit.c.lanes import constants_of_lanes
 from derive.emit.c.layout import comment, laid_out, page
 from derive.emit.c.printer import C, list_of, member, number, text, type_of
-from derive.emit.c.program import Body, arguments_read, directions_of, function_lines, function_of, of_search, taken
-from derive.emit.c.refusal import Refusals
+from derive.emit.c.program import (
+    Body,
+    Refusals,
+    arguments_read,
+    directions_of,
+    function_lines,
+    function_of,
+    of_search,
+    taken,
+)
 from derive.emit.c.setup import constants_read, setup
 from derive.emit.interface import arguments_of, read_by, search_of, searches
 from derive.emit.language import GENERATED, Part, environment, head_of, runtime

@@ -5,17 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
 
 import sympy as sp
 
-from derive.emit import walk
+from derive.emit import refusals, walk
 from derive.emit.braces import block
 from derive.emit.c.functions import Function, function_name
 from derive.emit.c.layout import comment
-from derive.emit.c.printer import C, list_of, spelled, type_of
-from derive.emit.c.refusal import Refusals
+from derive.emit.c.printer import C, list_of, spelled, status, text, type_of
 from derive.emit.interface import names_in, read_by
-from derive.ir.program import Call, FindRoot, Solve
+from derive.ir.program import Call, FindRoot, Solve, Status
+from derive.ir.reason import Unit
 from derive.ir.symbols import PLACE
 from derive.lowering.decided import decided
 from derive.lowering.passes import structured
@@ -184,3 +185,28 @@ def of_search(search: FindRoot) -> list[list[str]]:
         ]
         found.append(function_of("", f"static softkin_status {name}_at({given})", inner))
     return found
+
+
+class Refusals(refusals.Refusals):
+    """The refusals of one function."""
+
+    largest, smallest = "fmax", "fmin"
+
+    def refused(self, outcome: Status, reason: str = "", missing: str = "", turn: str = "") -> str:
+        """The call that fills a refusal; a reason ends in the unit of the missing amount."""
+        unit = next((u.value for u in Unit if u.value and reason.endswith(f" [{u.value}]")), "")
+        words = reason.removesuffix(f" [{unit}]") if unit else reason
+        return f"softkin_refuse(why, {status(outcome)}, {text(words)}, {text(unit)}, {missing or '0.0'}, {turn or '0'})"
+
+    def refused_parameters(self, sentence: str, names: Sequence[str]) -> str:
+        return f"softkin_refuse_parameters(why, {text(sentence)}, {text(', '.join(names))})"
+
+    def reasonable(self, values: Sequence[str]) -> str:
+        return f"softkin_are_reasonable((const double[]){list_of(values)}, {len(values)})"
+
+    def inside(self, axis: str, lowest: str, highest: str) -> tuple[str, str]:
+        return f"const int turn = softkin_turn_inside({axis}, {lowest}, {highest});", "turn != 0"
+
+    def extreme(self, word: str, ends: Sequence[sp.Expr]) -> str:
+        """The largest or the smallest of one or more limits: a function of C takes two numbers."""
+        return reduce(lambda found, other: f"{word}({found}, {other})", map(self.printer.print, ends))

@@ -13,8 +13,7 @@ import sympy as sp
 from derive.description.mechanism import Role
 from derive.emit.braces import block
 from derive.emit.c.printer import C, member, number, type_of
-from derive.emit.c.program import Body, function_of
-from derive.emit.c.refusal import Refusals
+from derive.emit.c.program import Body, Refusals, function_of
 from derive.emit.inputs import Inputs
 from derive.emit.setup import setup_of
 from derive.equations.windows import Window

@@ -8,6 +8,5 @@ layout: indents, comments and long statements
 package: the files of a mechanism, and those of the runtime
 printer: expressions
 program: a program as a function with early returns
-refusal: how a function refuses
 setup: the function that computes the constants of a machine
 """

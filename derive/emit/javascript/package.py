@@ -19,8 +19,7 @@ from derive.emit.javascript.description import description, inputs
 from derive.emit.javascript.functions import functions, rotation_function
 from derive.emit.javascript.layout import comment, laid_out
 from derive.emit.javascript.printer import PRINTER, RUNTIME, list_of, spelled, text
-from derive.emit.javascript.program import function_lines, looked_for
-from derive.emit.javascript.refusal import refusals_of
+from derive.emit.javascript.program import function_lines, looked_for, refusals_of
 from derive.emit.javascript.setup import setup_lines
 from derive.emit.language import GENERATED, Part, environment, head_of, runtime
 from derive.emit.shared_constants import CONSTANTS, STATUSES

@@ -7,17 +7,17 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.emit import walk
+from derive.emit import refusals, walk
 from derive.emit.braces import block
 from derive.emit.interface import Shape, names, read_by
 from derive.emit.javascript.functions import Function
 from derive.emit.javascript.layout import comment
-from derive.emit.javascript.printer import PRINTER, function_name, list_of, spelled
-from derive.emit.javascript.refusal import Refusals
-from derive.ir.program import Call, FindRoot, Solve
+from derive.emit.javascript.printer import PRINTER, function_name, list_of, spelled, status, text
+from derive.ir.program import Call, FindRoot, Solve, Status
 from derive.ir.symbols import PLACE, is_condition
 from derive.lowering.decided import decided
 from derive.lowering.passes import structured
+from derive.report.reasons import Reasons
 
 _PLACE = "({ tried, side, freed, freed_angle }) => "
 
@@ -113,3 +113,27 @@ def _trimmed(targets: list[str]) -> list[str]:
     while targets and not targets[-1]:
         targets.pop()
     return targets
+
+
+class Refusals(refusals.Refusals):
+    """The refusals of one mechanism."""
+
+    largest, smallest = "Math.max", "Math.min"
+
+    def refused(self, outcome: Status, reason: str = "", missing: str = "", turn: str = "") -> str:
+        given = [status(outcome), text(reason) if reason else "", missing or ("0" if turn else ""), turn]
+        return f"refuse({', '.join(filter(None, given))})"
+
+    def refused_parameters(self, sentence: str, names: Sequence[str]) -> str:
+        return f"refuseParameters({text(sentence)}, {text(names)})"
+
+    def reasonable(self, values: Sequence[str]) -> str:
+        return f"isReasonable({', '.join(values)})"
+
+    def inside(self, axis: str, lowest: str, highest: str) -> tuple[str, str]:
+        return f"const turn = turnInside({axis}, {lowest}, {highest});", "turn"
+
+
+def refusals_of(reasons: Reasons) -> Refusals:
+    """The refusals of a mechanism with these reasons."""
+    return Refusals(reasons, PRINTER)

@@ -12,8 +12,7 @@ import sympy as sp
 from derive.emit.braces import block
 from derive.emit.inputs import Inputs
 from derive.emit.javascript.printer import PRINTER, list_of, spelled, text
-from derive.emit.javascript.program import Body
-from derive.emit.javascript.refusal import refusals_of
+from derive.emit.javascript.program import Body, refusals_of
 from derive.emit.setup import setup_of
 from derive.equations.windows import Window
 from derive.ir.program import Require

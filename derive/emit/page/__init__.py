@@ -9,6 +9,5 @@ names: the names on a page, in the spelling of the function block and of Python
 page: the page of a machine, and the index of all pages
 pictures: the machine as it is drawn, poses where a margin vanishes, maps of the workspace
 steps: the steps of the derivation, and the tree of its branches
-svg: the marks of a drawing, and maps of a workspace, as SVG inside a page
 tables: axes, parameters, names, margins, measurements, operations
 """

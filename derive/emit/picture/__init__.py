@@ -2,7 +2,6 @@
 
 It may import no other folder of `emit`.
 
-belt: a belt on its frame, its wheels, and the motors
 canvas: marks as PNG and as SVG
 ink: the marks: lines, areas, texts
 machine: the machine on its part of the page

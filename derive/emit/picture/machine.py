@@ -10,13 +10,23 @@ import sympy as sp
 from derive.drawing.drawing import Drawing
 from derive.drawing.scene import ORIGIN, Body, Dimension, Point, Segment, Slide, Turn
 from derive.emit.picture import style
-from derive.emit.picture.belt import belt, motor_radius
 from derive.emit.picture.ink import Area, Mark, Vector
 from derive.emit.picture.naming import name_angle, name_axes, name_length, name_motor, name_point, name_slide, name_turn
 from derive.emit.picture.placing import Sheet, around
 from derive.emit.picture.rails import FREE, rails, slide_arrow
 from derive.emit.picture.spelling import in_short, spelled
-from derive.emit.picture.symbols import angle_lines, bar, ground, meeting, opening, rail, triad, turning
+from derive.emit.picture.symbols import (
+    angle_lines,
+    bar,
+    belt,
+    ground,
+    meeting,
+    motor_radius,
+    opening,
+    rail,
+    triad,
+    turning,
+)
 from derive.emit.picture.view import Box, fitted
 
 _MARGINS = (78.0, 62.0, 84.0, 58.0)

@@ -17,8 +17,7 @@ package: all files of the package
 printer: expressions, on plain numbers and on arrays
 program: a program as a method on plain numbers, with early returns
 refusal: how a method on plain numbers refuses
-rotation: the repair of the commanded rotation
-runtime: the templates, with the constants that they and the runtime read
+runtime: the templates, with the constants that they and the runtime read, and the repair of a rotation
 setup: the setup program, which computes the constants of a machine
 straight_line/: all branches in a straight line
 """

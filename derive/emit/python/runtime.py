@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from textwrap import wrap
@@ -9,16 +11,21 @@ from textwrap import wrap
 from jinja2 import Environment
 
 from derive.description.dimensions import Role
+from derive.emit.interface import rotation_entry
 from derive.emit.language import GENERATED, environment
 from derive.emit.python import entries
-from derive.emit.python.arrays import OF_A_SEARCH
+from derive.emit.python.arrays import CALLED, OF_A_SEARCH, TYPES, array_body, named_in
 from derive.emit.python.layout import documented
-from derive.emit.python.printer import literal
-from derive.emit.python.rotation import rotation_functions
+from derive.emit.python.methods import ROTATION_ARGUMENT
+from derive.emit.python.printer import ScalarPrinter, literal, primitives_in
+from derive.emit.python.program import Method, scalar_body
+from derive.emit.python.refusal import explained
 from derive.emit.shared_constants import CONSTANTS, STATUSES
+from derive.equations.rotation_repair import rotation_program, surely_exact
 from derive.ir import cells, roots
+from derive.ir.passes import without_reasons
 from derive.ir.reason import Why
-from derive.report.reasons import NO_MEANING, OTHER_TURN
+from derive.report.reasons import NO_MEANING, OTHER_TURN, reasons_of_rotation
 
 NAME = "python"
 """The folder of the templates."""
@@ -71,3 +78,28 @@ def _paragraph(text: str, indent: int = 0) -> str:
     """A text broken into the lines of a docstring, each with an indent."""
     space = " " * indent
     return "\n".join(map(documented, wrap(text, _TEXT, initial_indent=space, subsequent_indent=space)))
+
+
+def rotation_functions() -> dict[str, object]:
+    """The values that the templates read: the bodies of both functions, and the names that they call."""
+    entry = rotation_entry()
+    method = Method(
+        "made_rotation", entry.summary, entry.program, (ROTATION_ARGUMENT,), "Rotation", ROTATION_ARGUMENT.shape
+    )
+    plain = _with_shortcut(scalar_body(method, explained(reasons_of_rotation())))
+    arrays = array_body(replace(method, program=without_reasons(method.program)))
+    return {
+        "plain": plain,
+        "primitives": primitives_in(plain),
+        "arrays": arrays,
+        "helpers": sorted(named_in(arrays, CALLED | TYPES), key=lambda n: (n[0].islower(), n)),
+    }
+
+
+def _with_shortcut(lines: Sequence[str]) -> list[str]:
+    """The lines, with an early return for an exact rotation, as nearly every call has, in front of the first value."""
+    first = rotation_program().lets()[0].name.name
+    place = next(k for k, line in enumerate(lines) if line.startswith(f"{first} = "))
+    conditions = " and ".join(map(ScalarPrinter().print, surely_exact()))
+    shortcut = [f"if {conditions}:", f"    return {ROTATION_ARGUMENT.name}"]
+    return [*lines[:place], *shortcut, *lines[place:]]

@@ -14,9 +14,6 @@ inputs: the inputs of a block: type, default, range, unit
 layout: the text of a method without empty sections
 library: all files: text, PLCopenXML and the import script
 methods: the methods of a block, and the spelling of the values that they read
-overview: the table of all blocks
-own_interface: the interface of our own, by which a program asks the kinematics of an axis group
-pictures: the pictures in the descriptions of blocks
-refused: the reasons why Initialize refuses an input, in words
+pictures: the pictures in the descriptions of blocks, and the overview
 self_test: the self-test of a block, as tables of calls and answers
 """

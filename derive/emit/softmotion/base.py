@@ -11,7 +11,7 @@ from jinja2 import Environment
 from derive.emit.softmotion.layout import tidy
 from derive.emit.st.contract import Contract, Parameter, Signature
 from derive.emit.st.layout import with_gathered
-from derive.emit.st.projection import about_z, followed
+from derive.emit.st.rotation import about_z, followed
 
 _OF_AXES = ("Jacobian", "Margins", "AxisVelocities")
 _OWN = ("InitializeReason", *_OF_AXES, *(f"{name}From" for name in _OF_AXES), "Diagnose")

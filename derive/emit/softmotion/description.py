@@ -16,8 +16,7 @@ from derive.emit.st.layout import WIDTH
 from derive.emit.st.names import respelled
 from derive.ir.constants import EXACT_ROTATION, FREE_ANGLE, ONE_TURN, ROTATION
 from derive.ir.program import Call, Status, shared
-from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.reference_cases import Called
+from derive.kinematics.kinematics import Called, Kinematics
 from derive.report.cost import Bound, Cost, Costs, costs_of
 from derive.report.effort import open_slots, worst_inverse
 from derive.report.reasons import workspace

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import ClassVar
 
@@ -20,8 +20,7 @@ from derive.emit.softmotion.description import description
 from derive.emit.softmotion.flat import flattened
 from derive.emit.softmotion.inputs import inputs
 from derive.emit.softmotion.methods import methods_of
-from derive.emit.softmotion.overview import row_of
-from derive.emit.softmotion.own_interface import interface_text
+from derive.emit.softmotion.pictures import row_of
 from derive.emit.softmotion.self_test import FOLDER as SELF_TESTS
 from derive.emit.softmotion.self_test import PROGRAM as SELF_TEST_PROGRAM
 from derive.emit.softmotion.self_test import TOLERANCE, test_of
@@ -192,3 +191,9 @@ def _unit(kinematics: Kinematics, block: Block, contract: Contract, templates: E
         description=description(kinematics, block, contract.spelling["pictures"]["reference"], templates),
         methods=methods,
     )
+
+
+def interface_text(contract: Contract, templates: Environment) -> str:
+    """The text of the interface: the methods of the contract that are our own, with the headers that blocks have."""
+    heads = [replace(signature, access="").head() for signature in contract.own.values()]
+    return templates.get_template("interface.st.j2").render(contract.spelling, heads=heads)

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from jinja2 import Environment
 
+from derive.description.mechanism import Parameter as Dimension
+from derive.description.mechanism import Role
 from derive.emit.softmotion.base import BASE_VARIABLES, INHERITED, PRIVATE, Method, inherited_texts, statements_of
 from derive.emit.softmotion.block import Block, constants, direct, setup_of, start_in, stored_as
 from derive.emit.softmotion.calls import branch_of, commanded, from_home, offset_branch_of, without_axes
 from derive.emit.softmotion.inputs import inputs
 from derive.emit.softmotion.layout import tidy
-from derive.emit.softmotion.refused import refused_texts
 from derive.emit.st.contract import Contract, Parameter, Signature
 from derive.emit.st.layout import with_gathered
+from derive.emit.st.names import respelled
 from derive.emit.st.program import Printed, printed
 from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal, Tested
 from derive.emit.st.refused_inputs import (
@@ -28,6 +31,7 @@ from derive.emit.st.refused_inputs import (
 from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st.shared import method_name, own_names, signature_of
 from derive.equations.windows import windows
+from derive.ir.constants import LEAST
 from derive.ir.program import Call, FindRoot, Program, shared
 from derive.ir.symbols import branch_sign
 from derive.kept import kept_by_identity
@@ -255,3 +259,56 @@ def _positions(signature: Signature) -> dict[str, str]:
     if "vOffset_TCP" in names:
         spelled |= {f"point_{axis}": f"vOffset_TCP.d{axis.upper()}" for axis in "xyz"}
     return spelled
+
+
+_MOST_NAMED = 3
+
+
+@kept_by_identity(10)
+def refused_texts(kinematics: Kinematics) -> dict[str, str]:
+    """The text of every refusal, by the sentence of its condition: the inputs, then the condition on them.
+
+    A condition on a single input gives the range of that input and the condition.
+    """
+    spelled = inputs(kinematics).names
+    found: dict[str, str] = {}
+    for require in kinematics.setup_less_windows.requires():
+        assert require.reason is not None
+        sentence = require.reason.subject.name
+        read = {symbol.name for symbol in require.condition.free_symbols}
+        named = [p for p in kinematics.parameters if p.name in read]
+        needed = sentence
+        if len(named) == 1:
+            is_its_range = sentence == f"{named[0].name}: {named[0].meaning}"
+            needed = f"it must be {_allowed(named[0])}" + ("" if is_its_range else f" ({sentence})")
+        names = _listed([spelled[p.name] for p in named])
+        wrong = "is not allowed: " if len(named) == 1 else ": "
+        text = f"{names} {wrong}{needed}".replace(" :", ":") if named else f"the parameters must give {needed}"
+        if len(named) > 1:
+            text = _spelled(text, named, spelled)
+        found[sentence] = respelled(text, spelled)
+    return found
+
+
+def _spelled(text: str, named: Sequence[Dimension], spelled: Mapping[str, str]) -> str:
+    """The text with the spelling of the inputs that it is about, also of an input whose name is one plain word."""
+    names = {p.name: spelled[p.name] for p in named if "_" not in p.name}
+    return re.sub(r"\b[a-z]+\b", lambda found: names.get(found[0], found[0]), text)
+
+
+def _listed(names: Sequence[str]) -> str:
+    """The names, at most three of them."""
+    if len(names) <= _MOST_NAMED:
+        return ", ".join(names)
+    return f"{names[0]} and {len(names) - 1} others"
+
+
+def _allowed(parameter: Dimension) -> str:
+    """The values that are allowed, in words."""
+    if parameter.role is Role.SIGN:
+        return "1 or -1"
+    least = max(parameter.low, float(LEAST))
+    low = f"more than {least:g}" if parameter.low_open else f"at least {parameter.low:g}"
+    is_never_zero = parameter.role in (Role.SIGNED_LENGTH, Role.TRANSMISSION)
+    size = f", and more than {float(LEAST):g} in size" if is_never_zero else ""
+    return f"{low} and at most {parameter.high:g}{size}"

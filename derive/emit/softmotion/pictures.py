@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from derive.description.mechanism import Turning
 from derive.drawing.drawing import drawing_of
 from derive.emit.softmotion.inputs import inputs
-from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.kinematics import Freedom, Kinematics
 
 FOLDER = "pictures"
 
@@ -21,3 +22,28 @@ def pictures_of(kinematics: Kinematics) -> dict[str, bytes]:
     drawn = page(drawing_of(kinematics), block, names)
     made = pictures(drawn.marks, drawn.height)
     return {f"{FOLDER}/{block}.png": made.png, f"{FOLDER}/{block}.svg": made.svg}
+
+
+def row_of(kinematics: Kinematics) -> dict[str, str]:
+    """The row of one block."""
+    mechanism = kinematics.mechanism
+    return {
+        "family": mechanism.family,
+        "picture": "" if kinematics.undrawn else f"{FOLDER}/{mechanism.block_name}",
+        "path": f"{mechanism.family}/{mechanism.block_name}",
+        "block": mechanism.block_name,
+        "axes": " ".join(joint.name for joint in mechanism.joints) or "none",
+        "tools": _tools(kinematics),
+        "summary": mechanism.summary,
+    }
+
+
+def _tools(kinematics: Kinematics) -> str:
+    """The offsets that SMC_GroupSetTool accepts: to subtract one, SoftMotion must know the flange's orientation."""
+    if kinematics.mechanism.is_orientation:
+        return "with a position block"
+    if kinematics.mechanism.task.turning is Turning.DIRECTION or kinematics.mechanism.followed_turns:
+        return "along the axis it turns about"
+    if kinematics.projection is not None or kinematics.freedom is Freedom.ZERO:
+        return "any"
+    return "along the axis it turns about" if kinematics.freedom is Freedom.ONE else "none"

@@ -11,8 +11,7 @@ from derive.emit.softmotion.inputs import inputs, parameter_input
 from derive.emit.st.expression import literal
 from derive.emit.st.layout import INSIDE, WIDTH, packed
 from derive.ir.program import Status
-from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.reference_cases import Called, Case, Reals, SelfTest
+from derive.kinematics.kinematics import Called, Case, Kinematics, Reals, SelfTest
 
 FOLDER = "selftest"
 PROGRAM = "PRG_SoftkinSelfTest"

@@ -14,11 +14,10 @@ limits: the function that combines the limits of a block and of a drive
 loops: systems of linear equations, and bounded iterations
 names: names as Structured Text writes them, no two of which differ in case alone
 program: a program as statements
-projection: the part of a commanded rotation that a flange follows
 refusal: how a method refuses
 refused_inputs: how the inputs of a block are refused, each with a text
 reserved: names that may not be declared
-rotation: the repair of the commanded rotation
+rotation: the repair of the commanded rotation, and the part that a flange follows
 scan: the root scan: a method that calls the programs of a trial
 shared: programs that several methods share, each as a private method
 stretches: values that one branch has computed and the next one reads

@@ -5,15 +5,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import sympy as sp
+
 from derive.emit.st.contract import Contract, Signature
 from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import wrapped
 from derive.emit.st.program import Printed, printed
-from derive.emit.st.refusal import MISSING, REASON, Explained
+from derive.emit.st.refusal import MISSING, REASON, Explained, Refusal
 from derive.equations.rotation_repair import rotation_program, surely_exact
-from derive.ir.passes import with_inputs
-from derive.ir.program import Let
+from derive.ir.passes import normalise, with_inputs
+from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import ROTATION_ENTRIES
+from derive.kinematics.flange_rotation import projection_about_z
 from derive.report.reasons import reasons_of_rotation, rotation_texts
 
 _FUNCTION = "Softkin_MakeRotation"
@@ -48,3 +51,21 @@ def rotation_function(contract: Contract) -> RotationFunction:
     is_exact = wrapped(f"IF {' AND '.join(f'({printer.print(c)})' for c in surely_exact())} THEN")
     first, program = (printed(p, given, {}, taken, refusal) for p in (checks, rest))
     return RotationFunction(_FUNCTION, first, tuple(is_exact), program, texts)
+
+
+_ENTRIES = {r.name: f"rot[{r.name[1]}, {r.name[2]}]" for r in ROTATION_ENTRIES}
+
+
+def followed(signature: Signature, contract: Contract) -> Printed:
+    """The projection of a flange that follows the whole rotation."""
+    return _printed(normalise("projection", (), [Output(r.name, r) for r in ROTATION_ENTRIES]), signature, contract)
+
+
+def about_z(signature: Signature, contract: Contract) -> Printed:
+    """The projection to the nearest turn about z."""
+    return _printed(projection_about_z(sp.eye(3)), signature, contract)
+
+
+def _printed(program: Program, signature: Signature, contract: Contract) -> Printed:
+    refusal = Refusal(signature, contract.spelling["errors"], contract.spelling["types"]["error"])
+    return printed(program, _ENTRIES, {}, [p.name for p in signature.parameters], refusal)

@@ -17,8 +17,8 @@ from derive.importing.formats.connects import Loops
 from derive.importing.formats.documents import between, limit, number, numbers, parsed, rounding, shown
 from derive.importing.formats.legs import Meeting, NoRods, meeting_of
 from derive.importing.formats.loops import Joints, Loop, loop_notes
-from derive.importing.formats.mimics import Follower, driven
 from derive.importing.formats.orientations import File, places_of
+from derive.importing.formats.transmissions import Follower, driven
 from derive.importing.formats.trees import listed
 from derive.importing.formats.whole import whole
 from derive.importing.robot import (

@@ -25,8 +25,7 @@ from derive.importing.formats.documents import (
 )
 from derive.importing.formats.loops import Joints, Loop, loop_notes
 from derive.importing.formats.macros import macro_notes, refuse_macros, refuse_macros_inside
-from derive.importing.formats.mimics import Follower, driven
-from derive.importing.formats.transmissions import transmission_notes
+from derive.importing.formats.transmissions import Follower, driven, transmission_notes
 from derive.importing.formats.trees import Edge, ends_of, listed, path_between, tree_of
 from derive.importing.robot import (
     Axis,

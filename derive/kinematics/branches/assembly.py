@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from derive.algebra.normal_form import polynomial
 from derive.description.branches import assembly
 from derive.description.mechanism import Assembly, Bound, DescriptionError, Mechanism, Rod
+from derive.equations.axes import Forward
 from derive.equations.closures.fixed_names import all_angles, signs_of, with_fixed_names
-from derive.equations.pose_at_axes import Forward
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.constants import BOUNDARY, DEGREE
 from derive.ir.interpret import run

@@ -10,8 +10,8 @@ import sympy as sp
 
 from derive.algebra.normal_form import cancelled, reduce_units
 from derive.description.mechanism import Branch, DescriptionError, Mechanism
+from derive.equations.axes import Forward
 from derive.equations.closures.fixed_names import all_angles, with_fixed_names
-from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import StepDeterminant
 from derive.equations.trigonometry import named_trigonometry
 from derive.ir.interpret import run

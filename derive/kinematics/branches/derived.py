@@ -15,8 +15,8 @@ import sympy as sp
 
 from derive.algebra.normal_form import factored, polynomial
 from derive.description.mechanism import ROTATION, Branch, Mechanism, Role, Turning, branch
+from derive.equations.axes import Forward
 from derive.equations.closures.fixed_names import all_angles, fixed_lets, signs_of
-from derive.equations.pose_at_axes import Forward
 from derive.equations.problem import StepDeterminant
 from derive.geometry.frames import Motion
 from derive.ir.constants import DEGREE

@@ -13,9 +13,8 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.description.mechanism import Branch, DescriptionError, Mechanism
-from derive.equations.axes import axis_lets, frozen_lets, held_lets, reference_lets, reference_value
+from derive.equations.axes import Forward, axis_lets, frozen_lets, held_lets, reference_lets, reference_value
 from derive.equations.closures.fixed_names import fixed_lets
-from derive.equations.pose_at_axes import Forward
 from derive.geometry.frames import Chain
 from derive.ir.passes import normalise, renamed
 from derive.ir.primitives import Select

@@ -2,7 +2,6 @@
 
 Like `solver`, it may import the folders from `ir` to `equations`.
 
-affine: k v + c = 0, for a length v
 affine_system: M v = e, for two or three lengths v, or one length along a direction
 direction: cos u : sin u = along : across, for an angle u, which other rules lead to
 naming: one name for each known value

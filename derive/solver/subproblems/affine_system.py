@@ -184,3 +184,20 @@ def _listed(names: list[str]) -> str:
     if len(names) == 1:
         return names[0]
     return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def affine(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every length that one equation k v + c = 0 determines by itself. If k can vanish the equation is not taken; if k
+    is made of parameters alone, a machine for which it vanishes is refused.
+    """
+    for equation in equations:
+        unknowns = problem.unknowns_of(equation.expression)
+        if len(unknowns) != 1 or unknowns[0] not in problem.lengths:
+            continue
+        linear = linear_coefficients(equation.expression, unknowns)
+        if linear is None or not problem.determines(linear[0][0]):
+            continue
+        (coefficient,), rest = linear
+        note = f"{unknowns[0].name} from the {equation.label} equation, which is linear in it"
+        statements = (*equation.lets, Let(unknowns[0], sp.expand(-rest / coefficient), note))
+        yield Binding("affine", unknowns, statements, conditions=problem.conditions(coefficient))

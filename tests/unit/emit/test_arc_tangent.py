@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from mpmath import mp
 
-from derive.emit.c.arc_tangent import coefficients, horner
+from derive.emit.native import coefficients, horner
 
 OCTANT = np.sqrt(2.0) - 1.0
 LAST_DIGIT = 2.0**-52

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 from derive.ir.program import Let, Status
 from derive.ir.symbols import cosine, real, sine
-from derive.solver.subproblems.affine import affine
-from derive.solver.subproblems.affine_system import affine_across, affine_along, affine_along_or_free
+from derive.solver.subproblems.affine_system import affine, affine_across, affine_along, affine_along_or_free
 from tests.unit.solver.execution import (
     ANYTHING,
     LENGTHS,

@@ -14,8 +14,7 @@ from derive.description.validate import validate
 from derive.frames import Ry, Rz, Tx, Ty, Tz
 from derive.ir.program import Status
 from derive.kinematics.build import build
-from derive.kinematics.kinematics import Evidence
-from derive.kinematics.reference_cases import Called
+from derive.kinematics.kinematics import Called, Evidence
 from derive.mechanism import Turning, X, Y, branch, coordinate, on_plate
 from derive.mechanisms import kin_p2x_type1
 from derive.pipeline import derive_and_measure

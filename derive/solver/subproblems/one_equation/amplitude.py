@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.algebra.normal_form import cancelled
+from derive.algebra.normal_form import cancelled, reduce_units
 from derive.algebra.rings import common_factor
 from derive.equations.problem import Equation, Problem
 from derive.ir.constants import DEGREE, FREE_ANGLE, SHORTEST_LINK
@@ -16,7 +16,6 @@ from derive.ir.reason import Why, about_joint
 from derive.ir.symbols import cosine, real, sine
 from derive.solver.subproblems.naming import Naming
 from derive.solver.subproblems.one_equation.lateral import Row
-from derive.solver.subproblems.one_equation.origin import from_origin
 from derive.solver.subproblems.one_equation.triangle import is_square, triangle_of, without_minus
 
 
@@ -172,3 +171,46 @@ def _law_of_cosines(
         named = naming.product(seen, f"scaled_cosine_{angle.name}", "cosine, times the scale, without cancellation")
         return named, None, None if triangle is None else sp.Mul(*triangle.factors)
     return (right, None, None) if triangle is None else (triangle.right, triangle.factors, None)
+
+
+def from_origin(problem: Problem, equation: Equation, value: sp.Expr, arm: sp.Expr) -> sp.Expr | None:
+    """The right side e of a law of cosines as its value at the origin plus an increment; None if its roots do not
+    cancel to a multiple of the arm at the origin.
+
+    Some machines state their lengths by the angles at which they stand at the origin, so that lengths are roots. Then
+    the terms of e are larger than e by the ratio of rod and arm, and their sum loses as many digits. Let v be the known
+    names that depend on the position, and v0 their values at the origin. For e of at most the second degree in v the
+    trapezoidal rule is exact: e = e(v0) + sum (v - v0) (e_v(v) + e_v(v0)) / 2.
+    """
+    zero = {c: sp.Integer(0) for c in problem.position}
+    moving = {c: c for c in problem.position} | {
+        let.name: let.value for let in equation.lets if let.value.free_symbols & zero.keys()
+    }
+    names = [n for n in moving if n in value.free_symbols]
+    if not problem.squares or not names or sp.Poly(value, *names).total_degree() > 2:
+        return None
+    origin = {n: moving[n].xreplace(zero) for n in names}
+    written = reduce_units(value.xreplace(origin), problem.units, problem.signs)
+    left = _through_squares(problem, written)
+    if left == written or any(sp.cancel(term / arm).as_numer_denom()[1].has(arm) for term in sp.Add.make_args(left)):
+        return None
+    added = [(moving[n] - origin[n]) * _mean_rate(value, n, origin) for n in names]
+    return sp.Add(sp.factor(left), *added)
+
+
+def _mean_rate(value: sp.Expr, name: sp.Symbol, origin: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """The mean of the derivatives at the origin and at the commanded position."""
+    rate = sp.diff(value, name)
+    return sp.expand((rate + rate.xreplace(origin)) / 2)
+
+
+def _through_squares(problem: Problem, value: sp.Expr) -> sp.Expr:
+    """The normal form with the squares of roots written out."""
+    while True:
+        after = value.replace(
+            lambda n: isinstance(n, sp.Pow) and n.base in problem.squares and n.exp.is_Integer and n.exp >= 2,
+            lambda n: problem.squares[n.base] ** (n.exp // 2) * n.base ** (n.exp % 2),
+        )
+        if after == value:
+            return value
+        value = reduce_units(after, problem.units, problem.signs)

@@ -26,7 +26,6 @@ from derive.ir.program import Let, Require, Statement, Status
 from derive.ir.symbols import BOUND_OF, cosine, real, sine
 from derive.solver.subproblems.direction import free_angle
 from derive.solver.subproblems.one_equation.amplitude import Amplitude, amplitude_of
-from derive.solver.subproblems.one_equation.apart import determined_apart
 from derive.solver.subproblems.one_equation.lateral import Row, aimed_at_point
 from derive.solver.subproblems.one_equation.other_leg import held_by_leg, other_leg, with_leg
 from derive.solver.subproblems.one_equation.small_entries import with_small_entries
@@ -179,3 +178,40 @@ def _turned(
     for function, value, otherwise, note in zip((cosine, sine), values, free, notes, strict=True):
         chosen = value if amplitude.aimable is None else Select(amplitude.aimable, value, otherwise)
         yield Let(function(angle), chosen, note)
+
+
+Pair = tuple[sp.Expr, sp.Expr]
+
+
+def determined_apart(
+    problem: Problem, equation: Equation, angle: sp.Symbol, free: Pair
+) -> tuple[tuple[Let, ...], Pair]:
+    """Cosine and sine of the angle where the equation says nothing, and the statements that bind the names in them.
+
+    It is the difference of two equations, and says nothing if both coefficients of the eliminated length vanish: where
+    one slide is parallel to another. There the two equations are a pair for the angle u: a1 cos u + b1 sin u = e1,
+    a2 cos u + b2 sin u = e2. Where they do not determine the angle, either, the results are `free`.
+    """
+    read = [linear_coefficients(e, (cosine(angle), sine(angle))) for e in equation.apart]
+    rows = [row for row in read if row is not None]
+    if len(rows) != 2:
+        return (), free
+    ((a1, b1), c1), ((a2, b2), c2) = rows
+    if any(problem.unknowns_of(v) for v in (a1, b1, c1, a2, b2, c2)):
+        return (), free
+    size = problem.reduce(a1 * b2 - a2 * b1)
+    if size == 0:
+        return (), free
+    determinant, along, across, length, divisor = (
+        real(f"{word}_{angle.name}_apart") for word in ("determinant", "along", "across", "length", "divisor")
+    )
+    is_known = sp.And(sp.Gt(sp.Abs(determinant), FREE_ANGLE * problem.scale**2), sp.Gt(length, 0))
+    lets = (
+        Let(determinant, size, "where the slide drops out of both equations these are a pair"),
+        Let(along, (b1 * c2 - b2 * c1) * determinant),
+        Let(across, (a2 * c1 - a1 * c2) * determinant),
+        Let(length, Root(along**2 + across**2)),
+        Let(divisor, Select(is_known, length, sp.Integer(1))),
+    )
+    cos_free, sin_free = free
+    return lets, (Select(is_known, along / divisor, cos_free), Select(is_known, across / divisor, sin_free))
