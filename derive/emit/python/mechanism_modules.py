@@ -11,17 +11,7 @@ from derive.emit.every_branch import can_be_unrolled, has_doubts, is_unrolled
 from derive.emit.python import entries, setup
 from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in, values_of_a_row
 from derive.emit.python.calls import every_root
-from derive.emit.python.methods import (
-    branch,
-    differential,
-    end_point_shift,
-    forward,
-    limits,
-    methods,
-    projection,
-    rows_of_twist,
-    shared,
-)
+from derive.emit.python.methods import array_methods, methods, rows_of_twist
 from derive.emit.python.printer import ScalarPrinter, primitives_in
 from derive.emit.python.program import Method, constants_of, has_search, scalar_body, unpacked
 from derive.emit.python.refusal import explained
@@ -55,8 +45,7 @@ def index(kin: Kinematics) -> dict[str, Any]:
 def modules(kin: Kinematics) -> dict[str, str]:
     """The files of a mechanism: path → text."""
     names = index(kin)
-    programs = (*shared(kin), forward(kin), branch(kin), limits(kin), *differential(kin))
-    arrays = [_without_reasons(m) for m in (*programs, *projection(kin), *end_point_shift(kin))]
+    arrays = [_without_reasons(m) for m in array_methods(kin)]
     straight_line = unrolled(kin) if is_unrolled(kin) else None
     contexts = {
         "": ("mechanism.py.j2", _class_context(kin, arrays, straight_line)),

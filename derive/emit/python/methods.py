@@ -2,110 +2,57 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
-from derive.emit.interface import (
-    POSITION,
-    ROTATION,
-    Arrays,
-    Entry,
-    Shape,
-    axes_of,
-    choice_of,
-    entries,
-    margins_of,
-    matrix_of,
-    rotation_of,
-    shared_entries,
-)
+from derive.emit import interface as of
+from derive.emit.interface import POSITION, ROTATION, Arrays, Entry, Shape
 from derive.emit.python.program import Argument, Method
+from derive.ir.program import Program
 from derive.kinematics.differential import TWIST_ROWS
 from derive.kinematics.kinematics import Kinematics
 
-OFFSET: tuple[Shape, ...] = ("point_x", "point_y", "point_z")
-IMAGE: tuple[Shape, ...] = (rotation_of("zero_"), ("rot_x", "rot_y", "rot_z"), ("u_x", "u_y", "u_z"))
+IMAGE: tuple[Shape, ...] = (of.rotation_of("zero_"), ("rot_x", "rot_y", "rot_z"), ("u_x", "u_y", "u_z"))
 ROTATION_ARGUMENT = Argument("rotation", "Rotation", ROTATION)
-_AXES = tuple(Argument(name, "Vector", tuple(f"{name}_{c}" for c in "xyz")) for name in ("flange_axis", "base_axis"))
+_POINT = Argument("point", "Vector", POSITION)
+_OFFSET = Argument("offset", "Vector", ("point_x", "point_y", "point_z"))
+_ON_FLANGE = tuple(
+    Argument(name, "Vector", tuple(f"{name}_{c}" for c in "xyz")) for name in ("flange_axis", "base_axis")
+)
 _KINDS = {
     "position": "Vector", "rotation": "Rotation", "signs": "Signs", "turns": "Turns",
     "given": "Values", "found": "Values", "rows": "Matrix",
 }  # fmt: skip
 """The types of arrays; any other is `Reals`."""
-_EXPLAINED = ("branch", "limits")
+_EXPLAINED = ("branch", "limits", "offset_branch")
 """The programs that refuse with a reason."""
+_ORDER = """
+    search_given from_joints forward orientation branch limits singularity jacobian twist quantities image compatible
+    end_point_shift total_image projection offset_branch offset_margins
+""".split()
+"""The order of their use."""
+_ON_ARRAYS = ("forward", "branch", "limits", "singularity", "jacobian", "twist", "projection", "end_point_shift")
+"""The programs that there are on arrays, too."""
 
 
 def methods(kin: Kinematics) -> list[Method]:
     """The methods of the generated class that are programs, in the order of their use."""
-    axes = arguments(axes_of(kin))
-    axis_values, branch_margins = (arrays[0][1] for arrays in (axes_of(kin), margins_of(kin)))
-    found = [
-        *shared(kin),
-        *every_root(kin),
-        forward(kin),
-        Method("orientation", "The rotation of the frame.", kin.orientation, axes, "Rotation", ROTATION),
-        branch(kin),
-        limits(kin),
-        *differential(kin),
-        *_named(kin, "quantities"),
-        Method("image", "The orientations of the flange.", kin.image, (), "Image", IMAGE),
-        *_compatible(kin),
-        *end_point_shift(kin),
-        *_total_image(kin),
-        *projection(kin),
-    ]
-    offset = Argument("offset", "Vector", OFFSET)
-    if kin.offset_branch is not None:
-        text = "The axes of one branch for a point off the flange."
-        given = (Argument("point", "Vector", POSITION), offset, *arguments(choice_of(kin)))
-        found.append(Method("offset_branch", text, kin.offset_branch, given, "Reals", axis_values, is_explained=True))
-    if kin.offset_configuration is not None:
-        text = "The signed margin of every branch for a point off the flange."
-        found.append(Method("offset_margins", text, kin.offset_configuration, (*axes, offset), "Reals", branch_margins))
-    return found
+    found = named(kin)
+    return [*_shared(kin), *(found[name] for name in _ORDER if name in found)]
 
 
-def arguments(arrays: Arrays) -> tuple[Argument, ...]:
-    """The arguments of a method."""
-    return tuple(Argument(name, _KINDS.get(name, "Reals"), shape) for name, shape in arrays)
+def array_methods(kin: Kinematics) -> list[Method]:
+    """The methods of the programs on arrays."""
+    found = named(kin)
+    return [*_shared(kin), *(found[name] for name in _ON_ARRAYS if name in found)]
 
 
-def shared(kin: Kinematics) -> list[Method]:
-    """The methods of the programs that others call: argument and result are one tuple each."""
-    return [replace(_method(e), name=e.program.name, is_shared=True) for e in shared_entries(kin, kin.shared)]
-
-
-def every_root(kin: Kinematics) -> list[Method]:
-    """The methods around a search for all roots: the arguments of the search, and the axes of the joints it finds."""
-    return _named(kin, "search_given", "from_joints")
-
-
-def forward(kin: Kinematics) -> Method:
-    """Forward kinematics."""
-    return _method(entries(kin)["forward"])
-
-
-def branch(kin: Kinematics) -> Method:
-    """Inverse kinematics on one branch."""
-    return _method(entries(kin)["branch"])
-
-
-def limits(kin: Kinematics) -> Method:
-    """The test of all limits."""
-    return _method(entries(kin)["limits"])
-
-
-def _named(kin: Kinematics, *keys: str) -> list[Method]:
-    """The methods of these programs, of those that the machine has."""
-    found = entries(kin)
-    return [_method(found[key]) for key in keys if key in found]
-
-
-def _method(entry: Entry) -> Method:
-    kinds = [(_KINDS.get(name, "Reals"), shape) for name, shape in entry.results]
-    kind, result = ("Pose", tuple(shape for _, shape in kinds)) if len(kinds) > 1 else kinds[0] if kinds else ("", ())
-    given, is_explained = arguments(entry.arguments), entry.key in _EXPLAINED
-    return Method(entry.key, entry.summary, entry.program, given, kind, result, is_explained=is_explained)
+def named(kin: Kinematics) -> dict[str, Method]:
+    """The methods by their names, without those of shared programs."""
+    found = {key: _method(entry) for key, entry in of.entries(kin).items()}
+    if rows_of_twist(kin):  # the Jacobian consists of rows of the twist
+        del found["jacobian"]
+    return found | {method.name: method for method in _further(kin)}
 
 
 def rows_of_twist(kin: Kinematics) -> tuple[int, ...]:
@@ -115,42 +62,45 @@ def rows_of_twist(kin: Kinematics) -> tuple[int, ...]:
     return tuple(map(TWIST_ROWS.index, kin.rows))
 
 
-def differential(kin: Kinematics) -> list[Method]:
-    """The margins, all rows of the twist where the Jacobian lacks rows that are not zero, and the Jacobian where its
-    rows are no rows of the twist.
-    """
-    found = _named(kin, "singularity", *([] if rows_of_twist(kin) else ["jacobian"]))
-    if kin.twist is not None:
-        text, rows = "The twist of the frame by rows, per radian.", matrix_of(kin, len(TWIST_ROWS))
-        found.append(Method("twist", text, kin.twist, arguments(axes_of(kin)), "Matrix", rows))
-    return found
+def _further(kin: Kinematics) -> Iterator[Method]:
+    """The programs that Python alone offers."""
+    axes, choice = _arguments(of.axes_of(kin)), _arguments(of.choice_of(kin))
+    axis_values, margins = of.axes_of(kin)[0][1], of.margins_of(kin)[0][1]
+    projection = kin.projection if kin.chooses_twist else None
+    twist, total = of.matrix_of(kin, len(TWIST_ROWS)), (*IMAGE, "apart")
+    on_flange, point = (ROTATION_ARGUMENT, *_ON_FLANGE), (_POINT, _OFFSET, *choice)
+    rows: tuple[tuple[str, str, Program | None, tuple[Argument, ...], str, Shape], ...] = (
+        ("orientation", "The rotation of the frame.", kin.orientation, axes, "Rotation", ROTATION),
+        ("twist", "The twist of the frame by rows, per radian.", kin.twist, axes, "Matrix", twist),
+        ("image", "The orientations of the flange.", kin.image, (), "Image", IMAGE),
+        ("compatible", "Whether a flange that turns can carry this mechanism.", kin.compatible, _ON_FLANGE[:1], "", ()),
+        ("end_point_shift", "The vector from a flange that turns to the end point.", kin.end_point_shift, on_flange,
+         "Vector", POSITION),
+        ("total_image", "The orientations of the tool on a flange, and the sine of the angle between the two axes.",
+         kin.total_image, on_flange, "TotalImage", total),
+        ("projection", "The nearest rotation that the flange can have.", projection, (ROTATION_ARGUMENT,),
+         "Rotation", ROTATION),
+        ("offset_branch", "The axes of one branch for a point off the flange.", kin.offset_branch, point, "Reals",
+         axis_values),
+        ("offset_margins", "The signed margin of every branch for a point off the flange.", kin.offset_configuration,
+         (*axes, _OFFSET), "Reals", margins),
+    )  # fmt: skip
+    for name, summary, program, arguments, kind, result in rows:
+        if program is not None:
+            yield Method(name, summary, program, arguments, kind, result, is_explained=name in _EXPLAINED)
 
 
-def projection(kin: Kinematics) -> list[Method]:
-    """The projection of the commanded rotation, where the mechanism follows a turn alone."""
-    if kin.projection is None or not kin.chooses_twist:
-        return []
-    text = "The nearest rotation that the flange can have."
-    return [Method("projection", text, kin.projection, (ROTATION_ARGUMENT,), "Rotation", ROTATION)]
+def _shared(kin: Kinematics) -> list[Method]:
+    """The methods of the programs that others call: argument and result are one tuple each."""
+    return [replace(_method(e), name=e.program.name, is_shared=True) for e in of.shared_entries(kin, kin.shared)]
 
 
-def end_point_shift(kin: Kinematics) -> list[Method]:
-    """The vector to the end point of an orientation kinematics, on a flange that turns."""
-    if kin.end_point_shift is None:
-        return []
-    text = "The vector from a flange that turns to the end point."
-    return [Method("end_point_shift", text, kin.end_point_shift, (ROTATION_ARGUMENT, *_AXES), "Vector", POSITION)]
+def _arguments(arrays: Arrays) -> tuple[Argument, ...]:
+    return tuple(Argument(name, _KINDS.get(name, "Reals"), shape) for name, shape in arrays)
 
 
-def _compatible(kin: Kinematics) -> list[Method]:
-    if kin.compatible is None:
-        return []
-    text = "Whether a flange that turns can carry this mechanism."
-    return [Method("compatible", text, kin.compatible, _AXES[:1], "", ())]
-
-
-def _total_image(kin: Kinematics) -> list[Method]:
-    if kin.total_image is None:
-        return []
-    text = "The orientations of the tool on a flange, and the sine of the angle between the two axes."
-    return [Method("total_image", text, kin.total_image, (ROTATION_ARGUMENT, *_AXES), "TotalImage", (*IMAGE, "apart"))]
+def _method(entry: Entry) -> Method:
+    kinds = [(_KINDS.get(name, "Reals"), shape) for name, shape in entry.results]
+    kind, result = ("Pose", tuple(shape for _, shape in kinds)) if len(kinds) > 1 else kinds[0] if kinds else ("", ())
+    given, is_explained = _arguments(entry.arguments), entry.key in _EXPLAINED
+    return Method(entry.key, entry.summary, entry.program, given, kind, result, is_explained=is_explained)

@@ -18,7 +18,7 @@ from derive.emit.every_branch import (
 )
 from derive.emit.interface import POSITION, ROTATION
 from derive.emit.python.layout import assigned, repeated, tuple_of
-from derive.emit.python.methods import branch
+from derive.emit.python.methods import named
 from derive.emit.python.printer import ScalarPrinter, primitives_in, spelled
 from derive.emit.python.program import Argument, Method, constant_lines, constants_of, item_lines, let_lines, unpacked
 from derive.emit.python.refusal import Refusals, status_of
@@ -112,14 +112,14 @@ def _methods(kin: Kinematics, found: StraightLines) -> tuple[Method, Method]:
 
 
 def _single(kin: Kinematics, program: Program) -> Method:
-    sign_values = next(a for a in branch(kin).arguments if a.name == "signs")
+    sign_values = next(a for a in named(kin)["branch"].arguments if a.name == "signs")
     text = "One branch, the axes in some turn, of input that is trusted."
     return Method("branch", text, program, (_FRAME, sign_values, _optional(kin)), "Reals | None", ())
 
 
 def _optional(kin: Kinematics) -> Argument:
     """The reference, which may be left out: then no branch has axes where one of them is held at the reference."""
-    reference, held = branch(kin).arguments[-1], kin.mechanism.held_joints
+    reference, held = named(kin)["branch"].arguments[-1], kin.mechanism.held_joints
     values = ['float("nan")' if joint in held else "0.0" for joint in kin.mechanism.joints]
     return replace(reference, default=f"({', '.join(values)},)" if held else repeated("0.0", len(values)))
 
