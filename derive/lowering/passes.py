@@ -44,7 +44,6 @@ from derive.lowering.writing import written
 from derive.optimize.angle_addition import with_added_angles
 from derive.optimize.coalesce import coalesced
 from derive.optimize.directions import added, unscaled
-from derive.optimize.guards import guarded
 from derive.optimize.inline import inlined, squares_where_read, without_conversions
 from derive.optimize.joining import joined
 from derive.optimize.regular import regular
@@ -76,8 +75,6 @@ class Given:
 
     constants: frozenset[str] = frozenset()
     """The names of the constants of the machine."""
-    known: tuple[Let, ...] = ()
-    """The bindings of constants that are computed from others."""
     inputs: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     """The values of inputs that are known."""
     signs: tuple[Sign, ...] = ()
@@ -173,7 +170,6 @@ TRUSTED: OnPrograms = (
 REGULAR: Pass[Program | None, Given] = Pass("regular", lambda one, given: one and regular(one, given.constants))
 WITHOUT_SQUARES: OnPrograms = (_itself(squares_where_read),)
 WRITTEN_SHORT: OnTrees = (
-    Pass("guarded", lambda tree, given: tree.with_items(guarded(tree.program.body, given.known))),
     _SCHEDULED,
     Pass("joined", lambda tree, _: tree.with_items(joined(tree.items, tree.wanted))),
     Pass("inlined", lambda tree, _: tree.with_items(*inlined(tree.items, tree.wanted))),

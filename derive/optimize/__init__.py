@@ -5,7 +5,6 @@ It may import the folders from `ir` to `solver`.
 angle_addition: angles added before their sines are taken, where a sine costs no more than a few products
 coalesce: names that no later statement reads, given to the next branch
 directions: the angle of a direction is computed without a sine and a cosine that nothing else reads
-guards: a condition that holds where a root is positive is tested only where the root is not positive
 inline: a short value that is read once is written where it is read
 joining: a later choice that an earlier choice decides is moved into the earlier one
 regular: the program for poses where nothing is singular

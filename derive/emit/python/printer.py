@@ -12,7 +12,6 @@ from derive.emit.conditions import magnitude_tests
 from derive.emit.expression import ATOM, COMPARE, ExpressionPrinter
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import FUNCTIONS, KEYS, Atan2, Root, Select
-from derive.optimize.guards import PositiveRoot
 from derive.optimize.inline import Grouped
 
 _PRIMITIVES = frozenset(KEYS[one] for one in FUNCTIONS)
@@ -70,8 +69,6 @@ class ScalarPrinter(ExpressionPrinter):
         self.modulo_turns, self.for_valid_input = modulo_turns, for_valid_input
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
-        if isinstance(node, PositiveRoot):
-            return f"sqrt({self.print(node.args[0])})", ATOM
         if isinstance(node, Grouped):
             return self._spell(node.args[0])
         if (

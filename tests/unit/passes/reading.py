@@ -44,9 +44,9 @@ class Case:
         words = {key: [text for word, text in lines if word == key] for key in keys}
         signs = [text.split() for text in words["signs"]]
         self.types |= {name: count(name) for name, *_ in signs}
+        self.known = tuple(self._let(text) for text in words["known"])
         return Given(
             constants=frozenset(name for text in words["constants"] for name in text.split(", ")),
-            known=tuple(self._let(text) for text in words["known"]),
             inputs={let.name: let.value for let in map(self._let, words["inputs"])},
             signs=tuple(Sign(count(name), (first, second)) for name, first, second in signs),
         )

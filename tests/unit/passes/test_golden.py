@@ -48,7 +48,7 @@ def made(case: Case) -> Program | Tree | None:
     name, given, tree = case.path.parent.name, case.given, case.tree
     program = tree.program
     if name in TOGETHER:
-        (program,), parts = lowered([program], given.constants, TOGETHER[name], known=given.known)
+        (program,), parts = lowered([program], given.constants, TOGETHER[name], known=case.known)
         return replace(program, body=(*parts, *program.body))
     for on_programs in (one for one in ON_PROGRAMS if one.name == name):
         return on_programs.change(program, given)

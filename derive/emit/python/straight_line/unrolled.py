@@ -81,7 +81,7 @@ def unrolled(kin: Kinematics) -> Unrolled:
     methods, parts = _methods(kin, lines_of), lines_of.parts
     known = (*kin.setup.lets(), *parts)
     last = finish(kin, lines_of.trusted)
-    functions = (_directions(kin, methods[0], known), _direction(kin, methods[1], known), *((last,) if last else ()))
+    functions = (_directions(kin, methods[0]), _direction(kin, methods[1], known), *((last,) if last else ()))
     read = {c for f in functions for c in f.constants} | {s.name for p in parts for s in symbols_of(p.value)}
     taken = sorted(read - {p.name.name for p in parts})
     lines = [line for part in parts for line in let_lines(part, _SCALAR)]
@@ -96,7 +96,7 @@ def trusted_branch(kin: Kinematics) -> Function:
     """The method for trusted input of a machine without branches that never loses digits."""
     kin = replace(kin, branch=without_reasons(kin.branch))
     method = _single(kin, applied(ANY_TURN, trusted(kin), NOTHING))
-    written = _Written.of(method, kin.setup.lets())
+    written = _Written.of(method)
     values = list(written.values.values())
     lines = [*constant_lines(written.method), *item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)]
     return written.function([*lines, f"return {_texts(values)}"])
@@ -105,10 +105,8 @@ def trusted_branch(kin: Kinematics) -> Function:
 def _methods(kin: Kinematics, found: StraightLines) -> tuple[Method, Method]:
     text = "Every slot, the axes in some turn, of input that is trusted."
     every, one = (applied(WITHOUT_SQUARES, program, NOTHING) for program in (found.every, found.one))
-    return (
-        Method("branches", text, every, (_FRAME, _optional(kin), _WHERE_REFUSED), "tuple[Any, ...]", ()),
-        _single(kin, one),
-    )
+    arguments = (_FRAME, _optional(kin), _WHERE_REFUSED)
+    return Method("branches", text, every, arguments, "tuple[Any, ...]", ()), _single(kin, one)
 
 
 def _single(kin: Kinematics, program: Program) -> Method:
@@ -129,18 +127,18 @@ def _refusals(answer: Callable[[Status], str]) -> Refusals:
     return Refusals(lambda status: "()" if status is Status.OK else answer(status))
 
 
-def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
+def _directions(kin: Kinematics, method: Method) -> Function:
     """All branches, statements one branch after the other."""
     count = 2 ** len(kin.branches)
     refusals = _refusals(lambda status: repeated(f"{_REFUSED}[{status_of(status)}]", count))
-    written = _Written.of(method, known, signs(kin))
+    written = _Written.of(method, signs(kin))
     lines = item_lines(written.items, refusals, _DIRECTIONS)
     return written.function([*lines, f"return {_slots(kin, written.values)}"])
 
 
 def _direction(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
     """One branch; if all offsets are zero, a second return statement leaves them out."""
-    written = _Written.of(method, known)
+    written = _Written.of(method)
     lines = item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)
     zero = {joint.offset: sp.Integer(0) for joint in kin.mechanism.joints}
     zero |= {let.name: value for let in known for value in [replaced(let.value, zero)] if value.is_number}
@@ -164,10 +162,10 @@ class _Written:
     """The outputs."""
 
     @classmethod
-    def of(cls, method: Method, known: Sequence[Let], signs: Sequence[Sign] = ()) -> _Written:
-        """known: the bindings of the constants that it reads; signs: those of the branches that it holds."""
+    def of(cls, method: Method, signs: Sequence[Sign] = ()) -> _Written:
+        """signs: those of the branches that it holds."""
         method = replace(method, program=applied(UNCONVERTED, method.program, NOTHING))
-        tree = applied(WRITTEN_SHORT, Tree.of(method.program), Given(known=tuple(known), signs=tuple(signs)))
+        tree = applied(WRITTEN_SHORT, Tree.of(method.program), Given(signs=tuple(signs)))
         return cls(method, tree.items, {o.name: o.value for o in tree.program.outputs})
 
     def function(self, body: list[str]) -> Function:

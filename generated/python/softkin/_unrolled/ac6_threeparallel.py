@@ -43,14 +43,11 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d4) * (d4 + distance_q1)
+        # q1: out of reach
+        if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
+            return 8 * (refused[Status.UNREACHABLE],)
         # how far ahead of the axis the point is; negative: behind it
-        if ahead_squared_q1 > 0.0:
-            ahead_q1 = sqrt(ahead_squared_q1)
-        else:
-            # q1: out of reach
-            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
-                return 8 * (refused[Status.UNREACHABLE],)
-            ahead_q1 = 0.0
+        ahead_q1 = sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0
         d4_times_wrist_y = d4 * wrist_y
         ahead_q1_right_times_wrist_x = ahead_q1 * wrist_x
         d4_times_wrist_x = d4 * wrist_x
@@ -415,14 +412,11 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(wrist_x * wrist_x + wrist_y * wrist_y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d4) * (d4 + distance_q1)
+        # q1: out of reach
+        if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
+            return None
         # how far ahead of the axis the point is; negative: behind it
-        if ahead_squared_q1 > 0.0:
-            ahead_q1 = -sqrt(ahead_squared_q1) * sigma_shoulder
-        else:
-            # q1: out of reach
-            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
-                return None
-            ahead_q1 = 0.0
+        ahead_q1 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_shoulder
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1

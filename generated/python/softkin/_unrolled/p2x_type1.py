@@ -37,26 +37,20 @@ def unrolled(k: Constants) -> Unrolled:
             return 4 * (refused[Status.UNREACHABLE],)
         span_1_y = y - rail_y_1
         radicand_a1 = (arm_length_1 + span_1_y) * (arm_length_1 - span_1_y)  # quadratic equation for a1: rod 1
-        if radicand_a1 > 0.0:
-            root_of_radicand_a1 = sqrt(radicand_a1)
-        else:
-            # rod 1 cannot reach
-            if not (radicand_a1 >= -arm_length_1_squared_times_rounding):
-                return 4 * (refused[Status.UNREACHABLE],)
-            root_of_radicand_a1 = 0.0
+        # rod 1 cannot reach
+        if not (radicand_a1 >= -arm_length_1_squared_times_rounding):
+            return 4 * (refused[Status.UNREACHABLE],)
         span_2_y = y - rail_y_2
         radicand_a2 = (arm_length_2 + span_2_y) * (arm_length_2 - span_2_y)  # quadratic equation for a2: rod 2
-        if radicand_a2 > 0.0:
-            root_of_radicand_a2 = sqrt(radicand_a2)
-        else:
-            # rod 2 cannot reach
-            if not (radicand_a2 >= -arm_length_2_squared_times_rounding):
-                return 4 * (refused[Status.UNREACHABLE],)
-            root_of_radicand_a2 = 0.0
+        # rod 2 cannot reach
+        if not (radicand_a2 >= -arm_length_2_squared_times_rounding):
+            return 4 * (refused[Status.UNREACHABLE],)
         span_2_x = tcp_offset_2 + x  # rod 2: known part of its vector
+        root_of_radicand_a2 = sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0
         a2 = root_of_radicand_a2 + span_2_x
         span_1_y_times_rod_2_x_right = (span_2_x - a2) * span_1_y
         span_1_x = x - tcp_offset_1  # rod 1: known part of its vector
+        root_of_radicand_a1 = sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0
         a1 = span_1_x - root_of_radicand_a1
         rod_1_x_left_times_span_2_y = (span_1_x - a1) * span_2_y
         type2_arms_aligned = quotient_in_type2_arms_aligned * (

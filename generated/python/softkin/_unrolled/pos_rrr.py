@@ -39,14 +39,11 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)
+        # q1: out of reach
+        if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
+            return 4 * (refused[Status.UNREACHABLE],)
         # how far ahead of the axis the point is; negative: behind it
-        if ahead_squared_q1 > 0.0:
-            ahead_q1 = sqrt(ahead_squared_q1)
-        else:
-            # q1: out of reach
-            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
-                return 4 * (refused[Status.UNREACHABLE],)
-            ahead_q1 = 0.0
+        ahead_q1 = sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0
         wrist_x_from_q1_front = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
         wrist_z_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
@@ -164,14 +161,11 @@ def unrolled(k: Constants) -> Unrolled:
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
         # Pythagoras: square of the distance ahead of the axis
         ahead_squared_q1 = (distance_q1 - d3) * (d3 + distance_q1)
+        # q1: out of reach
+        if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
+            return None
         # how far ahead of the axis the point is; negative: behind it
-        if ahead_squared_q1 > 0.0:
-            ahead_q1 = sqrt(ahead_squared_q1) * sigma_arm
-        else:
-            # q1: out of reach
-            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12 * distance_q1 * distance_q1):
-                return None
-            ahead_q1 = 0.0
+        ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0) * sigma_arm
         wrist_x_from_q1 = ahead_q1 - a1  # coordinate of the point that the remaining links must reach
         wrist_z_from_q1 = z - d1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span

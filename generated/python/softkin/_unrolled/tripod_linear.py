@@ -56,13 +56,9 @@ def unrolled(k: Constants) -> Unrolled:
             - y * y
             - one_minus_sin_rail_angle_squared * span_1_x * span_1_x
         )
-        if radicand_a1 > 0.0:
-            root_of_radicand_a1 = sqrt(radicand_a1)
-        else:
-            # rod 1 cannot reach
-            if not (radicand_a1 >= -arm_length_squared_times_rounding):
-                return 8 * (refused[Status.UNREACHABLE],)
-            root_of_radicand_a1 = 0.0
+        # rod 1 cannot reach
+        if not (radicand_a1 >= -arm_length_squared_times_rounding):
+            return 8 * (refused[Status.UNREACHABLE],)
         span_2_x = x - sum_in_pivot_2_x  # rod 2: known part of its vector
         span_2_y = sum_in_span_2_y + y
         sum_in_radicand_a2_3 = one_minus_cos_rail_angle_squared_times_z + span_2_x * cos_rail_angle_times_sin_rail_angle
@@ -74,13 +70,9 @@ def unrolled(k: Constants) -> Unrolled:
             + (product_in_radicand_a2_3 * span_2_y - sum_in_radicand_a2_3) * z
             - span_2_y * span_2_y * sum_in_radicand_a2
         )
-        if radicand_a2 > 0.0:
-            root_of_radicand_a2 = sqrt(radicand_a2)
-        else:
-            # rod 2 cannot reach
-            if not (radicand_a2 >= -arm_length_squared_times_rounding):
-                return 8 * (refused[Status.UNREACHABLE],)
-            root_of_radicand_a2 = 0.0
+        # rod 2 cannot reach
+        if not (radicand_a2 >= -arm_length_squared_times_rounding):
+            return 8 * (refused[Status.UNREACHABLE],)
         span_3_y = y - sum_in_span_2_y
         # quadratic equation for a3: rod 3
         radicand_a3 = (
@@ -89,13 +81,9 @@ def unrolled(k: Constants) -> Unrolled:
             + (-sum_in_radicand_a2_3 - product_in_radicand_a2_3 * span_3_y) * z
             - span_3_y * span_3_y * sum_in_radicand_a2
         )
-        if radicand_a3 > 0.0:
-            root_of_radicand_a3 = sqrt(radicand_a3)
-        else:
-            # rod 3 cannot reach
-            if not (radicand_a3 >= -arm_length_squared_times_rounding):
-                return 8 * (refused[Status.UNREACHABLE],)
-            root_of_radicand_a3 = 0.0
+        # rod 3 cannot reach
+        if not (radicand_a3 >= -arm_length_squared_times_rounding):
+            return 8 * (refused[Status.UNREACHABLE],)
         # ball joint of rod 1
         if not (abs(y) * one_by_arm_length <= sin_max_angle_ball_joint):
             return 8 * (refused[Status.UNREACHABLE],)
@@ -109,15 +97,18 @@ def unrolled(k: Constants) -> Unrolled:
             return 8 * (refused[Status.UNREACHABLE],)
         cos_rail_angle_times_z = z * cos_rail_angle
         middle_a1 = cos_rail_angle_times_z + span_1_x * sin_rail_angle
+        root_of_radicand_a1 = sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0
         a1 = root_of_radicand_a1 - middle_a1
         rod_1_x = span_1_x + a1 * sin_rail_angle
         rod_1_z = z - (-a1 * cos_rail_angle)
         sum_in_middle_a2 = cos_rail_angle_times_z - half_sin_rail_angle * span_2_x
         middle_a2 = -sum_in_middle_a2 - product_in_middle_a2 * span_2_y
+        root_of_radicand_a2 = sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0
         a2 = middle_a2 + root_of_radicand_a2
         rod_2_x = span_2_x - a2 * half_sin_rail_angle
         rod_2_z = z - (-a2 * cos_rail_angle)
         middle_a3 = product_in_middle_a2 * span_3_y - sum_in_middle_a2
+        root_of_radicand_a3 = sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0
         a3 = middle_a3 + root_of_radicand_a3
         rod_3_x_below = span_2_x - a3 * half_sin_rail_angle
         rod_3_z_below = z - (-a3 * cos_rail_angle)

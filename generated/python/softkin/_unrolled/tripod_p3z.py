@@ -36,35 +36,24 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_y = y - pivot_1_y
         # quadratic equation for a1: rod 1
         radicand_a1 = arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
-        if radicand_a1 > 0.0:
-            root_of_radicand_a1 = sqrt(radicand_a1)
-        else:
-            # rod 1 cannot reach
-            if not (radicand_a1 >= -arm_length_squared_times_rounding):
-                return 8 * (refused[Status.UNREACHABLE],)
-            root_of_radicand_a1 = 0.0
+        # rod 1 cannot reach
+        if not (radicand_a1 >= -arm_length_squared_times_rounding):
+            return 8 * (refused[Status.UNREACHABLE],)
         span_2_x = x - pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - pivot_2_y
         # quadratic equation for a2: rod 2
         radicand_a2 = arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
-        if radicand_a2 > 0.0:
-            root_of_radicand_a2 = sqrt(radicand_a2)
-        else:
-            # rod 2 cannot reach
-            if not (radicand_a2 >= -arm_length_squared_times_rounding):
-                return 8 * (refused[Status.UNREACHABLE],)
-            root_of_radicand_a2 = 0.0
+        # rod 2 cannot reach
+        if not (radicand_a2 >= -arm_length_squared_times_rounding):
+            return 8 * (refused[Status.UNREACHABLE],)
         span_3_x = x - pivot_3_x  # rod 3: known part of its vector
         span_3_y = y - pivot_3_y
         # quadratic equation for a3: rod 3
         radicand_a3 = arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
-        if radicand_a3 > 0.0:
-            root_of_radicand_a3 = sqrt(radicand_a3)
-        else:
-            # rod 3 cannot reach
-            if not (radicand_a3 >= -arm_length_squared_times_rounding):
-                return 8 * (refused[Status.UNREACHABLE],)
-            root_of_radicand_a3 = 0.0
+        # rod 3 cannot reach
+        if not (radicand_a3 >= -arm_length_squared_times_rounding):
+            return 8 * (refused[Status.UNREACHABLE],)
+        root_of_radicand_a1 = sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0
         a1 = root_of_radicand_a1 + z
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
@@ -74,9 +63,11 @@ def unrolled(k: Constants) -> Unrolled:
         product_in_type2_rods_coplanar = (z - a1) * sum_in_type2_rods_coplanar_above_above
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
+        root_of_radicand_a2 = sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0
         a2 = root_of_radicand_a2 + z
         rod_2_z = z - a2
         rod_2_z_above_times_rod_3_y = rod_2_z * rod_3_y
+        root_of_radicand_a3 = sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0
         a3 = root_of_radicand_a3 + z
         rod_3_z = z - a3
         rod_2_y_times_rod_3_z_above = rod_2_y * rod_3_z
@@ -187,40 +178,31 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_y = y - pivot_1_y
         # quadratic equation for a1: rod 1
         radicand_a1 = arm_length_squared - span_1_x * span_1_x - span_1_y * span_1_y
-        if radicand_a1 > 0.0:
-            a1 = z + sqrt(radicand_a1) * sigma_carriage_1
-        else:
-            # rod 1 cannot reach
-            if not (radicand_a1 >= -arm_length_squared_times_rounding):
-                return None
-            a1 = z
+        # rod 1 cannot reach
+        if not (radicand_a1 >= -arm_length_squared_times_rounding):
+            return None
         span_2_x = x - pivot_2_x  # rod 2: known part of its vector
         span_2_y = y - pivot_2_y
         # quadratic equation for a2: rod 2
         radicand_a2 = arm_length_squared - span_2_x * span_2_x - span_2_y * span_2_y
-        if radicand_a2 > 0.0:
-            a2 = z + sqrt(radicand_a2) * sigma_carriage_2
-        else:
-            # rod 2 cannot reach
-            if not (radicand_a2 >= -arm_length_squared_times_rounding):
-                return None
-            a2 = z
+        # rod 2 cannot reach
+        if not (radicand_a2 >= -arm_length_squared_times_rounding):
+            return None
         span_3_x = x - pivot_3_x  # rod 3: known part of its vector
         span_3_y = y - pivot_3_y
         # quadratic equation for a3: rod 3
         radicand_a3 = arm_length_squared - span_3_x * span_3_x - span_3_y * span_3_y
-        if radicand_a3 > 0.0:
-            a3 = z + sqrt(radicand_a3) * sigma_carriage_3
-        else:
-            # rod 3 cannot reach
-            if not (radicand_a3 >= -arm_length_squared_times_rounding):
-                return None
-            a3 = z
+        # rod 3 cannot reach
+        if not (radicand_a3 >= -arm_length_squared_times_rounding):
+            return None
+        a1 = z + (sqrt(radicand_a1) if radicand_a1 > 0.0 else 0.0) * sigma_carriage_1
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
+        a2 = z + (sqrt(radicand_a2) if radicand_a2 > 0.0 else 0.0) * sigma_carriage_2
         rod_2_z = z - a2
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
+        a3 = z + (sqrt(radicand_a3) if radicand_a3 > 0.0 else 0.0) * sigma_carriage_3
         rod_3_z = z - a3
         type2_rods_coplanar = (
             (z - a1) * (rod_2_x * rod_3_y - rod_2_y * rod_3_x)
