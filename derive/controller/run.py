@@ -42,8 +42,7 @@ def source_of(settings: Settings, user: Credentials | None) -> Source:
 
             return OpcUa(address.text, channels, settings.rate, settings.security, user)
         if address.kind is Kind.DATA_LAYER and user is not None:
-            from derive.controller.sources.certificates import context
-            from derive.controller.sources.data_layer import DataLayer
+            from derive.controller.sources.data_layer import DataLayer, context
 
             return DataLayer(address.text, channels, settings.rate, user, context(settings.security))
     except ImportError as problem:

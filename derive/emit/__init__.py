@@ -11,7 +11,6 @@ the C of machines with Python.
 braced: how C and JavaScript spell expressions and parts of statements
 braces: indents, blocks with braces, and long statements broken into lines
 c/: C99
-conditions: the conditions of a refusal, one by one
 every_branch: all branches of the inverse as one straight line, for Python and C
 expression: the walk over an expression that all languages share
 inputs: the names of the inputs of a machine in a language
@@ -26,7 +25,6 @@ plcopen/: objects of a Structured Text project, and PLCopenXML
 python/: the Python package
 refusals: how a function of C or JavaScript refuses
 setup: the setup program of a machine, for Python, C and JavaScript
-shared_constants: the constants that the runtimes of Python, C and JavaScript read
 softmotion/: function blocks for SoftMotion
 st/: Structured Text
 walk: the walk over the statements of a program, and the statements of C and JavaScript

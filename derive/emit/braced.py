@@ -7,8 +7,7 @@ from collections.abc import Iterable, Sequence
 
 import sympy as sp
 
-from derive.emit.conditions import parts_of
-from derive.emit.expression import ATOM, ExpressionPrinter
+from derive.emit.expression import ATOM, ExpressionPrinter, parts_of
 from derive.ir.primitives import Select
 
 

@@ -13,7 +13,7 @@ import sympy as sp
 
 from derive.emit.braced import Braced
 from derive.emit.braces import block, indented
-from derive.emit.conditions import magnitude_tests
+from derive.emit.expression import magnitude_tests
 from derive.emit.inputs import Inputs
 from derive.emit.setup import refused_inputs
 from derive.ir.program import Call, Iterate, Require, Status

@@ -14,7 +14,7 @@ home_share: how often forward kinematics that starts at home finds a pose again
 inverse: inverse kinematics of one branch, for a pose or for a point off the flange
 kinematics: the bundle that all later folders read: every program of a mechanism, the meanings of its names, test cases
 lost_digits/: where a closed form has lost digits, steps on the closure meet the pose
-margins/: the singularity margins of a machine that is solved in closed form
+margins: the singularity margins of a machine that is solved in closed form
 parameters: all inputs of a machine, and the setup program
 refusals/: why a machine is refused
 sampling: samples of machines and axis values, for numerical decisions of the build

@@ -29,7 +29,7 @@ from derive.kinematics.inverse import Inverse, inverse_program, solve_offset
 from derive.kinematics.kinematics import Kinematics, Margin
 from derive.kinematics.lost_digits.closure_steps import Machine
 from derive.kinematics.lost_digits.doubts import meeting, with_doubts
-from derive.kinematics.margins.determinant import samples_anywhere, singularity_program
+from derive.kinematics.margins import samples_anywhere, singularity_program
 from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.refusals.no_pose import near_home
 from derive.kinematics.sampling import sample_machine

@@ -17,15 +17,14 @@ from derive.kinematics.branches.assignment import Assignment, assign
 from derive.kinematics.branches.derived import with_derived_branches
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, solve_pose
-from derive.kinematics.margins.candidates import Factor, factor_of
+from derive.kinematics.margins import Factor, factor_of
 from derive.kinematics.refusals.number_of_joints import check_joints
 from derive.kinematics.scan.choice import with_search
 from derive.kinematics.scan.derivations import Scanned, solve_both
 from derive.kinematics.shared_names import refuse_names_of_joints, refuse_shared_names
-from derive.plate.fixed_point import with_fixed_point
 from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
-from derive.plate.stated_rods import with_positive_lengths, with_stated_rods
+from derive.plate.stated_rods import with_fixed_point, with_positive_lengths, with_stated_rods
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,9 @@ It may import the folders from `ir` to `optimize`.
 
 coefficients: the coefficients of one value in a sum are added
 cutting: a sum that takes many lines to write is a sum of shorter ones
-decided: a condition that a refusal has decided is not tested again
 draft: a program as values in the graph of `ir`, with their names and places; the readers of each value
 factoring: a common factor or divisor of a sum is applied once
 hoisting: values that depend on parameters alone are computed once, by the setup
-opening: a sum that only one other sum reads is merged into it where terms of both make a known pair
 passes: the list of all passes, in their order; programs that are lowered together
 scheduling: a value that only one side of a choice needs is computed on that side
 sharing: a pair of terms or factors that several values have in common is computed once

@@ -15,12 +15,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from operator import is_
 
 import sympy as sp
 
-from derive.ir.passes import with_bound_reason
+from derive.ir.passes import with_bound_reason, with_inputs
 from derive.ir.primitives import Select
-from derive.ir.program import Let, Program, Require, Statement
+from derive.ir.program import Let, Output, Program, Require, Statement, rewritten
 from derive.ir.symbols import names_in
 from derive.ir.tree import If, Item, bound_behind, read_in
 from derive.lowering.stretches import gathered
@@ -136,3 +137,34 @@ def _in_arms(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ..
         later = later.union(*(names_in(let.value) for let in stretch), read_in((statement,)))
         stretch = []
     return (*gathered(stretch, later), *found)
+
+
+def decided(program: Program) -> Program:
+    """The program for a language that returns where a condition does not hold: it is not tested again behind that.
+
+    require(length > tolerance)
+    divisor = select(length > tolerance, length, 1)      →  length is read where divisor was
+    """
+    known: dict[sp.Basic, sp.Basic] = {}
+    about: set[sp.Symbol] = set()  # the names in the known conditions: an expression without any of them stays
+    body: list[Statement] = []
+
+    def read(expression: sp.Basic) -> sp.Basic:
+        return expression if about.isdisjoint(names_in(expression)) else expression.xreplace(known)
+
+    for statement in program.body:
+        changed = rewritten(statement, read)
+        if isinstance(changed, Let) and changed is not statement and changed.value.is_Symbol:
+            known[changed.name] = changed.value
+            about.add(changed.name)
+            continue
+        if isinstance(changed, Require):
+            if changed.condition == sp.true:
+                continue
+            known |= dict.fromkeys(sp.And.make_args(changed.condition), sp.true)
+            about |= names_in(changed.condition)
+        body.append(changed)
+    outputs = tuple(Output(o.name, read(o.value)) for o in program.outputs)
+    if len(body) == len(program.body) and all(map(is_, body, program.body)) and outputs == program.outputs:
+        return program
+    return with_inputs(replace(program, body=tuple(body), outputs=outputs))

@@ -12,5 +12,4 @@ reference_calls: the answers of the methods of a block, by the reference interpr
 self_test: the calls of the self-test, with their answers
 singular_poses: poses in which one margin vanishes
 workspace_map: slices through the workspace: solutions and margins at each point
-zero_directions: the direction of each axis in the zero pose, in words
 """

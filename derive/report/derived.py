@@ -22,7 +22,7 @@ from derive.ir.symbols import ASSEMBLY_SIGN, cosine, sine
 from derive.kinematics.branches.assignment import Assignment, with_branch_signs
 from derive.kinematics.forward import solve_for_position
 from derive.kinematics.inverse import Inverse
-from derive.kinematics.margins.candidates import Factor
+from derive.kinematics.margins import Factor
 from derive.kinematics.scan.derivations import Scanned
 from derive.kinematics.solution import Solution
 from derive.plate.passive import solve_passive

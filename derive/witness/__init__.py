@@ -18,7 +18,6 @@ orientation: the check of the orientations that a flange can have
 planted: poses close to where branches of a root scan meet
 roots: all solutions of the closure for a pose, from many starts
 samples: machines and regular poses, drawn from a fixed seed
-terms: expressions of a description as CasADi expressions
 """
 
 from __future__ import annotations

@@ -23,8 +23,18 @@ from derive.geometry.frames import Motion
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import Array
 from derive.ir.symbols import COORDINATE_NAMES, real
-from derive.witness.frames import Rows, followed_axes, followed_pose, frame_at, joint_values, moved_by, turn
-from derive.witness.terms import Symbols, Term, term
+from derive.witness.frames import (
+    Rows,
+    Symbols,
+    Term,
+    followed_axes,
+    followed_pose,
+    frame_at,
+    joint_values,
+    moved_by,
+    term,
+    turn,
+)
 
 LEAST_MARGIN = 1e-6
 """A solution of a closed loop nearer to a type 2 singularity than this is not counted."""

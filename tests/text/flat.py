@@ -8,7 +8,7 @@ from functools import cache
 
 from derive.description.mechanism import Mechanism
 from derive.emit.plcopen.objects import Object, as_text, objects_of
-from derive.emit.softmotion.flat import flattened
+from derive.emit.softmotion.library import flattened
 from tests.harness.library import Library, compile_st
 from tests.text.units import file_of, shared_texts, text_of
 

@@ -13,7 +13,7 @@ import pytest
 
 from derive.description.mechanism import Mechanism
 from derive.emit.plcopen.objects import objects_of
-from derive.emit.softmotion.flat import flattened
+from derive.emit.softmotion.library import flattened
 from tests.codesys.plcopen_reader import NAMESPACE
 from tests.codesys.test_plcopen import errors
 from tests.harness import ast

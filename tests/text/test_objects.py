@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from derive.emit.plcopen.declaration import declaration_of
-from derive.emit.plcopen.objects import Object, as_text, objects_of
-from derive.emit.plcopen.uses import needed
+from derive.emit.plcopen.objects import Object, as_text, needed, objects_of
 
 TEXT = """\
 {attribute 'flag'}

@@ -2,7 +2,6 @@
 
 Like `controller`, it may import the folders from `ir` to `view`.
 
-certificates: the check of a controller's certificate, for TLS
 data_layer: the data layer of a ctrlX, by its REST interface
 lines: standard input, line by line
 opc_ua: OPC UA: all nodes in one request

@@ -32,6 +32,7 @@ from derive.controller.credentials import Credentials
 from derive.controller.feed import Feed
 from derive.controller.reading import Unusable, read_json, shown
 from derive.controller.refusal import Lost, Refused
+from derive.controller.settings import Security
 from derive.controller.sources.pace import ANSWER, Pace
 
 TOKEN_PATH = "/identity-manager/api/v2/auth/token"
@@ -155,3 +156,16 @@ def _problem(answer: aiohttp.ClientResponse, given: Mapping[str, Any]) -> str:
     said = [given.get(name) for name in ("title", "detail")]
     words = [word[:120] for word in said if isinstance(word, str) and word]
     return " ".join([str(answer.status), *(words or [answer.reason or ""])]).strip()
+
+
+def context(security: Security) -> ssl.SSLContext:
+    """A context that checks the certificate and the name of the host, unless that is switched off. Raises `Refused`."""
+    if security.is_unchecked:
+        found = ssl.create_default_context()
+        found.check_hostname = False
+        found.verify_mode = ssl.CERT_NONE
+        return found
+    try:
+        return ssl.create_default_context(cafile=security.ca)
+    except (OSError, ssl.SSLError) as problem:
+        raise Refused(f"{security.ca}: no certificate (PEM) can be read: {problem}") from None

@@ -30,8 +30,7 @@ from derive.emit.c.program import (
 )
 from derive.emit.c.setup import constants_read, setup
 from derive.emit.interface import arguments_of, read_by, search_of, searches
-from derive.emit.language import GENERATED, Part, environment, head_of, runtime
-from derive.emit.shared_constants import CONSTANTS, STATUSES
+from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environment, head_of, runtime
 from derive.ir.symbols import symbols_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics

@@ -18,8 +18,8 @@ from derive.emit.interface import names_in, read_by
 from derive.ir.program import Call, FindRoot, Solve, Status
 from derive.ir.reason import Unit
 from derive.ir.symbols import PLACE
-from derive.lowering.decided import decided
 from derive.lowering.passes import structured
+from derive.lowering.scheduling import decided
 from derive.report.reasons import Reasons
 
 _PLACES = {name.name: f"place->{name.name}" for name in PLACE}

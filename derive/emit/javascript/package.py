@@ -21,8 +21,7 @@ from derive.emit.javascript.layout import comment, laid_out
 from derive.emit.javascript.printer import PRINTER, RUNTIME, list_of, spelled, text
 from derive.emit.javascript.program import function_lines, looked_for, refusals_of
 from derive.emit.javascript.setup import setup_lines
-from derive.emit.language import GENERATED, Part, environment, head_of, runtime
-from derive.emit.shared_constants import CONSTANTS, STATUSES
+from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environment, head_of, runtime
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 from derive.report.reasons import reasons_of, reasons_of_rotation

@@ -15,8 +15,8 @@ from derive.emit.javascript.layout import comment
 from derive.emit.javascript.printer import PRINTER, function_name, list_of, spelled, status, text
 from derive.ir.program import Call, FindRoot, Solve, Status
 from derive.ir.symbols import PLACE, is_condition
-from derive.lowering.decided import decided
 from derive.lowering.passes import structured
+from derive.lowering.scheduling import decided
 from derive.report.reasons import Reasons
 
 _PLACE = "({ tried, side, freed, freed_angle }) => "

@@ -3,7 +3,6 @@
 It may import the folders of `emit` but `page`, `softmotion` and `st`. The calls of LinuxCNC and its HAL stand in
 `templates/linuxcnc`.
 
-head: the comment at the top of a module: joints, letters, flags and pins
 package: the source of a mechanism, which needs no other
 words: the meaning of each coordinate of a LinuxCNC pose on a machine
 """

@@ -22,7 +22,7 @@ from derive.ir.passes import needed_for
 from derive.ir.program import Let, Program
 from derive.ir.symbols import real
 from derive.kinematics.kinematics import Kinematics, Margin
-from derive.kinematics.margins.candidates import Factor
+from derive.kinematics.margins import Factor
 from derive.lowering.passes import structured
 from derive.report.branch_stretches import stretches_of
 from derive.report.derived import Derived, derived_of

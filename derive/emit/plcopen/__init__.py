@@ -6,5 +6,4 @@ declaration: the content of a declaration, read from its text
 document: PLCopenXML as CODESYS reads it
 interface: the elements of PLCopenXML for a declaration: sections, variables, types, pragmas
 objects: the objects of a text as CODESYS holds them, each with declaration and implementation
-uses: which files a file needs
 """

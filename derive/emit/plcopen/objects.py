@@ -7,8 +7,10 @@ the import script hold the same parts.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+
+from derive.kept import kept_by_identity
 
 _OPENING = re.compile(
     r"(FUNCTION_BLOCK|FUNCTION|PROGRAM|INTERFACE|TYPE|VAR_GLOBAL|METHOD|PROPERTY|GET)\b"
@@ -137,3 +139,27 @@ def _closed(closing: str, is_part: bool) -> str:
 
 def _ruler(title: str = "") -> str:
     return f"// ===={title}".ljust(_RULER_WIDTH, "=")
+
+
+_SILENT = re.compile(r"\(\*.*?\*\)|//[^\n]*|'[^'\n]*'", re.DOTALL)
+_WORD = re.compile(r"[A-Za-z_]\w*")
+
+
+def needed(path: str, files: Mapping[str, Sequence[Object]]) -> tuple[str, ...]:
+    """The paths of a file and of all files that it uses, directly or indirectly, sorted."""
+    homes = {one.name: home for home, objects in files.items() for one in objects}
+    found: set[str] = set()
+    open_paths = [path]
+    while open_paths:
+        current = open_paths.pop()
+        if current not in found:
+            found.add(current)
+            open_paths += sorted({homes[word] for word in _words(files[current]) if word in homes})
+    return tuple(sorted(found))
+
+
+@kept_by_identity(1000)
+def _words(objects: Sequence[Object]) -> set[str]:
+    """The words of the code, except those in comments and strings."""
+    texts = [text for one in objects for part in one.parts() for text in (part.declaration, part.implementation)]
+    return {word for text in texts for word in _WORD.findall(_SILENT.sub("", text))}

@@ -7,7 +7,6 @@ On plain numbers the branches are unrolled (`straight_line`).
 
 arrays: a program as a method on arrays: all rows at once, a refusal is a mask
 calls: calls of programs that several programs share, and of the root scan
-control_flow: a choice on arrays: the first side for all rows, the second one for the rows that take it
 entries: the description of a machine in its class: axes, parameters, configuration bytes
 layout: the layout, by `ruff format`
 loops: systems of linear equations, and iterations

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 
 import sympy as sp
 
 from derive.emit.python import calls
-from derive.emit.python.control_flow import array_arm_lines, fixed
-from derive.emit.python.layout import note_lines
+from derive.emit.python.layout import note_lines, taken_apart, tuple_of
 from derive.emit.python.loops import array_end, array_head
-from derive.emit.python.printer import ArrayPrinter, words
+from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, spelled, words
 from derive.emit.python.program import Method, binding_lines, constants_of, has_search, step_lines, unpacked, values_of
 from derive.ir.primitives import FUNCTIONS, KEYS, NearestPeriod
-from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve
-from derive.ir.symbols import START_POSITION, START_ROTATION
-from derive.ir.tree import If, Item, Tree, grouped
+from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve, Statement
+from derive.ir.symbols import START_POSITION, START_ROTATION, Flag, is_count, symbols_of
+from derive.ir.tree import If, Item, Tree, given_to, grouped, read_in
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.passes import ARRAYS, NOTHING, UNCONVERTED, applied
 
@@ -88,3 +87,93 @@ def values_of_a_row(kin: Kinematics) -> int:
     programs = [(kin.branch, 1), *((p, 2 ** len(kin.branches) if p.name in called else 1) for p in kin.shared)]
     own = sum(slots * (len(p.inputs) + len(p.bound())) for p, slots in programs)
     return own + OF_A_SEARCH * any(map(has_search, kin.shared))
+
+
+def array_arm_lines(
+    arms: If, constants: Collection[sp.Symbol], lines: Callable[[Item], list[str]], printer: ScalarPrinter
+) -> list[str]:
+    """The choice: its first side for all rows, its second side for the rows that are on it, which usually are few.
+
+        def elsewhere_cos_q1(ref_a1: Real) -> Reals: …
+        cos_q1, sin_q1 = along_q1/length_q1, across_q1/length_q1
+        cos_q1, sin_q1 = elsewhere(length_q1 > 1e-11, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
+
+    Programs are total: the first side does no harm in other rows. Where nothing has to be computed on the second
+    side, it is a value: `select(absolute(rate_q1) > 1e-12, excess_q1/rate_q1, 0.0)`.
+    constants: the names with one value for all rows; a choice that only they decide is made once.
+    """
+    condition, results = printer.print(arms.condition), [spelled(name.name) for name in arms.names]
+    if symbols_of(arms.condition) <= set(constants):
+        holds, fails = ([line for item in side for line in lines(item)] for side in (arms.holds, arms.fails))
+        declared = [f"{spelled(name.name)}: {_kind(name)}" for name in arms.names]
+        return [*declared, f"if {condition}:", *_indented(holds), "else:", *_indented(fails)]
+    comments = [line for comment in arms.comments for line in note_lines(comment)]
+    (first, held), (second, other) = (_side(side, arms.names, printer) for side in arms.sides)
+    if not second:
+        first, held = _side(arms.sides[0], arms.names, printer, is_written_out=len(results) == 1)
+        name, named = (condition, []) if len(results) == 1 else ("holds", [f"holds = {condition}"])
+        chosen = [f"{r} = select({name}, {a}, {b})" for r, a, b in zip(results, held, other, strict=True)]
+        return [*(line for item in first for line in lines(item)), *named, *comments, *chosen]
+    holds = [line for item in first for line in lines(item)]
+    fails = [line for item in second for line in lines(item)]
+    kinds = {
+        spelled(s.name): _kind(s) for s in sorted(given_to(arms.fails) - set(constants), key=lambda s: spelled(s.name))
+    }
+    function = _unused(f"elsewhere_{results[0]}", holds)
+    return [
+        "",
+        f"def {function}({', '.join(f'{name}: {kind}' for name, kind in kinds.items())}) -> Reals:",
+        *_indented([*fails, f"return {tuple_of(other)}"]),
+        "",
+        *holds,
+        *comments,
+        *taken_apart(results, f"elsewhere({condition}, {tuple_of(held)}, {function}, {tuple_of(list(kinds))})"),
+    ]
+
+
+def _side(
+    items: list[Item], names: Sequence[sp.Symbol], printer: ScalarPrinter, *, is_written_out: bool = False
+) -> tuple[list[Item], list[str]]:
+    """The statements of a side, and its results: a value that has a name needs no other.
+
+    is_written_out: whether a result that nothing else on the side reads stands where it is chosen.
+    """
+    results: list[str] = []
+    for name in names:
+        let = next((i for i in items if isinstance(i, Let) and i.name == name), None)
+        others = [i for i in items if i is not let]
+        is_short = let is not None and (let.value.is_Symbol or let.value.is_number)
+        is_short |= is_written_out and let is not None and not isinstance(let.value, NearestPeriod)
+        if let is not None and is_short and name not in read_in(others):
+            items = others
+            results.append(printer.value(name, let.value))
+        else:
+            results.append(spelled(name.name))
+    return items, results
+
+
+def _kind(name: sp.Symbol) -> str:
+    """The type of a name on arrays."""
+    return "Truth" if isinstance(name, Flag) else "Whole" if is_count(name) else "Real"
+
+
+def _unused(function: str, holds: Sequence[str]) -> str:
+    """A function name that no choice on the first side has: that would replace this function before its call."""
+    number, found = 1, function
+    while any(line.startswith(f"def {found}(") for line in holds):
+        number += 1
+        found = f"{function}_{number}"
+    return found
+
+
+def fixed(body: Iterable[Statement], constants: Iterable[sp.Symbol]) -> set[sp.Symbol]:
+    """The names with one value for all rows: constants, and values computed from constants alone."""
+    found = set(constants)
+    for statement in body:
+        if isinstance(statement, Let) and symbols_of(statement.value) <= found:
+            found.add(statement.name)
+    return found
+
+
+def _indented(lines: list[str]) -> list[str]:
+    return [f"    {line}" for line in lines]

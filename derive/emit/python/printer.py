@@ -8,8 +8,7 @@ from keyword import iskeyword
 
 import sympy as sp
 
-from derive.emit.conditions import magnitude_tests
-from derive.emit.expression import ATOM, COMPARE, ExpressionPrinter
+from derive.emit.expression import ATOM, COMPARE, ExpressionPrinter, magnitude_tests
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import FUNCTIONS, KEYS, Atan2, Root, Select
 from derive.optimize.inline import Grouped

@@ -15,8 +15,8 @@ from derive.ir.constants import EDGE
 from derive.ir.primitives import NearestPeriod, Select, ToReal
 from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve
 from derive.ir.tree import If, Item, grouped
-from derive.lowering.decided import decided
 from derive.lowering.passes import NOTHING, UNCONVERTED, applied, structured
+from derive.lowering.scheduling import decided
 
 _SCALAR, _MODULO_TURNS = ScalarPrinter(), ScalarPrinter(modulo_turns=True)
 

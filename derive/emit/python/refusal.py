@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 from sympy.core.relational import Relational
 
-from derive.emit.conditions import magnitude_tests, parts_of
+from derive.emit.expression import magnitude_tests, parts_of
 from derive.emit.python.calls import FOUND
 from derive.emit.python.layout import note_lines, quoted
 from derive.emit.python.printer import ScalarPrinter

@@ -12,7 +12,7 @@ from jinja2 import Environment
 
 from derive.description.dimensions import Role
 from derive.emit.interface import rotation_entry
-from derive.emit.language import GENERATED, environment
+from derive.emit.language import CONSTANTS, GENERATED, STATUSES, environment
 from derive.emit.python import entries
 from derive.emit.python.arrays import CALLED, OF_A_SEARCH, TYPES, array_body, named_in
 from derive.emit.python.layout import documented
@@ -20,7 +20,6 @@ from derive.emit.python.methods import ROTATION_ARGUMENT
 from derive.emit.python.printer import ScalarPrinter, literal, primitives_in
 from derive.emit.python.program import Method, scalar_body
 from derive.emit.python.refusal import explained
-from derive.emit.shared_constants import CONSTANTS, STATUSES
 from derive.equations.rotation_repair import rotation_program, surely_exact
 from derive.ir import cells, roots
 from derive.ir.passes import without_reasons

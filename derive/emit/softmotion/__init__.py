@@ -9,7 +9,6 @@ base: the base block: the methods that no geometry changes
 block: the data of a block that templates read
 calls: the programs of a block without the steps that the base block does
 description: the comment of a block, which the SoftMotion configurator shows
-flat: blocks without a base, for profiles that are flat
 inputs: the inputs of a block: type, default, range, unit
 layout: the text of a method without empty sections
 library: all files: text, PLCopenXML and the import script

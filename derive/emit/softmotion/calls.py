@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.emit.conditions import is_size_test
+from derive.emit.expression import is_size_test
 from derive.ir.passes import with_inputs
 from derive.ir.primitives import Select, ToReal
 from derive.ir.program import Let, Program, Require, Statement, Status, rewritten

@@ -7,20 +7,22 @@ from collections.abc import Iterator, Sequence
 from dataclasses import astuple, replace
 from textwrap import wrap
 
+import sympy as sp
 from jinja2 import Environment
 
-from derive.description.mechanism import Kind, Role
+from derive.description.mechanism import Kind, Mechanism, Role
 from derive.emit.softmotion.block import Block
 from derive.emit.softmotion.inputs import inputs
 from derive.emit.st.layout import WIDTH
 from derive.emit.st.names import respelled
+from derive.geometry.frames import Motion
+from derive.geometry.pose import Screw, pose_of
 from derive.ir.constants import EXACT_ROTATION, FREE_ANGLE, ONE_TURN, ROTATION
 from derive.ir.program import Call, Status, shared
 from derive.kinematics.kinematics import Called, Kinematics
 from derive.report.cost import Bound, Cost, Costs, costs_of
 from derive.report.effort import open_slots, worst_inverse
 from derive.report.reasons import workspace
-from derive.report.zero_directions import directions_at_zero
 
 _WIDTH = 100
 _MARKUP = re.compile(r"[\\*`|]|_(?!\w)|(?<!\w)_|(?<=:):|(?<!\S)([!-/:-@\[-`{-~])(?=\1{3,}(?!\S))")
@@ -261,3 +263,31 @@ def _table(head: Sequence[str], rows: Iterator[Sequence[str]]) -> list[str]:
     ]
     rule = " ".join("=" * width for width in [*widths, min(last, max(len(row[-1]) for row in cells))])
     return [rule, lines[0], rule, *lines[1:], rule]
+
+
+_WORDS = {Motion.TURN: "about", Motion.SHIFT: "along"}
+
+
+def directions_at_zero(mechanism: Mechanism) -> dict[str, str]:
+    """The direction in which each joint of a chain moves in the zero pose, by its name.
+
+    It lacks joints that move several parts of the chain, and those whose direction is none of the machine's axes.
+    """
+    if mechanism.chain is None:
+        return {}
+    at_zero = {joint.symbol: sp.Integer(0) for joint in mechanism.joints}
+    found: dict[str, str] = {}
+    for joint in mechanism.joints:
+        screws = [s for s in pose_of(mechanism.chain).screws if joint.symbol in s.amount.free_symbols]
+        if len(screws) == 1 and (axis := _axis(screws[0], joint.symbol, at_zero)) is not None:
+            found[joint.name] = f"{_WORDS[screws[0].motion]} {axis}"
+    return found
+
+
+def _axis(screw: Screw, joint: sp.Symbol, at_zero: dict[sp.Symbol, sp.Integer]) -> str | None:
+    sense = sp.sign(sp.diff(screw.amount, joint).subs(at_zero))
+    direction = [sp.nsimplify(entry) for entry in screw.direction.subs(at_zero) * sense]
+    places = [place for place, entry in enumerate(direction) if entry != 0]
+    if len(places) != 1 or direction[places[0]] not in (1, -1):
+        return None
+    return ("-" if direction[places[0]] == -1 else "") + "XYZ"[places[0]]

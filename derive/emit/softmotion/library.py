@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -12,12 +13,10 @@ from jinja2 import Environment
 
 from derive.emit.language import GENERATED, TEMPLATES, Part, environment, runtime
 from derive.emit.plcopen import document as plcopen
-from derive.emit.plcopen.objects import Object, as_text, objects_of
-from derive.emit.plcopen.uses import needed
+from derive.emit.plcopen.objects import Object, as_text, needed, objects_of
 from derive.emit.softmotion.base import base_text
 from derive.emit.softmotion.block import Block, block_of
 from derive.emit.softmotion.description import description
-from derive.emit.softmotion.flat import flattened
 from derive.emit.softmotion.inputs import inputs
 from derive.emit.softmotion.methods import methods_of
 from derive.emit.softmotion.pictures import row_of
@@ -27,9 +26,8 @@ from derive.emit.softmotion.self_test import TOLERANCE, test_of
 from derive.emit.st.contract import Contract, load
 from derive.emit.st.expression import literal
 from derive.emit.st.layout import assigned, beside, case, gathered, quoted
-from derive.emit.st.limits import limits_function
 from derive.emit.st.reserved import refuse_clashes
-from derive.emit.st.rotation import rotation_function
+from derive.emit.st.rotation import limits_function, rotation_function
 from derive.emit.st.scan import SEARCH
 from derive.ir.constants import EDGE, FREE_ANGLE, HELD, LARGEST, LEAST, PIVOT, SOLVABLE
 from derive.ir.program import Status
@@ -197,3 +195,40 @@ def interface_text(contract: Contract, templates: Environment) -> str:
     """The text of the interface: the methods of the contract that are our own, with the headers that blocks have."""
     heads = [replace(signature, access="").head() for signature in contract.own.values()]
     return templates.get_template("interface.st.j2").render(contract.spelling, heads=heads)
+
+
+_SECTION = re.compile(r"^VAR\b.*?^END_VAR$", re.DOTALL | re.MULTILINE)
+_INPUTS = re.compile(r"^VAR_INPUT$.*?^END_VAR$", re.DOTALL | re.MULTILINE)
+
+
+def flattened(objects: Sequence[Object], base: Object) -> tuple[Object, ...]:
+    """The objects, of which those that extend the base have its variables and methods instead.
+
+    Raises `ValueError` for a block that calls what it overrides.
+    """
+    return tuple(_flat(one, base) if _head(one, base) in one.declaration else one for one in objects)
+
+
+def _head(block: Object, base: Object) -> str:
+    return f"\nFUNCTION_BLOCK {block.name} EXTENDS {base.name}"
+
+
+def _flat(block: Object, base: Object) -> Object:
+    for part in block.parts():
+        if "SUPER" in part.implementation:
+            raise ValueError(f"{block.name}.{part.name} calls what the base has, and a flat block has no base")
+    alone = block.declaration.replace(_head(block, base), f"\nFUNCTION_BLOCK {block.name}")
+    declaration = _with_variables(alone, "\n".join(_SECTION.findall(base.declaration)))
+    return replace(block, declaration=declaration, members=(*block.members, *_inherited(block, base)))
+
+
+def _with_variables(declaration: str, variables: str) -> str:
+    """The declaration with these sections behind its inputs, which every block has."""
+    inputs = _INPUTS.search(declaration)
+    assert inputs is not None
+    return f"{declaration[: inputs.end()]}\n{variables}{declaration[inputs.end() :]}"
+
+
+def _inherited(block: Object, base: Object) -> Iterator[Object]:
+    own = {member.name for member in block.members}
+    return (member for member in base.members if member.name not in own)

@@ -10,8 +10,6 @@ flag is a BOOL; a sign, the number of a turn and a count are an INT; a sign beco
 contract: the contract of SoftMotion, read from its file
 expression: expressions
 layout: indents, and breaks in long statements
-limits: the function that combines the limits of a block and of a drive
-loops: systems of linear equations, and bounded iterations
 names: names as Structured Text writes them, no two of which differ in case alone
 program: a program as statements
 refusal: how a method refuses

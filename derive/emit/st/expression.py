@@ -7,8 +7,7 @@ from collections.abc import Mapping
 import sympy as sp
 from sympy.core.relational import Relational
 
-from derive.emit.conditions import is_size_test
-from derive.emit.expression import ExpressionPrinter
+from derive.emit.expression import ExpressionPrinter, is_size_test
 from derive.ir.constants import LARGEST
 from derive.ir.primitives import Select
 

@@ -8,11 +8,13 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.emit.st.contract import Contract, Signature
-from derive.emit.st.expression import StructuredText
+from derive.emit.st.expression import StructuredText, literal
 from derive.emit.st.layout import wrapped
 from derive.emit.st.program import Printed, printed
 from derive.emit.st.refusal import MISSING, REASON, Explained, Refusal
 from derive.equations.rotation_repair import rotation_program, surely_exact
+from derive.equations.windows import limits_of_axis
+from derive.ir.constants import GEARED_TURN, UNLIMITED
 from derive.ir.passes import normalise, with_inputs
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import ROTATION_ENTRIES
@@ -69,3 +71,39 @@ def about_z(signature: Signature, contract: Contract) -> Printed:
 def _printed(program: Program, signature: Signature, contract: Contract) -> Printed:
     refusal = Refusal(signature, contract.spelling["errors"], contract.spelling["types"]["error"])
     return printed(program, _ENTRIES, {}, [p.name for p in signature.parameters], refusal)
+
+
+_RANGE = "Softkin_SetAxis"
+_OF_RANGE = {
+    "own_unlimited": "ownUnlimited",
+    "own_lower": "ownLower",
+    "own_upper": "ownUpper",
+    "drive_limited": "xLimited",
+    "drive_lower": "dLower",
+    "drive_upper": "dUpper",
+}
+
+
+@dataclass(frozen=True)
+class LimitsFunction:
+    """The values that the template reads."""
+
+    program: Printed
+    variables: tuple[tuple[str, str], ...]
+    """The variables of the function, with their types."""
+    one_turn: str = literal(float(GEARED_TURN))
+    """The widest range, in degrees of the joint, that holds one value for every direction."""
+    unlimited: str = literal(float(UNLIMITED / 2))
+    """More than any limit."""
+
+
+def limits_function(contract: Contract) -> LimitsFunction:
+    """The function in Structured Text."""
+    errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
+    program = limits_of_axis()
+    results = {o.name: {"single": "isSingle"}.get(o.name, o.name) for o in program.outputs}
+    refusal = Refusal(Signature(_RANGE, error, ()), errors, error)
+    text = printed(program, _OF_RANGE, results, (_RANGE, *_OF_RANGE.values()), refusal)
+    given = (("ownUnlimited", "BOOL"), ("ownLower", "LREAL"), ("ownUpper", "LREAL"))
+    found = (("lowest", "LREAL"), ("highest", "LREAL"), ("isSingle", "BOOL"), ("middle", "LREAL"))
+    return LimitsFunction(text, (*given, *found, *text.variables))

@@ -7,12 +7,10 @@ connects: the loops of an MJCF
 documents: XML and the numbers in it; any fault is reported in one sentence
 legs: the legs of such a loop: motor, arm, and a rod to the point where all rods meet
 loops: closed loops of a file: an arm is not imported without one that binds its joints
-macros: what is left of xacro in a URDF: reported where the chain does not need it
 mjcf: MJCF: the chain between two bodies or sites
 orientations: the five ways in which MJCF gives an orientation
 tables: tables of Denavit-Hartenberg parameters, in TOML or CSV
 transmissions: the transmissions of a URDF, which are reported but do not enter the chain, and joints that follow others
 trees: a robot as a tree of links, and the joints on the path between two links
 urdf: URDF: the chain between two links
-whole: an MJCF file with its included files inserted
 """

@@ -128,3 +128,35 @@ def roundings(element: Element, attribute: str, count: int, with_coarse: bool = 
     """The `rounding` of each of the `count` numbers of an attribute; 0 where the attribute is missing."""
     words = (element.get(attribute) or "").split()
     return tuple(rounding(word, with_coarse) for word in words) if words else (0.0,) * count
+
+
+def whole(path: Path, root: Element) -> Element:
+    """The root with the children of every included file where its `include` stood; each file may come once.
+
+    Their names are relative to the folder of the model, as MuJoCo reads them.
+    """
+    _fill(path, root, {path.resolve()})
+    return root
+
+
+def _fill(model: Path, element: Element, seen: set[Path]) -> None:
+    children: list[Element] = []
+    for child in element:
+        if child.tag == "include":
+            children += _included(model, child, seen)
+        else:
+            _fill(model, child, seen)
+            children.append(child)
+    element[:] = children
+
+
+def _included(model: Path, include: Element, seen: set[Path]) -> list[Element]:
+    path = model.parent / required(model, include, "file")
+    if not path.is_file():
+        raise UnreadableRobot(f"{model}: includes {path}, and there is no such file: put it beside the model")
+    if path.resolve() in seen:
+        raise UnreadableRobot(f"{model}: includes {path} twice: write it once")
+    seen.add(path.resolve())
+    inner = parsed(path)
+    _fill(model, inner, seen)
+    return list(inner)

@@ -20,7 +20,7 @@ from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from derive.mechanism import assembly, distance, length, linear
 from derive.witness import Disagreement, witness
-from derive.witness.terms import term
+from derive.witness.frames import term
 from tests.unit.kinematics.inventions import A1, A2, L1, L2
 from tests.unit.kinematics.inventions import planar_arm as arm
 

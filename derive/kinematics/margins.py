@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
+import sympy as sp
 from numpy.typing import NDArray
 
 from derive.description.mechanism import DescriptionError, Mechanism
+from derive.equations.problem import Conditioning
+from derive.ir.constants import FREE_ANGLE
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
-from derive.ir.program import Output, Program, Statement, Status
-from derive.ir.symbols import COORDINATE_NAMES
+from derive.ir.primitives import Select
+from derive.ir.program import Let, Output, Program, Statement, Status
+from derive.ir.symbols import COORDINATE_NAMES, SCALE, real
+from derive.kinematics.branches.assignment import Assignment
 from derive.kinematics.differential import jacobian_rows
 from derive.kinematics.kinematics import Margin
-from derive.kinematics.margins.candidates import Factor
+from derive.kinematics.parameters import has_length
 from derive.kinematics.sampling import ENOUGH, possible_axes, sample_machine, size_of
 from derive.work import stage
 
@@ -114,3 +120,33 @@ def _independent(logs: Sequence[NDArray[np.float64]]) -> list[int]:
         if np.linalg.matrix_rank(columns, tol=1e-6) == len(own) + 2:
             own.append(k)
     return own
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A candidate for a margin: the determinant or the conditioning of a step over its scale, at axis values."""
+
+    name: str
+    value: sp.Expr
+    is_length: bool = False
+    """Whether it is in the user's unit of length, because the machine has no length to divide it by."""
+    is_signed: bool = True
+
+    @property
+    def lets(self) -> tuple[Let, ...]:
+        """The margin; for a length, 1 where it determines the axis and 0 where it does not."""
+        margin = real(f"margin_{self.name}")
+        if not self.is_length:
+            return (Let(margin, self.value),)
+        length = real(f"length_{self.name}")
+        other = Select(sp.Lt(length, -FREE_ANGLE), sp.Integer(-1), sp.Integer(0)) if self.is_signed else sp.Integer(0)
+        value = Select(sp.Gt(length, FREE_ANGLE), sp.Integer(1), other)
+        return Let(length, self.value), Let(margin, value, "0 where no equation determines the axis, else 1 or -1")
+
+
+def factor_of(mechanism: Mechanism, found: Assignment | Conditioning) -> Factor:
+    """The determinant of a branch, or the conditioning of a step, over its scale."""
+    has_unit = not has_length(mechanism)
+    if isinstance(found, Assignment):
+        return Factor(found.branch.margin, found.margin(mechanism), has_unit and found.determinant.scale.has(SCALE))
+    return Factor(found.name, found.value / found.scale, has_unit and found.scale.has(SCALE), is_signed=False)
