@@ -92,9 +92,7 @@ class StepDeterminant:
     def renamed(self, names: Mapping[sp.Symbol, sp.Expr]) -> StepDeterminant:
         """A copy with other names for the values that earlier steps bind."""
         return replace(
-            self,
-            value=self.value.xreplace(names),
-            legs=None if self.legs is None else self.legs.renamed(names),
+            self, value=self.value.xreplace(names), legs=None if self.legs is None else self.legs.renamed(names)
         )
 
 

@@ -86,10 +86,7 @@ def _fold(body: Sequence[Statement], outputs: Sequence[Output]) -> tuple[tuple[S
 
 
 def _without_aliases(
-    body: Sequence[Statement],
-    aliases: dict[sp.Symbol, sp.Expr],
-    bound: dict[sp.Symbol, sp.Expr],
-    names: set[sp.Symbol],
+    body: Sequence[Statement], aliases: dict[sp.Symbol, sp.Expr], bound: dict[sp.Symbol, sp.Expr], names: set[sp.Symbol]
 ) -> list[Statement]:
     kept: list[Statement] = []
     for s in body:

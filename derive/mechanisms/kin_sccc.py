@@ -38,10 +38,7 @@ MECHANISM = Mechanism(
     chain=Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Rz(A3) * Tx(L3),
     task=Task("xy", Turning.ABOUT_Z),
     branches=(branch("elbow", sin(A2), right=+1, left=-1),),
-    limited=(
-        limited("joint_2", A2, "joint 2", angle=True),
-        limited("joint_3", A3, "joint 3", angle=True),
-    ),
+    limited=(limited("joint_2", A2, "joint 2", angle=True), limited("joint_3", A3, "joint 3", angle=True)),
     notes=(
         "A belt arm with all motors in the base typically has coupling_12 = coupling_23 = -1.",
         "An open period is chosen nearest to the reference joint by joint; a commanded one counts on the axis.",

@@ -69,13 +69,7 @@ MECHANISM = Mechanism(
     ),
     task=Task("xyz"),
     branches=tuple(
-        branch(
-            f"knee_{k}",
-            -cos(a) * r[2] - sin(a) * dot(r, d),
-            margin=f"stretched_{k}",
-            outward=+1,
-            inward=-1,
-        )
+        branch(f"knee_{k}", -cos(a) * r[2] - sin(a) * dot(r, d), margin=f"stretched_{k}", outward=+1, inward=-1)
         for k, (a, r, d) in enumerate(zip(AXES, RODS, DIRECTIONS, strict=True), 1)
     ),
     assembly=assembly("tcp", triple(RODS), margin="rods_coplanar", below=-1, above=+1),

@@ -77,11 +77,7 @@ def _every_branch(kin: Kinematics, one: Program) -> InLanes | None:
     found = REGULAR.change(line.program, Given(constants(kin) | {part.name.name for part in parts}))
     if found is None:  # it takes sines of sums of angles, which lanes lack and one branch does not need
         (found,), parts = lowered(
-            [replace(one, name=EVERY)],
-            constants(kin),
-            LANES,
-            branches={EVERY: signs(kin)},
-            known=known_constants(kin),
+            [replace(one, name=EVERY)], constants(kin), LANES, branches={EVERY: signs(kin)}, known=known_constants(kin)
         )
     return InLanes(replace(found, name=EVERY), read_of(parts, found))
 

@@ -187,11 +187,7 @@ def rail(ends: tuple[Vector, Vector], at: Vector) -> list[Mark]:
     x = along / length if length > 1e-9 else np.array([1.0, 0.0])
     y = np.array([-x[1], x[0]])
     corners = [at + a * x + b * y for a, b in ((11, 7), (-11, 7), (-11, -7), (11, -7))]
-    return [
-        line(ends, style.SLIDE, 6.4),
-        line(ends, style.RAIL, 4.4),
-        area(corners, "#f7ece2", style.SLIDE, 1.4),
-    ]
+    return [line(ends, style.SLIDE, 6.4), line(ends, style.RAIL, 4.4), area(corners, "#f7ece2", style.SLIDE, 1.4)]
 
 
 def triad(frame: Frame, size: float, width: float, view: View) -> list[tuple[Vector, list[Mark]]]:

@@ -85,11 +85,7 @@ def try_program(trial: Trial) -> Program:
 
 
 def find_program(
-    mechanism: Mechanism,
-    trial: Program,
-    finish: Program,
-    arguments: Sequence[sp.Symbol],
-    sides: tuple[int, ...] = (),
+    mechanism: Mechanism, trial: Program, finish: Program, arguments: Sequence[sp.Symbol], sides: tuple[int, ...] = ()
 ) -> Program:
     """The program that finds the root on the wanted branch that is nearest to the start.
 

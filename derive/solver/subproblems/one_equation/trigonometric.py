@@ -158,11 +158,7 @@ def _cosine(
 
 
 def _turned(
-    problem: Problem,
-    equation: Equation,
-    angle: sp.Symbol,
-    amplitude: Amplitude,
-    swing: tuple[sp.Symbol, sp.Symbol],
+    problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Amplitude, swing: tuple[sp.Symbol, sp.Symbol]
 ) -> Iterator[Let]:
     """Cosine and sine of the angle from those of the swing. Without an arm they come from the two equations between
     which a length was eliminated, else from the reference.
