@@ -8,15 +8,14 @@ What is the same for every mechanism stands in `runtime/`, in a folder for each 
 constants of the compiler from one file that the language writes. `runtime/native` has the extension module that joins
 the C of machines with Python.
 
-braced: how C and JavaScript spell expressions and parts of statements
-braces: indents, blocks with braces, and long statements broken into lines
+braced: how C and JavaScript spell expressions and statements; indents, blocks, long statements broken into lines
 c/: C99
 every_branch: all branches of the inverse as one straight line, for Python and C
-expression: the walk over an expression that all languages share
+expression: the walk over an expression that all languages share; the conditions of a refusal
 inputs: the names of the inputs of a machine in a language
 interface: the programs of a machine as functions: summary, arguments and results
 javascript/: JavaScript
-language: the protocol of an output language
+language: the protocol of an output language, and the constants that runtimes read
 linuxcnc/: kinematics modules of LinuxCNC
 native: the native core of the Python package: the C of its machines
 page/: the derivation of a machine as HTML

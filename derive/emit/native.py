@@ -12,8 +12,7 @@ from jinja2 import Environment
 
 from derive.emit.c import lanes
 from derive.emit.c import package as c
-from derive.emit.c.layout import laid_out, page
-from derive.emit.c.printer import number
+from derive.emit.c.printer import laid_out, number, page
 from derive.emit.language import GENERATED, environment, runtime
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics

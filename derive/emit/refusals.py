@@ -11,8 +11,7 @@ from typing import ClassVar
 
 import sympy as sp
 
-from derive.emit.braced import Braced
-from derive.emit.braces import block, indented
+from derive.emit.braced import Braced, block, indented
 from derive.emit.expression import magnitude_tests
 from derive.emit.inputs import Inputs
 from derive.emit.setup import refused_inputs

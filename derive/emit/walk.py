@@ -9,8 +9,7 @@ from typing import ClassVar
 
 import sympy as sp
 
-from derive.emit.braced import Braced
-from derive.emit.braces import block, indented
+from derive.emit.braced import Braced, block, indented
 from derive.emit.refusals import Refusals
 from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve
 from derive.ir.tree import If, Item, grouped

@@ -4,12 +4,11 @@ One rule a module; each is an identity, which its docstring states. It may impor
 `description`.
 
 chain: the chain, read as lines of its zero pose and written again
-exact: exact numbers for those of a closed loop
 gears: gears that stand in a chain, moved to the joints
 headings: the letter x, y or z along which every line of a chain lies, and the turns between their frames
 inner_names: the names that the inputs of a machine have inside a derivation
 lines: a chain as lines of its zero pose, and the point of every turn on its line
 machine: all rules, in their order; rods that end at the commanded point
 named_angles: names for the angles of a chain that are no right angles
-numbers: names for the numbers of a chain, and for the angles of a loop
+numbers: names for the numbers of a chain, and for the angles of a loop, whose numbers become exact
 """

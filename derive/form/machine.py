@@ -10,10 +10,9 @@ import sympy as sp
 from derive.description.amounts import with_exact_angles
 from derive.description.mechanism import Mechanism, Rod
 from derive.form.chain import with_normal_chain
-from derive.form.exact import with_exact_numbers
 from derive.form.gears import with_gears
 from derive.form.inner_names import with_inner_names
-from derive.form.numbers import with_named_loop_angles, with_named_numbers
+from derive.form.numbers import with_exact_numbers, with_named_loop_angles, with_named_numbers
 from derive.ir.symbols import COORDINATE_NAMES, real
 
 _COORDINATES = tuple(map(real, COORDINATE_NAMES))

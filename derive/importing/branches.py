@@ -147,13 +147,8 @@ def _elbow(arm: Skeleton, before: int, at: int, end: int, names: tuple[str, str]
     i, j = (letter + 1) % 3, (letter + 2) % 3
     first = _back(arm, arm.turns[before], arm.turns[at])
     second = _turned([(letter, arm.amount(at))], arm.along(arm.turns[at], end))
-    crossed = sp.expand(first[i] * second[j] - first[j] * second[i]) * _up(arm, letter)
+    crossed = sp.expand(first[i] * second[j] - first[j] * second[i]) * (-1 if (letter - arm.letter(0)) % 3 == 1 else 1)
     return Named("elbow", _without_lengths(crossed), names)
-
-
-def _up(arm: Skeleton, letter: int) -> int:
-    """The sense in which an axis turns a link up: +1 where it turns as y does, with axis 1 along z and x in front."""
-    return -1 if (letter - arm.letter(0)) % 3 == 1 else 1
 
 
 def _back(arm: Skeleton, start: int, end: int) -> sp.Matrix:

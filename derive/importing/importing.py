@@ -13,11 +13,10 @@ import numpy as np
 
 from derive.description.errors import printable
 from derive.description.joints import Kind
-from derive.importing.arms.aligned import aligned
 from derive.importing.arms.lines import Arm, arm_of, place_names
 from derive.importing.arms.pieces import simple
 from derive.importing.arms.rounded import nearly, snapped_robot
-from derive.importing.arms.snapping import SNAP, Snapped
+from derive.importing.arms.snapping import SNAP, Snapped, aligned
 from derive.importing.arms.tasks import Followed, followed, on_axis
 from derive.importing.branches import Named
 from derive.importing.formats.documents import parsed

@@ -75,7 +75,7 @@ def _evaluator(expression: sp.Basic) -> _Evaluator:
     if not others:
         return lambda values: function(first(values))
     if len(others) == 1:
-        return _of_two(function, first, others[0])
+        return lambda values: function(first(values), others[0](values))
     is_chain = isinstance(expression, sp.Add | sp.Mul | sp.And | sp.Or)
     return _chained(function, first, others) if is_chain else _of_more(function, first, others)
 
@@ -90,10 +90,6 @@ def _chained(function: Callable[..., Array], first: _Evaluator, others: Sequence
         return result
 
     return chained
-
-
-def _of_two(function: Callable[..., Array], one: _Evaluator, other: _Evaluator) -> _Evaluator:
-    return lambda values: function(one(values), other(values))
 
 
 def _of_more(function: Callable[..., Array], first: _Evaluator, others: Sequence[_Evaluator]) -> _Evaluator:

@@ -137,12 +137,8 @@ def _refuse_name(program: Program, value: sp.Basic, bound: dict[str, sp.Symbol])
 def _strange_part(value: sp.Basic) -> str:
     """A description of the part of an expression that no language can print; empty if every part can be printed."""
     for node in sp.preorder_traversal(value):
-        if isinstance(node, sp.Pow) and not _is_power_printable(node):
+        if isinstance(node, sp.Pow) and not bool(node.exp.is_Integer):
             return f"power {node} is not an integer power"
         if not isinstance(node, _ARITHMETIC + _LOGIC + PRIMITIVES) and not is_decided(node):
             return f"{type(node).__name__} is not a primitive, in {value}"
     return ""
-
-
-def _is_power_printable(node: sp.Pow) -> bool:
-    return bool(node.exp.is_Integer)

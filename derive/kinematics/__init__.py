@@ -10,14 +10,13 @@ coupling: the programs that a coupling calls of an orientation kinematics, and t
 differential: the Jacobian, from A x' + B q' = 0
 flange_rotation: the rotations that the flange can have: their programs
 forward: forward kinematics, and the values of the inverse derivation at given axis values
-home_share: how often forward kinematics that starts at home finds a pose again
 inverse: inverse kinematics of one branch, for a pose or for a point off the flange
 kinematics: the bundle that all later folders read: every program of a mechanism, the meanings of its names, test cases
 lost_digits/: where a closed form has lost digits, steps on the closure meet the pose
 margins: the singularity margins of a machine that is solved in closed form
 parameters: all inputs of a machine, and the setup program
 refusals/: why a machine is refused
-sampling: samples of machines and axis values, for numerical decisions of the build
+sampling: samples of machines and axis values, for numerical decisions of the build; how often home finds a pose again
 scan/: a mechanism with a root scan along one joint
 shared_names: where an input has the name of a derived value, the mechanism is derived again with another name
 solution: what is solved of a machine before programs are made, in the one order of the preparations

@@ -24,7 +24,6 @@ from derive.kinematics.coupling import coupling_programs
 from derive.kinematics.differential import jacobian_program, twist_program
 from derive.kinematics.flange_rotation import image_program, needs_twist, projection_program
 from derive.kinematics.forward import at_point, derivation_at_axes, forward_program, orientation_program
-from derive.kinematics.home_share import with_share
 from derive.kinematics.inverse import Inverse, inverse_program, solve_offset
 from derive.kinematics.kinematics import Kinematics, Margin
 from derive.kinematics.lost_digits.closure_steps import Machine
@@ -32,7 +31,7 @@ from derive.kinematics.lost_digits.doubts import meeting, with_doubts
 from derive.kinematics.margins import samples_anywhere, singularity_program
 from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.refusals.no_pose import near_home
-from derive.kinematics.sampling import sample_machine
+from derive.kinematics.sampling import sample_machine, with_share
 from derive.kinematics.scan.derivations import Scanned, from_joints, trial_on_branch
 from derive.kinematics.scan.inverse import branch_statements, search_given
 from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements

@@ -2,10 +2,9 @@
 
 It may import the folders from `ir` to `optimize`.
 
-coefficients: the coefficients of one value in a sum are added
 cutting: a sum that takes many lines to write is a sum of shorter ones
 draft: a program as values in the graph of `ir`, with their names and places; the readers of each value
-factoring: a common factor or divisor of a sum is applied once
+factoring: a common factor, divisor or value of a sum is applied once; sums that open into others
 hoisting: values that depend on parameters alone are computed once, by the setup
 passes: the list of all passes, in their order; programs that are lowered together
 scheduling: a value that only one side of a choice needs is computed on that side

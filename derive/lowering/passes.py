@@ -29,10 +29,9 @@ from derive.ir.program import Let, Program
 from derive.ir.symbols import Sign
 from derive.ir.tree import Item, Tree
 from derive.kept import kept_by_identity
-from derive.lowering.coefficients import collected
 from derive.lowering.cutting import cut
 from derive.lowering.draft import Draft, Effect, Reader, changed, values_of
-from derive.lowering.factoring import Dividing, Factoring, opened
+from derive.lowering.factoring import Dividing, Factoring, collected, opened
 from derive.lowering.hoisting import Constant, Gathering, hoisted
 from derive.lowering.scheduling import decided, refused_late, scheduled, together, with_reasons_on_sides
 from derive.lowering.sharing import Sharing

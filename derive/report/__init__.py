@@ -4,9 +4,8 @@ It may import the folders from `ir` to `kinematics`.
 
 branch_meanings: the meanings of derived branches and assembly modes, in words and at one pose
 branch_stretches: parts of a branch that other branches share
-cost: the operations of a call in the worst case
+cost: the operations of a call in the worst case, and of one call of the self-test
 derived: the derivation, repeated for a reader
-effort: the operations of one call of the self-test
 reasons: the reasons of refusals in words
 reference_calls: the answers of the methods of a block, by the reference interpreter
 self_test: the calls of the self-test, with their answers

@@ -19,7 +19,7 @@ from derive.ir.program import Status
 from derive.kinematics.kinematics import Bytes, Called, Case, Kinematics, Reals, SelfTest
 from derive.kinematics.parameters import has_length
 from derive.kinematics.sampling import sample_axes
-from derive.report.effort import with_operations
+from derive.report.cost import with_operations
 from derive.report.reference_calls import Machine, branches, forward, inverse, machine_with, margins
 from derive.work import stage
 

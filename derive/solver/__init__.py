@@ -2,9 +2,8 @@
 
 It may import the folders from `ir` to `equations`.
 
-derivation_record: the statements of a derivation: equal values under one name, every name bound once
+derivation_record: the statements of a derivation: known legs and equal values under one name, every name bound once
 eliminations: equations with fewer unknowns, made from others, in tiers
-known_legs: the distances of an aimed arm, by their names in later statements
 meeting_axes: the equation of a joint behind which two axes meet
 parallel_axes: a sum of angles about parallel axes, as one unknown
 positive_steps: two-root steps of which only one root belongs to the machine

@@ -132,7 +132,7 @@ def squares_of_three(problem: Problem) -> tuple[Equation, ...]:
 
 def _sum_of_squares(problem: Problem, equations: tuple[Equation, ...]) -> Equation | None:
     sides = [split_known(e.expression, problem.atoms()) for e in equations]
-    if any(moving == 0 or known == 0 or _has_plain_unknown(problem, moving) for moving, known in sides):
+    if any(moving == 0 or known == 0 or bool(moving.free_symbols & {*problem.angles}) for moving, known in sides):
         return None
     unknowns = {unknown for e in equations for unknown in problem.unknowns_of(e.expression)}
     left = unknowns_of_squares(problem, [m for m, _ in sides])
@@ -146,8 +146,3 @@ def _sum_of_squares(problem: Problem, equations: tuple[Equation, ...]) -> Equati
     ]
     reach = naming.length("reach", *spanned, note="distance that the remaining links must span")
     return Equation(" + ".join(f"{e.label}²" for e in equations), moving - reach**2, naming.lets)
-
-
-def _has_plain_unknown(problem: Problem, expression: sp.Expr) -> bool:
-    """Whether an angle occurs outside sines and cosines: its square would be no simpler."""
-    return bool(expression.free_symbols & {*problem.angles})

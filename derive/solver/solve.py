@@ -14,7 +14,7 @@ from derive.equations.positions import positions, positions_and_distance, positi
 from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
 from derive.equations.rotations import rotations
 from derive.ir.program import Statement
-from derive.solver.derivation_record import DerivationRecord
+from derive.solver.derivation_record import DerivationRecord, with_known_legs
 from derive.solver.eliminations import (
     differences,
     eliminations,
@@ -24,7 +24,6 @@ from derive.solver.eliminations import (
     squares_of_three,
     squares_with_lengths,
 )
-from derive.solver.known_legs import with_known_legs
 from derive.solver.meeting_axes import circles_and_spheres
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from derive.solver.positive_steps import known_signs, where_roots_meet, with_known_signs

@@ -6,7 +6,6 @@ description: the tables of a machine: axes, parameters, configuration, limits, m
 every_branch: all branches as one function
 functions: the function of each program, with its arguments and the places of its results
 lanes: several poses at a time, for the native core alone
-layout: indents, comments and long statements
 package: the files of a mechanism, and those that all share
 printer: expressions
 program: a program as a function with early returns

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from itertools import count
 
 from derive.description.mechanism import Parameter, Role
-from derive.emit.braces import block
+from derive.emit.braced import block
 from derive.emit.c.printer import is_reserved, list_of, number, text
 from derive.emit.inputs import Inputs, Spelling, inputs_of, word_of
 from derive.ir.constants import LARGEST, LEAST

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from derive.description.mechanism import Joint
-from derive.emit.braces import block
+from derive.emit.braced import block
 from derive.emit.c.functions import FRAME
 from derive.emit.c.printer import C, status, type_of
 from derive.emit.c.program import Body, Refusals, function_of, taken

@@ -12,10 +12,9 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.description.mechanism import Joint
-from derive.emit.braces import block
+from derive.emit.braced import block
 from derive.emit.c.every_branch import straight_line
-from derive.emit.c.layout import comment, commented
-from derive.emit.c.printer import C, member, spelled, type_of
+from derive.emit.c.printer import C, comment, commented, member, spelled, type_of
 from derive.emit.c.program import function_of
 from derive.emit.every_branch import constants, given_to_branch, known_constants, read_of, signs
 from derive.emit.interface import read_by

@@ -10,14 +10,13 @@ from typing import Any
 from jinja2 import Environment
 
 from derive.emit import language
-from derive.emit.braces import harmless
+from derive.emit.braced import harmless
 from derive.emit.c.description import counts, in_words, inputs, tables
 from derive.emit.c.every_branch import MOST_SLOTS, constants_of_branches, every_branch_lines
 from derive.emit.c.every_branch import NAME as EVERY_BRANCH
 from derive.emit.c.functions import FRAME, Function, functions, rotation_function
 from derive.emit.c.lanes import constants_of_lanes
-from derive.emit.c.layout import comment, laid_out, page
-from derive.emit.c.printer import C, list_of, member, number, text, type_of
+from derive.emit.c.printer import C, comment, laid_out, list_of, member, number, page, text, type_of
 from derive.emit.c.program import (
     Body,
     Refusals,

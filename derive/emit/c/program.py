@@ -10,10 +10,9 @@ from functools import reduce
 import sympy as sp
 
 from derive.emit import refusals, walk
-from derive.emit.braces import block
+from derive.emit.braced import block
 from derive.emit.c.functions import Function, function_name
-from derive.emit.c.layout import comment
-from derive.emit.c.printer import C, list_of, spelled, status, text, type_of
+from derive.emit.c.printer import C, comment, list_of, spelled, status, text, type_of
 from derive.emit.interface import names_in, read_by
 from derive.ir.program import Call, FindRoot, Solve, Status
 from derive.ir.reason import Unit

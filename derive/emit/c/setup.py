@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.description.mechanism import Role
-from derive.emit.braces import block
+from derive.emit.braced import block
 from derive.emit.c.printer import C, member, number, type_of
 from derive.emit.c.program import Body, Refusals, function_of
 from derive.emit.inputs import Inputs

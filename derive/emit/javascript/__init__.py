@@ -4,7 +4,6 @@ It may import no other folder of `emit`.
 
 description: the description of a machine in its module, as plain data
 functions: the function of each program
-layout: indents, comments and long statements
 package: the files of a mechanism, and those of the runtime
 printer: expressions
 program: a program as a function with early returns

@@ -13,12 +13,11 @@ from jinja2 import Environment
 from derive.drawing.parts import Parts, parts_of
 from derive.drawing.pose import drawn_pose, nominal_machine
 from derive.emit import language
-from derive.emit.braces import block
+from derive.emit.braced import block
 from derive.emit.interface import arguments_of, read_by, search_of
 from derive.emit.javascript.description import description, inputs
 from derive.emit.javascript.functions import functions, rotation_function
-from derive.emit.javascript.layout import comment, laid_out
-from derive.emit.javascript.printer import PRINTER, RUNTIME, list_of, spelled, text
+from derive.emit.javascript.printer import PRINTER, RUNTIME, comment, laid_out, list_of, spelled, text
 from derive.emit.javascript.program import function_lines, looked_for, refusals_of
 from derive.emit.javascript.setup import setup_lines
 from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environment, head_of, runtime

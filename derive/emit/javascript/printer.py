@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Sequence
+from textwrap import wrap
 
 import sympy as sp
 
-from derive.emit.braced import Braced
-from derive.emit.javascript import layout
+from derive.emit.braced import Braced, broken, harmless
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import FUNCTIONS, KEYS, Select
 from derive.ir.program import Status
@@ -52,6 +52,28 @@ def function_name(program: str) -> str:
     return "find" + "".join(word[:1].upper() + word[1:] for word in program.split("_"))
 
 
+WIDTH = 120
+"""The most columns of a line."""
+_COMMENT = 100
+"""The most columns of a comment that stands above a statement."""
+
+
+def comment(note: str) -> list[str]:
+    """A note as lines of comment; no line for an empty one."""
+    return wrap(harmless(note), _COMMENT, initial_indent="// ", subsequent_indent="// ")
+
+
+def commented(line: str, note: str) -> list[str]:
+    """A statement with a note beside it, or above it if there is no room in most places."""
+    beside = f"{line} // {note}"
+    return [beside] if note and len(beside) <= _COMMENT else [*comment(note), line]
+
+
+def laid_out(lines: Sequence[str]) -> list[str]:
+    """Lines of which none that can be broken is too wide."""
+    return [part for line in lines for part in broken(line, WIDTH)]
+
+
 class JavaScript(Braced):
     """Writes expressions and the parts of statements."""
 
@@ -62,8 +84,8 @@ class JavaScript(Braced):
     square_root = "Math.sqrt"
 
     spelled = staticmethod(spelled)
-    comment = staticmethod(layout.comment)
-    commented = staticmethod(layout.commented)
+    comment = staticmethod(comment)
+    commented = staticmethod(commented)
 
     def name(self, symbol: sp.Symbol) -> str:
         return symbol.name if symbol == DEGREE else spelled(symbol.name)

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.emit import refusals, walk
-from derive.emit.braces import block
+from derive.emit.braced import block
 from derive.emit.interface import Shape, names, read_by
 from derive.emit.javascript.functions import Function
-from derive.emit.javascript.layout import comment
-from derive.emit.javascript.printer import PRINTER, function_name, list_of, spelled, status, text
+from derive.emit.javascript.printer import PRINTER, comment, function_name, list_of, spelled, status, text
 from derive.ir.program import Call, FindRoot, Solve, Status
 from derive.ir.symbols import PLACE, is_condition
 from derive.lowering.passes import structured

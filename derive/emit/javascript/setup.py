@@ -9,7 +9,7 @@ from collections.abc import Collection
 
 import sympy as sp
 
-from derive.emit.braces import block
+from derive.emit.braced import block
 from derive.emit.inputs import Inputs
 from derive.emit.javascript.printer import PRINTER, list_of, spelled, text
 from derive.emit.javascript.program import Body, refusals_of

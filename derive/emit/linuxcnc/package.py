@@ -11,11 +11,10 @@ from typing import Any
 from jinja2 import Environment
 
 from derive.description.mechanism import Parameter, Role, Turning
-from derive.emit.braces import harmless
+from derive.emit.braced import harmless
 from derive.emit.c import package as c
 from derive.emit.c.description import in_words, inputs
-from derive.emit.c.layout import page
-from derive.emit.c.printer import C, list_of, member, number, text
+from derive.emit.c.printer import C, list_of, member, number, page, text
 from derive.emit.interface import searches
 from derive.emit.language import GENERATED, Part, environment
 from derive.emit.linuxcnc.words import LETTERS, Orientation, Words, flange_of, turn_row, words_of

@@ -4,13 +4,11 @@ It may import the folders of `emit` but `page`. `Initialize` reads all inputs of
 the values that depend on them alone. Besides it only `AxisSettings` writes variables of a block: several tasks may call
 every other method at once.
 
-axis_limits: which blocks leave the test of their limits to the base block
 base: the base block: the methods that no geometry changes
 block: the data of a block that templates read
 calls: the programs of a block without the steps that the base block does
 description: the comment of a block, which the SoftMotion configurator shows
 inputs: the inputs of a block: type, default, range, unit
-layout: the text of a method without empty sections
 library: all files: text, PLCopenXML and the import script
 methods: the methods of a block, and the spelling of the values that they read
 pictures: the pictures in the descriptions of blocks, and the overview

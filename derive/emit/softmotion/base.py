@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 from jinja2 import Environment
 
-from derive.emit.softmotion.layout import tidy
 from derive.emit.st.contract import Contract, Parameter, Signature
-from derive.emit.st.layout import with_gathered
+from derive.emit.st.layout import tidy, with_gathered
 from derive.emit.st.rotation import about_z, followed
 
 _OF_AXES = ("Jacobian", "Margins", "AxisVelocities")

@@ -6,8 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from derive.description.mechanism import Joint, Kind
-from derive.emit.softmotion.axis_limits import limit_reasons
-from derive.emit.softmotion.calls import Command, branch_of, command_of, keeps_orientation, offset_branch_of
+from derive.emit.softmotion.calls import (
+    Command,
+    branch_of,
+    command_of,
+    keeps_orientation,
+    limit_reasons,
+    offset_branch_of,
+)
 from derive.emit.softmotion.inputs import Input, inputs, parameter_input
 from derive.emit.st.contract import Contract
 from derive.emit.st.expression import literal

@@ -20,8 +20,7 @@ from derive.geometry.pose import Screw, pose_of
 from derive.ir.constants import EXACT_ROTATION, FREE_ANGLE, ONE_TURN, ROTATION
 from derive.ir.program import Call, Status, shared
 from derive.kinematics.kinematics import Called, Kinematics
-from derive.report.cost import Bound, Cost, Costs, costs_of
-from derive.report.effort import open_slots, worst_inverse
+from derive.report.cost import Bound, Cost, Costs, costs_of, open_slots, worst_inverse
 from derive.report.reasons import workspace
 
 _WIDTH = 100

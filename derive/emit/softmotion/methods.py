@@ -14,9 +14,8 @@ from derive.emit.softmotion.base import BASE_VARIABLES, INHERITED, PRIVATE, Meth
 from derive.emit.softmotion.block import Block, constants, direct, setup_of, start_in, stored_as
 from derive.emit.softmotion.calls import branch_of, commanded, from_home, offset_branch_of, without_axes
 from derive.emit.softmotion.inputs import inputs
-from derive.emit.softmotion.layout import tidy
 from derive.emit.st.contract import Contract, Parameter, Signature
-from derive.emit.st.layout import with_gathered
+from derive.emit.st.layout import tidy, with_gathered
 from derive.emit.st.names import respelled
 from derive.emit.st.program import Printed, printed
 from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal, Tested

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from textwrap import wrap
 
-from derive.emit.braces import broken, indented
+from derive.emit.braced import broken, indented
 
 WIDTH = 110
 _INDENT = "  "
@@ -129,3 +129,12 @@ def case(label: int, target: str, text: str) -> list[str]:
     if len(f"{target} := {value}") <= WIDTH - 2 * INSIDE:
         return [head, f"{_INDENT}{target} := {value}"]
     return [head, f"{_INDENT}{target} :=", f"{2 * _INDENT}{value}"]
+
+
+def tidy(text: str) -> str:
+    """The text without empty sections, and with at most one empty line between paragraphs."""
+    text = re.sub(r"\n(VAR\n)\s*\n", r"\n\1", "\n" + text)
+    text = re.sub(r"\n\s*\n(END_VAR|END_IF|END_FOR)", r"\n\1", text)
+    text = re.sub(r"\nVAR\nEND_VAR(?=\n)", "", text)
+    text = re.sub(r"\n{3,}", "\n\n", text)
+    return text.strip("\n") if text.lstrip("\n").startswith("VAR") else "\n" + text.strip("\n")

@@ -8,7 +8,7 @@ from itertools import groupby
 
 import sympy as sp
 
-from derive.emit.braces import indented
+from derive.emit.braced import indented
 from derive.emit.expression import is_size_test
 from derive.emit.st.expression import StructuredText, limits_of
 from derive.emit.st.layout import INSIDE, WIDTH, commented, conjunction, wrapped

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-from derive.emit.braces import indented
+from derive.emit.braced import indented
 from derive.emit.st.contract import Signature
 from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import INSIDE, WIDTH, conjunction, wrapped

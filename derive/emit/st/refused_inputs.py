@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.emit.braces import indented
+from derive.emit.braced import indented
 from derive.emit.expression import is_size_test
 from derive.emit.st.expression import StructuredText, literal
 from derive.emit.st.layout import WIDTH, assigned, conjunction, quoted

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import sympy as sp
 
-from derive.emit.braces import indented
+from derive.emit.braced import indented
 from derive.emit.st.contract import Contract, Parameter, Signature
 from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import packed

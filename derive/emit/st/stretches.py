@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import sympy as sp
 
-from derive.emit.braces import indented
+from derive.emit.braced import indented
 from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import INSIDE, WIDTH
 from derive.emit.st.refusal import Refusal

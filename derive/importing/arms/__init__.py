@@ -2,7 +2,6 @@
 
 Like `importing`, it may import the folders from `ir` to `mechanisms`.
 
-aligned: neighbouring axes at nearly a multiple of 15 degrees, put at it
 conditions: how much each axis moves what a task commands, beyond what the other axes do
 lines: a robot as lines: the positions of its axes at joint values of zero
 pieces: the chain of an arm in the one form of a machine, without what is nearly zero

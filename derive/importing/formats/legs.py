@@ -12,9 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from derive.importing.formats.bodies import WORLD, Frame, link_of, own_joints
-from derive.importing.formats.connects import Closed, Loops
 from derive.importing.formats.documents import numbers, shown
-from derive.importing.formats.loops import is_followed
+from derive.importing.formats.loops import Closed, Loops, is_followed
 from derive.importing.robot import Array, Triple
 
 _SAME = 1e-5

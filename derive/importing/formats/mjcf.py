@@ -12,12 +12,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from derive.description.joints import Kind
-from derive.importing.formats.bodies import WORLD, Frame, frames_of, own_joints, passed
-from derive.importing.formats.connects import Loops
+from derive.importing.formats.bodies import WORLD, File, Frame, frames_of, own_joints, passed, places_of
 from derive.importing.formats.documents import between, limit, number, numbers, parsed, rounding, shown, whole
 from derive.importing.formats.legs import Meeting, NoRods, meeting_of
-from derive.importing.formats.loops import Joints, Loop, loop_notes
-from derive.importing.formats.orientations import File, places_of
+from derive.importing.formats.loops import Joints, Loop, Loops, loop_notes
 from derive.importing.formats.transmissions import Follower, driven
 from derive.importing.formats.trees import listed
 from derive.importing.robot import (

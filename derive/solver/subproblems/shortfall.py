@@ -103,7 +103,7 @@ def _of_rod(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: f
     for rod in sorted({s for f in expanded for s in f.free_symbols if s in lengths}, key=str):
         signs = [f.coeff(rod, 2) for f in expanded]
         if all(s in (1, -1) and not sp.expand(f - s * rod**2).has(rod) for s, f in zip(signs, expanded, strict=True)):
-            below = [-f if len(sums) == 1 else _below_zero(f) for f in sums]
+            below = [-f if len(sums) == 1 else ((sp.Abs(f) - f) / 2) for f in sums]
             needed = sp.Add(rod**2, *[s * b for s, b in zip(signs, below, strict=True)])
             return sp.Abs(Root(needed) - rod)
     return None
@@ -112,8 +112,3 @@ def _of_rod(sums: list[sp.Expr], values: Mapping[sp.Symbol, sp.Expr], lengths: f
 def _written_out(value: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
     """A sum with the names of products replaced by these products."""
     return value.xreplace({s: v for s in value.free_symbols if (v := values.get(s, s)).is_Mul})
-
-
-def _below_zero(value: sp.Expr) -> sp.Expr:
-    """How far a value is below zero; zero if it is not."""
-    return (sp.Abs(value) - value) / 2

@@ -6,8 +6,8 @@ from time import process_time
 
 import pytest
 
-from derive.emit.c.layout import laid_out as in_c
-from derive.emit.javascript.layout import laid_out as in_javascript
+from derive.emit.c.printer import laid_out as in_c
+from derive.emit.javascript.printer import laid_out as in_javascript
 from derive.emit.st.layout import wrapped
 
 LAID_OUT = {"C": lambda s: in_c([s]), "JavaScript": lambda s: in_javascript([s]), "Structured Text": wrapped}

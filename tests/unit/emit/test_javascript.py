@@ -9,8 +9,7 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.emit.javascript.layout import WIDTH, laid_out
-from derive.emit.javascript.printer import PRINTER, function_name, spelled, text
+from derive.emit.javascript.printer import PRINTER, WIDTH, function_name, laid_out, spelled, text
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select
 from derive.ir.symbols import count, flag, real
