@@ -11,8 +11,7 @@ from functools import cache
 
 import sympy as sp
 
-from derive.algebra.rings import is_rational, reduced_in_ring
-from derive.algebra.work import terms_of_products
+from derive.algebra.rings import is_rational, reduced_in_ring, terms_of_products
 from derive.ir.constants import DEGREE
 from derive.ir.symbols import cosine, sine
 from derive.work import counted, spend

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cache
-from math import isqrt
+from math import comb, isqrt
 from random import Random
 
 import sympy as sp
 from sympy.polys.galoistools import gf_degree, gf_gcd, gf_strip
 from sympy.polys.rings import PolyElement, PolyRing
 
-from derive.algebra.work import terms_of_products
 from derive.ir.symbols import cosine, sine
 from derive.work import spend
 
@@ -131,3 +130,17 @@ def _in_one(polynomial: PolyElement, values: list[int], place: int) -> list[int]
         coefficients[highest - monomial[place]] += term
     found: list[int] = gf_strip([c % _PRIME for c in coefficients])
     return found
+
+
+def terms_of_products(expression: sp.Expr) -> int:
+    """The number of products of terms that are multiplied where an expression is expanded."""
+    if isinstance(expression, sp.Add):
+        return sum(map(terms_of_products, expression.args))
+    if isinstance(expression, sp.Mul):
+        product = 1
+        for factor in expression.args:
+            product *= terms_of_products(factor)
+        return product
+    if isinstance(expression, sp.Pow) and expression.exp.is_Integer and expression.exp > 1:
+        return comb(terms_of_products(expression.base) + int(expression.exp) - 1, int(expression.exp))
+    return 1

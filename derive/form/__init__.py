@@ -9,6 +9,5 @@ headings: the letter x, y or z along which every line of a chain lies, and the t
 inner_names: the names that the inputs of a machine have inside a derivation
 lines: a chain as lines of its zero pose, and the point of every turn on its line
 machine: all rules, in their order; rods that end at the commanded point
-named_angles: names for the angles of a chain that are no right angles
 numbers: names for the numbers of a chain, and for the angles of a loop, whose numbers become exact
 """

@@ -10,7 +10,6 @@ importing: the whole import: read, undo rounding, bring into the simple form, wr
 naming: names of axes, parameters and blocks, made of the names in the file
 report: the report of an import for its user
 robot: the content of a robot file, as data that are independent of the file format
-rod_texts: rods that meet in the tip as text, and their report
-rods: rods that meet in the tip: the places where they hang, in the axes, and their lengths
+rods: rods that meet in the tip: where they hang, in the axes, their lengths, their text, and their report
 writing: a description as text
 """

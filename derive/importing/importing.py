@@ -26,8 +26,7 @@ from derive.importing.formats.urdf import read_urdf
 from derive.importing.naming import axis_names
 from derive.importing.report import Bounds, bounds, closed_form, neighbours, redundant, snaps, weak_axes
 from derive.importing.robot import Robot, Rods, UnreadableRobot, about
-from derive.importing.rod_texts import rods_report, rods_written
-from derive.importing.rods import linkage
+from derive.importing.rods import linkage, rods_report, rods_written
 from derive.importing.writing import FAR, Description, description_of, written
 
 UNITS = {"mm": 1000.0, "m": 1.0}

@@ -9,10 +9,9 @@ from itertools import pairwise
 import numpy as np
 
 from derive.description.joints import Kind
-from derive.importing.arms.conditions import motions
 from derive.importing.arms.lines import ROUNDING, Arm, Line, relation, spread
 from derive.importing.arms.snapping import Snapped
-from derive.importing.arms.tasks import WEAK, Followed, on_axis
+from derive.importing.arms.tasks import WEAK, Followed, motions, on_axis
 
 _NEARLY = 2e-2
 """The share of the size (or of one radian) up to which a relation of axes is called near."""

@@ -7,7 +7,7 @@ branches/: the step of the derivation that decides each branch
 build: from a description to all programs
 bundle: all programs lowered together and checked, with constants moved into the setup
 coupling: the programs that a coupling calls of an orientation kinematics, and the allowed offsets
-differential: the Jacobian, from A x' + B q' = 0
+differential: the Jacobian, from A x' + B q' = 0, and that of a platform from the lines of its legs
 flange_rotation: the rotations that the flange can have: their programs
 forward: forward kinematics, and the values of the inverse derivation at given axis values
 inverse: inverse kinematics of one branch, for a pose or for a point off the flange

@@ -3,7 +3,6 @@
 It may import the folders from `ir` to `solver`.
 
 cones: the largest angle that the joints of a rod allow, from its direction at the home pose
-jacobian: the Jacobian, from the lines of the legs
 legs: the legs (rods, and planes in which points stay) as lines: names, vectors, rows of the matrix A
 newton: the pose by Newton's method on the lengths of the rods
 passive: the coordinates that the loop moves but the task does not command

@@ -8,7 +8,6 @@ meeting_axes: the equation of a joint behind which two axes meet
 parallel_axes: a sum of angles about parallel axes, as one unknown
 positive_steps: two-root steps of which only one root belongs to the machine
 probe: the unknowns on which a sum of squares depends, found numerically
-residuals: the surplus equation of a trial, where one joint is known
 solve: the driver
 subproblems/: the rules
 unsolved: the error `Unsolved`: why no rule fits what is left, and what would help

@@ -8,7 +8,8 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
-from derive.equations.problem import Binding, Conditioning, Legs, StepDeterminant
+from derive.equations.problem import Binding, Conditioning, Legs, Problem, StepDeterminant
+from derive.equations.rotations import conditions
 from derive.ir.program import Let, Statement, rewritten
 from derive.ir.symbols import called, cosine, sine
 from derive.ir.verify import BrokenProgram
@@ -136,3 +137,27 @@ def _through_legs(statement: Statement, angle: sp.Symbol, legs: Legs) -> Stateme
         if ratio.is_number and sp.expand(b - ratio * pair[1]) == 0:
             return replace(statement, value=rest + ratio * leg)
     return statement
+
+
+def unknowns_in(problem: Problem) -> set[sp.Symbol]:
+    """The unknowns in the equations."""
+    return {u for e in problem.equations for u in problem.unknowns_of(e.expression)}
+
+
+def left_alone(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
+    """The residuals of the equations of a trial that hold none of its unknowns."""
+    alone = [e for e in problem.equations if not problem.unknowns_of(e.expression)]
+    bindings = [Binding(e.label, (), e.lets, residual=e.expression / problem.scale_of(e)) for e in alone]
+    return [left for b in bindings if (left := record.commit(b).residual) is not None]
+
+
+def left_of_rotation(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
+    """The expressions that vanish where the commanded rotation agrees with the positions."""
+    bindings = (Binding("rotation", (), c.lets, residual=c.expression) for c in conditions(problem))
+    found = [record.commit(binding).residual for binding in bindings]
+    return [residual for residual in found if residual is not None]
+
+
+def left_of_positions(problem: Problem, record: DerivationRecord) -> list[sp.Expr]:
+    """The residual of the positions where they have one equation too many; if it is zero, the others are zero."""
+    return [residual / problem.scale**2 for residual in record.residuals[:1]]

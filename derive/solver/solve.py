@@ -14,7 +14,14 @@ from derive.equations.positions import positions, positions_and_distance, positi
 from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
 from derive.equations.rotations import rotations
 from derive.ir.program import Statement
-from derive.solver.derivation_record import DerivationRecord, with_known_legs
+from derive.solver.derivation_record import (
+    DerivationRecord,
+    left_alone,
+    left_of_positions,
+    left_of_rotation,
+    unknowns_in,
+    with_known_legs,
+)
 from derive.solver.eliminations import (
     differences,
     eliminations,
@@ -27,7 +34,6 @@ from derive.solver.eliminations import (
 from derive.solver.meeting_axes import circles_and_spheres
 from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from derive.solver.positive_steps import known_signs, where_roots_meet, with_known_signs
-from derive.solver.residuals import left_alone, left_of_positions, left_of_rotation, unknowns_in
 from derive.solver.subproblems.affine_system import (
     affine,
     affine_across,

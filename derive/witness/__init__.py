@@ -6,14 +6,13 @@ differentiation, and the number of solutions by multi-start root finding.
 
 It imports descriptions, programs and the bundle `kinematics.kinematics`, and nothing of the derivation.
 
-assembly: the assembly mode of a loop that turns its platform, from the closure alone
 checks: the checks of forward kinematics, Jacobian and margins, and how errors are measured
 closure: the closure equations as CasADi functions
 disagreement: the errors if a derived formula is wrong, and if there is no pose to measure
 exact/: forward and inverse kinematics against the closure in a finite field, where it holds or not
 frames: the frames of a chain, multiplied out factor by factor; CasADi functions over rows of samples
 home_samples: axis values of a loop that turns its platform, around its home pose
-inverse: the checks of the inverse: every slot, the way back, no solution missing
+inverse: the checks of the inverse: every slot, the way back, no solution missing; the assembly mode of a platform
 orientation: the check of the orientations that a flange can have
 planted: poses close to where branches of a root scan meet
 roots: all solutions of the closure for a pose, from many starts

@@ -8,6 +8,5 @@ functions: the function of each program, with its arguments and the places of it
 lanes: several poses at a time, for the native core alone
 package: the files of a mechanism, and those that all share
 printer: expressions
-program: a program as a function with early returns
-setup: the function that computes the constants of a machine
+program: a program as a function with early returns; the function that computes the constants of a machine
 """

@@ -21,13 +21,14 @@ from derive.emit.c.program import (
     Body,
     Refusals,
     arguments_read,
+    constants_read,
     directions_of,
     function_lines,
     function_of,
     of_search,
+    setup,
     taken,
 )
-from derive.emit.c.setup import constants_read, setup
 from derive.emit.interface import arguments_of, read_by, search_of, searches
 from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environment, head_of, runtime
 from derive.ir.symbols import symbols_of

@@ -18,8 +18,7 @@ from derive.emit.interface import arguments_of, read_by, search_of
 from derive.emit.javascript.description import description, inputs
 from derive.emit.javascript.functions import functions, rotation_function
 from derive.emit.javascript.printer import PRINTER, RUNTIME, comment, laid_out, list_of, spelled, text
-from derive.emit.javascript.program import function_lines, looked_for, refusals_of
-from derive.emit.javascript.setup import setup_lines
+from derive.emit.javascript.program import function_lines, looked_for, refusals_of, setup_lines
 from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environment, head_of, runtime
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths

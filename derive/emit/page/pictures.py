@@ -21,11 +21,10 @@ from derive.drawing.drawing import Drawing, drawing_of, scene_at
 from derive.drawing.pose import Pose, drawn_pose, is_inside, nominal_machine, pose_at
 from derive.drawing.scene import Scene
 from derive.emit.picture import style
-from derive.emit.picture.canvas import WIDTH
+from derive.emit.picture.canvas import ALIKE, WIDTH, elements
 from derive.emit.picture.ink import Mark
 from derive.emit.picture.machine import Machine as Sketch
 from derive.emit.picture.page import page
-from derive.emit.picture.vector import ALIKE, elements
 from derive.emit.picture.view import Box
 from derive.kinematics.kinematics import Kinematics
 from derive.report.derived import Derived

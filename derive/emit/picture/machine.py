@@ -11,11 +11,20 @@ from derive.drawing.drawing import Drawing
 from derive.drawing.scene import ORIGIN, Body, Dimension, Point, Segment, Slide, Turn
 from derive.emit.picture import style
 from derive.emit.picture.ink import Area, Mark, Vector
-from derive.emit.picture.naming import name_angle, name_axes, name_length, name_motor, name_point, name_slide, name_turn
+from derive.emit.picture.naming import (
+    in_short,
+    name_angle,
+    name_axes,
+    name_length,
+    name_motor,
+    name_point,
+    name_slide,
+    name_turn,
+    spelled,
+)
 from derive.emit.picture.placing import Sheet, around
-from derive.emit.picture.rails import FREE, rails, slide_arrow
-from derive.emit.picture.spelling import in_short, spelled
 from derive.emit.picture.symbols import (
+    FREE,
     angle_lines,
     bar,
     belt,
@@ -24,6 +33,8 @@ from derive.emit.picture.symbols import (
     motor_radius,
     opening,
     rail,
+    rails,
+    slide_arrow,
     triad,
     turning,
 )

@@ -11,9 +11,9 @@ from derive.emit.picture import style
 from derive.emit.picture.canvas import WIDTH
 from derive.emit.picture.ink import Mark, Text
 from derive.emit.picture.machine import Machine
+from derive.emit.picture.naming import spelled
 from derive.emit.picture.panel import HEIGHT, chosen, panels
-from derive.emit.picture.rails import is_stacked
-from derive.emit.picture.spelling import spelled
+from derive.emit.picture.symbols import is_stacked
 from derive.emit.picture.view import Box
 
 _PANEL = 214.0

@@ -8,9 +8,18 @@ import sympy as sp
 
 from derive.emit.python import calls
 from derive.emit.python.layout import note_lines, taken_apart, tuple_of
-from derive.emit.python.loops import array_end, array_head
 from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, spelled, words
-from derive.emit.python.program import Method, binding_lines, constants_of, has_search, step_lines, unpacked, values_of
+from derive.emit.python.program import (
+    Method,
+    array_end,
+    array_head,
+    binding_lines,
+    constants_of,
+    has_search,
+    step_lines,
+    unpacked,
+    values_of,
+)
 from derive.ir.primitives import FUNCTIONS, KEYS, NearestPeriod
 from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve, Statement
 from derive.ir.symbols import START_POSITION, START_ROTATION, Flag, is_count, symbols_of

@@ -16,8 +16,7 @@ from derive.emit.python.printer import ScalarPrinter, primitives_in
 from derive.emit.python.program import Method, constants_of, has_search, scalar_body, unpacked
 from derive.emit.python.refusal import explained
 from derive.emit.python.runtime import templates
-from derive.emit.python.straight_line.finish import Function
-from derive.emit.python.straight_line.unrolled import Unrolled, is_trusted, trusted_branch, unrolled
+from derive.emit.python.straight_line import Function, Unrolled, is_trusted, trusted_branch, unrolled
 from derive.ir.passes import without_reasons
 from derive.ir.program import FindRoot, Iterate
 from derive.kinematics.kinematics import Kinematics

@@ -2,5 +2,4 @@
 
 neighbours: what a refused arm misses: axes that do not meet, tasks that fit
 no_pose: the reason why a machine has no pose at its nominal dimensions
-number_of_joints: the refusal of more or fewer joints than commanded quantities
 """

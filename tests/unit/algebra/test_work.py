@@ -7,8 +7,7 @@ import sympy as sp
 
 from derive.algebra import rings
 from derive.algebra.normal_form import factored, reduce_units
-from derive.algebra.rings import common_factor, may_be_square
-from derive.algebra.work import terms_of_products
+from derive.algebra.rings import common_factor, may_be_square, terms_of_products
 from derive.ir.symbols import cosine, real, sine
 from derive.work import TooMuchWork, at_most, counted, spend
 

@@ -13,8 +13,8 @@ from PIL import Image
 from derive.command.catalogue import OUTPUT
 from derive.description.mechanism import Mechanism
 from derive.emit.picture.canvas import WIDTH, pictures, text_width
+from derive.emit.picture.naming import spelled
 from derive.emit.picture.page import page
-from derive.emit.picture.spelling import spelled
 from tests.unit.drawing.machines import CATALOGUE, drawn
 
 ST = OUTPUT / "st"

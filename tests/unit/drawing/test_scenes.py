@@ -12,7 +12,7 @@ from derive.drawing.drawing import is_turned_round
 from derive.drawing.labels import axis_name
 from derive.drawing.scene import Body, Scene
 from derive.emit.picture.ink import Line
-from derive.emit.picture.rails import rails, slide_arrow
+from derive.emit.picture.symbols import rails, slide_arrow
 from derive.emit.picture.view import Box, fitted
 from tests.unit.drawing.machines import CATALOGUE, CHAINS, KINDS, RODS, Drawn, drawn
 
