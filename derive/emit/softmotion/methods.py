@@ -19,14 +19,7 @@ from derive.emit.st.layout import tidy, with_gathered
 from derive.emit.st.names import respelled
 from derive.emit.st.program import Printed, printed
 from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal, Tested
-from derive.emit.st.refused_inputs import (
-    OfInputs,
-    chained,
-    conditions_first,
-    pairs_of_limits,
-    with_limits_of_machine,
-    without_limits,
-)
+from derive.emit.st.refused_inputs import OfInputs, conditions_first, pairs_of_limits, without_limits
 from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st.shared import method_name, own_names, signature_of
 from derive.equations.windows import windows
@@ -216,9 +209,9 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
         given = dict(inputs(kinematics).names)
         stored = {let: stored_as(kinematics, output) for let, output in direct(kinematics, program).items()}
         limits = pairs_of_limits(program, windows(kinematics.mechanism))
-        refused = OfInputs(signature, errors, error, refused_texts(kinematics), limits)
-        text = chained(printed(conditions_first(without_limits(program, limits)), given, stored, taken, refused))
-        return with_limits_of_machine(text, limits, [axis.name for axis in block.axes], given)
+        axes = [axis.name for axis in block.axes]
+        refused = OfInputs(signature, errors, error, refused_texts(kinematics), limits, axes)
+        return printed(conditions_first(without_limits(program, limits)), given, stored, taken, refused)
     spelled = dict(spelled_inputs(kinematics))
     if "start" in {p.name for p in signature.parameters}:
         spelled |= start_in("start")

@@ -9,7 +9,6 @@ from itertools import groupby
 import sympy as sp
 
 from derive.emit.braced import indented
-from derive.emit.expression import is_size_test
 from derive.emit.st.expression import StructuredText, limits_of
 from derive.emit.st.layout import INSIDE, WIDTH, commented, conjunction, wrapped
 from derive.emit.st.names import respelled, spellings, type_name
@@ -18,7 +17,7 @@ from derive.emit.st.shared import OUTCOME, call_lines
 from derive.emit.st.stretches import SIDE, has_sides, stretch_lines
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Root, Select
-from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement, Status
+from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement
 from derive.ir.tree import If, Item, bound_in
 from derive.ir.types import type_of
 from derive.lowering.passes import structured
@@ -79,7 +78,7 @@ def _outcome(program: Program, refusal: Refusal) -> Iterator[str]:
 
 
 def _body(body: Sequence[Item], printer: StructuredText, refusal: Refusal, width: int = WIDTH) -> Iterator[str]:
-    for kind, group in groupby(body, key=lambda s: _kind(s, printer)):
+    for kind, group in groupby(body, key=lambda s: _kind(s, printer, refusal)):
         statements = list(group)
         first = statements[0]
         if isinstance(first, If):
@@ -100,7 +99,7 @@ def _body(body: Sequence[Item], printer: StructuredText, refusal: Refusal, width
         lets = [s for s in statements if isinstance(s, Let)]
         if isinstance(first, Require):
             lines = refusal.lines([s for s in statements if isinstance(s, Require)], printer)
-            yield from commented(lines, respelled(first.comment, printer.names))
+            yield from commented(lines, respelled(refusal.note(first), printer.names))
         elif isinstance(kind[0], str):
             yield from commented(_choice(kind[0], lets, printer, width), _notes(lets, printer.names), width)
         else:
@@ -132,24 +131,17 @@ def _note_of(choice: If, names: Mapping[str, str]) -> str:
     return "; ".join(dict.fromkeys(respelled(comment, names) for comment in choice.comments))
 
 
-Kind = tuple[Status | str | None, object, bool]
-
-
-def _kind(statement: Item, printer: StructuredText) -> Kind:
-    """The key by which consecutive statements are grouped and printed together.
-
-    Conditions with the same refusal and the same subject become one condition. Tests of the size of inputs stay
-    separate, because AND evaluates both sides, and what follows is defined only where these tests hold. Selections by
-    one condition become one IF.
+def _kind(statement: Item, printer: StructuredText, refusal: Refusal) -> tuple[str | None, object]:
+    """The key by which consecutive statements are grouped and printed together: selections by one condition become one
+    IF, and a refusal says which conditions it refuses together.
     """
     if isinstance(statement, Require):
-        subject = None if statement.reason is None else statement.reason.subject
-        return statement.otherwise, subject, all(map(is_size_test, sp.And.make_args(statement.condition)))
+        return None, (Require, refusal.key(statement))
     if not isinstance(statement, Let):
-        return None, statement, False
+        return None, statement
     if isinstance(statement.value, Select) and limits_of(statement.value) is None:
-        return printer.print(statement.value.args[0]), "", False
-    return None, "", False
+        return printer.print(statement.value.args[0]), ""
+    return None, ""
 
 
 def _notes(lets: Sequence[Let], names: Mapping[str, str]) -> str:

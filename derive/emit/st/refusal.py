@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from derive.emit.braced import indented
+from derive.emit.expression import is_size_test
 from derive.emit.st.contract import Signature
 from derive.emit.st.expression import StructuredText
 from derive.emit.st.layout import INSIDE, WIDTH, conjunction, wrapped
@@ -50,6 +51,19 @@ class Refusal:
             return ("RETURN;",)
         value = "FALSE" if self.signature.returns == "BOOL" else error
         return (f"{self.signature.name} := {value};", "RETURN;")
+
+    def key(self, require: Require) -> object:
+        """The key by which successive conditions are refused together: the same refusal and the same subject.
+
+        Tests of the size of inputs stay separate, because AND evaluates both sides, and what follows is defined only
+        where these tests hold.
+        """
+        subject = None if require.reason is None else require.reason.subject
+        return require.otherwise, subject, all(map(is_size_test, sp.And.make_args(require.condition)))
+
+    def note(self, require: Require) -> str:
+        """The comment above conditions that are refused together, of which this is the first."""
+        return require.comment
 
     def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
         """The lines that refuse if conditions with the same refusal do not all hold."""

@@ -6,9 +6,9 @@ Other conditions stand behind these statements, where every number is known to b
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 
 import sympy as sp
 
@@ -16,7 +16,6 @@ from derive.emit.braced import indented
 from derive.emit.expression import is_size_test
 from derive.emit.st.expression import StructuredText, literal
 from derive.emit.st.layout import WIDTH, assigned, conjunction, quoted
-from derive.emit.st.program import Printed
 from derive.emit.st.refusal import Refusal
 from derive.equations.windows import Window
 from derive.ir.constants import LARGEST, LEAST
@@ -25,12 +24,11 @@ from derive.ir.program import Let, Program, Require
 
 REFUSAL = "refusal"
 """The instance variable that holds the reason why Initialize refused."""
-_BEHIND = f"IF {REFUSAL} <> '' THEN\n  RETURN;\nEND_IF\n"
-_ABOVE = r"(?://[^\n]*\n)*"
-_REFUSING = re.compile(r"(IF NOT \([^;]*?\) THEN\n)(  refusal :=\s+'[^\n]*';\n)  RETURN;\nEND_IF\n")
-_CHAIN = re.compile(rf"(?:{_ABOVE}{_REFUSING.pattern})+")
-_CALL = re.compile(rf"{_ABOVE}((?:Check\w*|ReadLimits)\([\s\S]*?'\);)(?:  //[^\n]*)?\n")
-_CALLS = re.compile(rf"(?:{_CALL.pattern})+")
+_BEHIND = (f"IF {REFUSAL} <> '' THEN", "  RETURN;", "END_IF")
+
+
+_Called = tuple[str, tuple[str, ...]]
+"""A method that checks, and its arguments."""
 
 
 @dataclass(frozen=True)
@@ -42,23 +40,47 @@ class OfInputs(Refusal):
     limits: Mapping[sp.Basic, tuple[Window, int]]
     """The pairs of limits, by the conditions on them, and the axes whose limits they are."""
 
-    def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
-        """The lines that refuse, for each condition separately."""
-        return [line for require in requires for line in self._refusing(require, printer)]
+    axes: Sequence[str]
+    """The names of the axes."""
 
-    def _refusing(self, require: Require, printer: StructuredText) -> list[str]:
+    def key(self, require: Require) -> object:
+        """All successive conditions come together."""
+        return None
+
+    def note(self, require: Require) -> str:
+        """No comment: the texts of the refusals say what is refused."""
+        return ""
+
+    def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
+        """The calls that check inputs, and other conditions in chains of ELSIF, each followed by RETURN where one of
+        them has refused; behind the calls that read limits the limits of the machine, of which the last rule counts.
+        """
+        found: list[str] = []
+        called = {require: self._called(require.condition, printer) for require in requires}
+        last = max((k for k, r in enumerate(requires) if (called[r] or ("",))[0] == "ReadLimits"), default=-1)
+        for is_call, group in groupby(enumerate(requires), lambda numbered: called[numbered[1]] is not None):
+            numbers, alike = zip(*group, strict=True)
+            for number, require in zip(numbers, alike, strict=True):
+                first, *others = self._refusing(require, called[require], printer)
+                found += [first if is_call or number == numbers[0] else f"ELS{first}", *others]
+            found += [*([] if is_call else ["END_IF"]), *_BEHIND]
+            found += _limits_of_machine(self.limits, self.axes, printer) if last in numbers else []
+        return found
+
+    def _refusing(self, require: Require, called: _Called | None, printer: StructuredText) -> list[str]:
+        """The call, or the condition with what is done where it does not hold."""
         assert require.reason is not None
         text = quoted(self.texts[require.reason.subject.name])
-        if (called := self._called(require.condition, printer)) is not None:
+        if called is not None:
             method, given = called
             head, tail = f"{method}({', '.join(given)},", f"{text});"
             return [f"{head} {tail}"] if len(head) + len(tail) < WIDTH else [head, f"    {tail}"]
         parts = [printer.print(part) for part in sp.ordered(sp.And.make_args(require.condition))]
         whole = f"  {REFUSAL} := {text};"
         refused = [whole] if len(whole) <= WIDTH else [f"  {REFUSAL} :=", f"    {text};"]
-        return [*conjunction("IF NOT (", parts, ") THEN"), *refused, "  RETURN;", "END_IF"]
+        return [*conjunction("IF NOT (", parts, ") THEN"), *refused]
 
-    def _called(self, condition: sp.Basic, printer: StructuredText) -> tuple[str, tuple[str, ...]] | None:
+    def _called(self, condition: sp.Basic, printer: StructuredText) -> _Called | None:
         """The method that checks the condition, and its arguments; None if no method checks it."""
         if condition in self.limits:
             window, axis = self.limits[condition]
@@ -92,23 +114,6 @@ def _is_plain(condition: sp.Basic) -> bool:
     return isinstance(condition, sp.Rel) and condition.lhs.is_Symbol and condition.rhs.is_number
 
 
-def chained(program: Printed) -> Printed:
-    """The program with successive conditions in one chain of ELSIF, after which it refuses, as it does after the calls
-    that check inputs. The texts of the refusals serve as comments.
-    """
-
-    def chain(found: re.Match[str]) -> str:
-        plain = re.sub(r"^//[^\n]*\n", "", found[0], flags=re.MULTILINE)
-        lines = _REFUSING.sub(r"\1\2", plain).rstrip("\n").replace("\nIF NOT (", "\nELSIF NOT (")
-        return f"{lines}\nEND_IF\n{_BEHIND}"
-
-    def calls(found: re.Match[str]) -> str:
-        return _CALL.sub(r"\1\n", found[0]) + _BEHIND
-
-    body = _CALLS.sub(calls, _CHAIN.sub(chain, f"{program.body}\n"))
-    return replace(program, body=body.rstrip("\n"))
-
-
 def conditions_first(program: Program) -> Program:
     """The program with the conditions on inputs alone before all others, so that they stand together."""
     inputs = set(program.inputs)
@@ -133,19 +138,6 @@ def without_limits(program: Program, limits: Mapping[sp.Basic, tuple[Window, int
         body=tuple(s for s in program.body if not (isinstance(s, Let) and s.name.name in names)),
         outputs=tuple(o for o in program.outputs if o.name not in outputs),
     )
-
-
-def with_limits_of_machine(
-    program: Printed, limits: Mapping[sp.Basic, tuple[Window, int]], axes: Sequence[str], names: Mapping[str, str]
-) -> Printed:
-    """The program with further statements behind those that read limits: they set the limits of axes for which none are
-    given but the machine has some; the last rule counts. names: the spelling of inputs.
-    """
-    lines = _limits_of_machine(limits, axes, StructuredText(names))
-    if not lines:
-        return program
-    place = program.body.index(_BEHIND, program.body.rindex("ReadLimits(")) + len(_BEHIND)
-    return replace(program, body="\n".join([program.body[:place].rstrip("\n"), *lines, program.body[place:]]))
 
 
 def _limits_of_machine(
