@@ -38,8 +38,13 @@ def calls_of(question: Answer) -> list[Call]:
     if question["call"] == "inverse":
         frame, reference = _frame(question["frame"]), question["reference"]
         named = [["inverse", frame, given, reference] for given in question["configurations"]]
-        return [["inverseAll", frame, reference], *named]
+        return [*([["inverseAll", frame, reference]] if _asks_all(question) else []), *named]
     return []
+
+
+def _asks_all(question: Answer) -> bool:
+    """Whether all branches are asked for together: an FMU has no such call."""
+    return question.get("all", True) is True
 
 
 def _of_axes(question: Answer) -> list[Any]:
@@ -76,7 +81,8 @@ class Comparison:
             self._singularity(question, next(answers))
             self._jacobian(question, next(answers))
         elif question["call"] == "inverse":
-            self._slots(question, next(answers))
+            if _asks_all(question):
+                self._slots(question, next(answers))
             for given in question["configurations"]:
                 self._named(question, given, next(answers))
         self.found[before:] = [f"{found}; asked of {self.robot.made!r}: {question}" for found in self.found[before:]]
