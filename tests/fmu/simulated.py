@@ -164,7 +164,7 @@ def _singularity(one: Simulated, axes: Sequence[float]) -> Answer:
 
 def _jacobian(one: Simulated, axes: Sequence[float]) -> Answer:
     entries, width = one.all_of("jacobian"), len(axes)
-    return one.status("jacobian") | {"rows": [entries[k : k + width] for k in range(0, len(entries), width)]}
+    return one.status("jacobian") | {"rows": [entries[k : k + width] for k in range(0, len(entries), width or 1)]}
 
 
 def _inverse(one: Simulated, frame: Answer, configuration: Sequence[int], reference: Sequence[float]) -> Answer:
