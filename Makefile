@@ -17,7 +17,7 @@ BENCH := .venv-bench
 
 WHEEL := .venv-wheel
 
-.PHONY: generate check test sweep quick report bench wheel javascript c clang linuxcnc view prove-linuxcnc
+.PHONY: generate check test sweep quick report bench wheel javascript c clang linuxcnc fmu view prove-linuxcnc
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -30,11 +30,11 @@ javascript: $(READY)
 c: $(READY)
 	$(RUN) -m derive generate --language c --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
 
-# Kinematics modules of LinuxCNC, into build/linuxcnc: of the catalogue; with MECHANISM=Kin_Scara3_Z of this machine; with
-# MECHANISM=my_machine.py of a machine of your own.
-linuxcnc: $(READY)
+# Kinematics modules of LinuxCNC into build/linuxcnc, FMUs of FMI 3.0 into build/fmu: of the catalogue; with
+# MECHANISM=Kin_Scara3_Z of this machine; with MECHANISM=my_machine.py of a machine of your own.
+linuxcnc fmu: $(READY)
 	$(RUN) -m derive $(if $(wildcard $(MECHANISM)),derive $(MECHANISM) --out $(OUT),generate --output $(OUT) \
-		$(if $(MECHANISM),--only $(MECHANISM)) $(if $(FRESH),--fresh)) --language linuxcnc $(OPTIONS)
+		$(if $(MECHANISM),--only $(MECHANISM)) $(if $(FRESH),--fresh)) --language $@ $(OPTIONS)
 
 # The same sources through clang, which the package ziglang brings; the tests compile them with gcc.
 clang: c

@@ -18,6 +18,7 @@ from derive.description.catalogue import Entry
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.remedies import with_remedy
 from derive.emit.c import package as c
+from derive.emit.fmu import package as fmu
 from derive.emit.javascript import package as javascript
 from derive.emit.language import Language, Part
 from derive.emit.linuxcnc import package as linuxcnc
@@ -34,7 +35,7 @@ _LOADED = [__name__, *(f"derive.{room}" for room in _ROOMS)]
 """The modules that deriving needs, which the processes have before they begin."""
 WRITTEN = (python.name, StructuredTextFiles.name)
 """The languages that are written unless others are asked for."""
-_OTHERS: tuple[Language, ...] = (javascript, c, linuxcnc)
+_OTHERS: tuple[Language, ...] = (javascript, c, linuxcnc, fmu)
 LANGUAGES = (*WRITTEN, *(language.name for language in _OTHERS))
 _TITLES = {python.name: python.title, StructuredTextFiles.name: StructuredTextFiles.title} | {
     language.name: language.title for language in _OTHERS
@@ -245,9 +246,10 @@ def files_of(
         texts = _texts(built, outputs)
         if cache and whole:
             cache.write(whole, texts)
-    return {name: text.encode() for name, text in texts.items()} | {
-        n: data for one in built for n, data in one.pictures.items() if Path(n).parts[0] in names
-    }
+    found = {n: data for one in built for n, data in one.pictures.items() if Path(n).parts[0] in names}
+    found |= {path: text.encode() for path, text in texts.items() if Path(path).parts[0] != fmu.name}
+    archived = {str(Path(path).relative_to(fmu.name)): text for path, text in texts.items() if path not in found}
+    return found | {str(Path(fmu.name) / path): data for path, data in fmu.finished(archived).items()}
 
 
 def _texts(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, str]:

@@ -2,7 +2,7 @@
 
 It may import the folders from `ir` to `drawing`. No other folder knows a language, except `view`. Its own folders form
 layers, each of which may import those before it: first `c`, `javascript`, `plcopen` and `picture`, then `python`, then
-`st` and `linuxcnc`, then `softmotion`, then `page`.
+`st`, `linuxcnc` and `fmu`, then `softmotion`, then `page`.
 
 What is the same for every mechanism stands in `runtime/`, in a folder for each language: it is copied, and reads the
 constants of the compiler from one file that the language writes. `runtime/native` has the extension module that joins
@@ -12,6 +12,7 @@ braced: how C and JavaScript spell expressions and statements; indents, blocks, 
 c/: C99
 every_branch: all branches of the inverse as one straight line, for Python and C
 expression: the walk over an expression that all languages share; the conditions of a refusal
+fmu/: FMUs of FMI 3.0, around the output of `c`
 inputs: the names of the inputs of a machine in a language
 interface: the programs of a machine as functions: summary, arguments and results
 javascript/: JavaScript

@@ -54,12 +54,17 @@ def described(program: Path) -> Description:
 
 
 def said(question: Answer, known: Description) -> Answer | None:
-    """A question of the corpus as C can put it: what has another form than its arrays cannot be asked."""
+    """A question of the corpus as C can put it."""
+    return as_arrays(question, len(known.axes), known.bytes)
+
+
+def as_arrays(question: Answer, axes: int, count: int) -> Answer | None:
+    """A question of the corpus, if it can be put in arrays of so many axes, and so many bytes of a configuration."""
     frames = [question[key] for key in ("frame", "start") if key in question]
     lists = [question[key] for key in ("axes", "reference") if question.get(key) is not None]
-    if not all(_is_frame(frame) for frame in frames) or not all(_is_row(row, len(known.axes)) for row in lists):
+    if not all(_is_frame(frame) for frame in frames) or not all(_is_row(row, axes) for row in lists):
         return None
-    kept = [one for one in question.get("configurations", ()) if one is None or _is_bytes(one, known.bytes)]
+    kept = [one for one in question.get("configurations", ()) if one is None or _is_bytes(one, count)]
     return question | ({"configurations": kept} if "configurations" in question else {})
 
 

@@ -1,4 +1,4 @@
-"""C and JavaScript: how a machine is written in each, and how it is asked."""
+"""C, JavaScript and FMUs: how a machine is written in each, and how it is asked."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from typing import Any
 
 from derive.description.mechanism import Mechanism
 from derive.emit.c import package as in_c
+from derive.emit.fmu import package as in_fmu
 from derive.emit.javascript import package as in_javascript
 from derive.emit.language import Part
 from derive.kinematics.kinematics import Kinematics
 from tests.c import machine as driver
 from tests.c import programs
+from tests.fmu import simulated
 from tests.javascript import comparison, modules, node
 from tests.mechanisms import kinematics_of
 
@@ -26,13 +28,13 @@ class Language:
 
     name: str
     part: Callable[[Kinematics], Part | None]
-    written: Callable[[Part], Path]
-    """The program, or the module, of what is written."""
-    of_catalogue: Callable[[str], Path]
-    ask: Callable[[Path, list[Answer]], list[Answer]]
+    written: Callable[[Part], Any]
+    """The program, the module or the FMU of what is written."""
+    of_catalogue: Callable[[str], Any]
+    ask: Callable[[Any, list[Answer]], list[Answer]]
     """What machines answer, {"parameters": …, "calls": …} each."""
-    parameters: Callable[[Path], Sequence[Answer]]
-    asked: Callable[[Path], Callable[[Answer], Answer | None]]
+    parameters: Callable[[Any], Sequence[Answer]]
+    asked: Callable[[Any], Callable[[Answer], Answer | None]]
     """A question of the corpus as the language can put it."""
     words: Mapping[str, str]
     """Inputs that are called otherwise than in Python."""
@@ -40,13 +42,13 @@ class Language:
     def __str__(self) -> str:
         return self.name
 
-    def of(self, mechanism: Mechanism) -> Path:
+    def of(self, mechanism: Mechanism) -> Any:
         """The program, or the module, of a machine of a user's own."""
         part = self.part(kinematics_of(mechanism))
         assert part is not None
         return self.written(part)
 
-    def compared(self, program: Path, recording: list[Answer]) -> list[comparison.Comparison]:
+    def compared(self, program: Any, recording: list[Answer]) -> list[comparison.Comparison]:
         """The machines of a recording, each compared."""
         return comparison.compared(recording, lambda machines: self.ask(program, machines), self.asked(program))
 
@@ -66,4 +68,7 @@ JAVASCRIPT = Language(
     lambda module, machines: node.ask(module, machines)["answers"],
     lambda module: node.ask(module, [])["description"]["parameters"], lambda module: dict, _NAMES,
 )  # fmt: skip
+FMU = Language(
+    "FMU", in_fmu.part, simulated.written, simulated.fmu_of, simulated.ask, lambda fmu: [], simulated.asked, {}
+)
 LANGUAGES = (C, JAVASCRIPT)

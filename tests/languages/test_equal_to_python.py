@@ -1,5 +1,5 @@
-"""Every mechanism answers in C and in JavaScript as in Python: at every pose of the corpus, singular, beyond limits, or
-garbage."""
+"""Every mechanism answers in C, in JavaScript and as an FMU as in Python: at every pose of the corpus, singular, beyond
+limits, or garbage."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ import pytest
 from tests.corpus.dimensions import DIMENSIONS
 from tests.corpus.recording import read
 from tests.javascript import comparison
-from tests.languages.language import JAVASCRIPT, LANGUAGES, Language
+from tests.languages.language import FMU, JAVASCRIPT, LANGUAGES, Language
 
 pytestmark = pytest.mark.broad
 
 
 @pytest.mark.slow("Ac6_RZ", "ThreeParallel", "Planar")
 @pytest.mark.long("Hexapod", "P2C_Type1", "Pos_RRR", "Wrist2", "Ac6_RZ", "-C")
-@pytest.mark.parametrize("language", LANGUAGES, ids=str)
+@pytest.mark.parametrize("language", (*LANGUAGES, FMU), ids=str)
 @pytest.mark.parametrize("name", DIMENSIONS)
 def test_answers_are_those_of_python(language: Language, name: str) -> None:
     """Every answer is that of the package, and enough of them are solutions and refusals with reasons."""
     every = language.compared(language.of_catalogue(name), read(name))
     comparison.check(name, every)
-    if language is JAVASCRIPT:  # C has no sentences
+    if language is JAVASCRIPT:  # the others have no sentences
         assert sum(one.sentences for one in every) >= 0.9 * sum(one.refused for one in every)
