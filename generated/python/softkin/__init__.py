@@ -7,8 +7,10 @@ A class is loaded when it is first used, and NumPy is loaded with the first batc
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING
+from os import PathLike
+from typing import TYPE_CHECKING, Any
 
+from softkin._calibrated import Calibrated
 from softkin._core import Mechanism
 from softkin._coupled import Coupled
 from softkin._frame import Frame, orthonormalize
@@ -95,6 +97,7 @@ __all__ = [
     "BipodRotary",
     "CAxis",
     "CAxisTool",
+    "Calibrated",
     "Configuration",
     "ConfigurationByte",
     "Coupled",
@@ -155,6 +158,7 @@ __all__ = [
     "__version__",
     "catalogue",
     "core",
+    "load",
     "orthonormalize",
 ]
 
@@ -223,17 +227,28 @@ def catalogue() -> dict[str, type[Mechanism]]:
     return {name: _load(class_name) for name, (_, class_name) in _CLASSES.items()}
 
 
-def _load(class_name: str) -> type[Mechanism]:
-    module = import_module(f"{__name__}.{_MODULES[class_name]}")
-    found: type[Mechanism] = getattr(module, class_name)
-    globals()[class_name] = found
+def _load(name: str) -> Any:
+    found = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
+    globals()[name] = found
     return found
+
+
+def load(path: str | PathLike[str]) -> Mechanism:
+    """The machine of a file with what `to_json` gives: calibrated, mounted, coupled, in radians, or none of these.
+
+    Raises OSError for a file that cannot be read, NOT_INITIALIZED for one that holds no machine.
+    """
+    try:
+        with open(path, encoding="utf-8") as file:
+            return Mechanism.from_json(file.read())
+    except (KinematicsError, UnicodeDecodeError) as error:
+        raise KinematicsError(Status.NOT_INITIALIZED, f"{path}: {error}") from error
 
 
 if not TYPE_CHECKING:  # a type checker reads the imports above instead, and so finds misspelt names
 
-    def __getattr__(name: str) -> type[Mechanism]:
-        """Load a class that is not loaded yet."""
+    def __getattr__(name: str) -> Any:
+        """Load what is not loaded yet."""
         if name in _MODULES:
             return _load(name)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -152,6 +152,11 @@ class Mounted(Mechanism):
     def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:
         return self.bare._joined(branches, periods)
 
+    @property
+    def deviations(self) -> Mapping[str, float]:
+        """The deviations of the bare machine: those of base and tool stand behind its base and in front of its tool."""
+        return self.bare.deviations
+
     def _turn_sizes(self) -> Reals:
         return self.bare._turn_sizes()
 
