@@ -2,6 +2,7 @@
 
 It may import every other folder.
 
+calibrate: `calibrate`: the deviations of a machine from measured samples, or poses to measure
 catalogue: `generate` and `check` without a file: all mechanisms, one output folder
 doing: what a command is doing, in words, while a stage takes long
 explain: `explain`: the derivation of a machine, step by step

@@ -26,33 +26,31 @@ class Truth:
     def __init__(self, name: str, given: Mapping[str, float], deviations: Mapping[str, float]) -> None:
         """given: the parameters by name. deviations: in degrees and lengths."""
         self.mechanism: Mechanism = named(name)
-        self.off = dict(deviations)
-        self.given = given
-        defaults = {p.symbol: given.get(p.name, p.default or 0.0) for p in self.mechanism.parameters}
-        self.known: dict[sp.Basic, object] = {**defaults, DEGREE: DEG}
+        self.off, self.given = dict(deviations), given
+        joints = self.mechanism.joints
+        known = {p.symbol: given.get(p.name, p.default or 0.0) for p in self.mechanism.parameters} | {DEGREE: DEG}
+        values = {j.symbol: sp.sympify(j.ratio * j.motor + j.coupling).subs(known) for j in joints}
+        assert self.mechanism.chain is not None
+        self.factors = self.mechanism.chain.factors
+        amounts = [sp.sympify(f.amount) for f in self.factors]
+        self.fixed = [float(a.subs(dict.fromkeys(values, 0)).subs(known)) for a in amounts]
+        self.moved = sp.lambdify([j.motor for j in joints], [a.subs(values).subs(known) for a in amounts])
+        self.names: list[str | None] = []
+        for amount in amounts:
+            own = [j.key for j in joints if j.symbol in amount.free_symbols]
+            self.names.append(next((key for key in own if key not in self.names), None))
 
     def forward(self, axes: Sequence[float]) -> Array:
         """The matrix (4, 4) of the frame at axis values."""
-        joints = self.mechanism.joints
-        motors = {}
-        for j, axis in zip(joints, axes, strict=True):
+        motors = []
+        for j, axis in zip(self.mechanism.joints, axes, strict=True):
             moved = (axis - self.given.get(f"offset_{j.key}", 0.0)) * (1.0 + self._of(f"{j.key}_gain"))
-            motors[j.motor] = (DEG if j.in_degrees else 1.0) * (moved + self._of(f"{j.key}_offset"))
-        values = {j.symbol: j.ratio * j.motor + j.coupling for j in joints}
-        values = {s: float(sp.sympify(v).subs(motors).subs(self.known)) for s, v in values.items()}
-        keys = {j.symbol: j.key for j in joints}
-        found, named_already = self._end("base"), set[str]()
-        assert self.mechanism.chain is not None
-        for factor in self.mechanism.chain.factors:
-            amount = sp.sympify(factor.amount)
-            fixed = float(amount.subs(dict.fromkeys(keys, 0)).subs(self.known))
-            own = [keys[j.symbol] for j in joints if j.symbol in amount.free_symbols]
-            if own:
-                name = next(key for key in own if key not in named_already)
-                named_already.add(name)
+            motors.append((DEG if j.in_degrees else 1.0) * (moved + self._of(f"{j.key}_offset")))
+        found = self._end("base")
+        for factor, name, fixed, amount in zip(self.factors, self.names, self.fixed, self.moved(*motors), strict=True):
+            if name is not None:
                 line = self._line(name, factor.axis)
-                moved = float(amount.subs(values).subs(self.known)) - fixed
-                found = found @ line @ motion(factor, moved) @ np.linalg.inv(line)
+                found = found @ line @ motion(factor, amount - fixed) @ np.linalg.inv(line)
             found = found @ motion(factor, fixed)
         return found @ self._end("tool")
 

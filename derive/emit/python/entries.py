@@ -37,14 +37,14 @@ _USUAL: dict[Role, tuple[float, float, float | None]] = {
 
 
 _CLASSES = frozenset(
-    "ArrayPrograms Axis Calibrated Configuration ConfigurationByte Coupled CoupledPrograms Criterion "
-    "Diagnosis Frame FrameLike Image IterativeForward KinematicsError Limits Link Matrix Mechanism Mounted "
-    "OffsetKinematics OrientationImage OrientationKinematics OrientationPrograms Parameter PlainFrame Pose "
-    "Programs Reals Rotation SearchedInverse Signs Singularity Solution StartedPrograms Status TotalImage "
-    "Turns TwistChoice Values Vector".split()
+    "ArrayPrograms Axis Calibrated Calibration Configuration ConfigurationByte Coupled CoupledPrograms "
+    "Criterion Diagnosis Frame FrameLike Image IterativeForward KinematicsError Limits Link Matrix "
+    "Mechanism Mounted OffsetKinematics OrientationImage OrientationKinematics OrientationPrograms "
+    "Parameter PlainFrame Pose Programs Reals Rotation SearchedInverse Signs Singularity Solution "
+    "StartedPrograms Status TotalImage Turns TwistChoice Values Vector".split()
 )
 """Names that the package offers or modules of mechanisms import: no class of a mechanism may have one."""
-_MODULES = frozenset("annotations catalogue core import_module load orthonormalize".split())
+_MODULES = frozenset("annotations calibrate catalogue core import_module load orthonormalize propose".split())
 """Names in the package that are no modules: to import a module with one of these names would replace them."""
 
 

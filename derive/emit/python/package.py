@@ -28,9 +28,9 @@ _ARRANGED = (
 )
 """The files that the compiler writes; all others are the runtime as it stands."""
 _EXPORTS = (
-    "Axis", "Calibrated", "Configuration", "ConfigurationByte", "Coupled", "Diagnosis", "Frame",
+    "Axis", "Calibrated", "Calibration", "Configuration", "ConfigurationByte", "Coupled", "Diagnosis", "Frame",
     "FrameLike", "KinematicsError", "Mechanism", "Mounted", "OrientationImage", "Parameter", "Rotation", "Singularity",
-    "Solution", "Status", "__version__", "catalogue", "core", "load", "orthonormalize",
+    "Solution", "Status", "__version__", "calibrate", "catalogue", "core", "load", "orthonormalize", "propose",
 )  # fmt: skip
 
 

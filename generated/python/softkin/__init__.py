@@ -32,6 +32,8 @@ from softkin._types import (
 )
 
 if TYPE_CHECKING:
+    from softkin._calibrate import Calibration, calibrate
+    from softkin._propose import propose
     from softkin.ac6_rzryryrxryrz_j6offset import Ac6RZRYRYRXRYRZJ6Offset
     from softkin.ac6_threeparallel import Ac6ThreeParallel
     from softkin.ac6_txtytzryrxrz import Ac6TXTYTZRYRXRZ
@@ -98,6 +100,7 @@ __all__ = [
     "CAxis",
     "CAxisTool",
     "Calibrated",
+    "Calibration",
     "Configuration",
     "ConfigurationByte",
     "Coupled",
@@ -156,10 +159,12 @@ __all__ = [
     "Wrist2",
     "Wrist3",
     "__version__",
+    "calibrate",
     "catalogue",
     "core",
     "load",
     "orthonormalize",
+    "propose",
 ]
 
 __version__ = "0.1.0"
@@ -219,7 +224,12 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Wrist3": ("wrist3", "Wrist3"),
 }
 """The module and the class of every mechanism."""
-_MODULES = {class_name: module for module, class_name in _CLASSES.values()}
+_MODULES = {class_name: module for module, class_name in _CLASSES.values()} | {
+    "Calibration": "_calibrate",
+    "calibrate": "_calibrate",
+    "propose": "_propose",
+}
+"""The module of what is loaded when it is first used."""
 
 
 def catalogue() -> dict[str, type[Mechanism]]:
