@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
         robot = softkin.load(options.machine)
         return _propose(softkin, robot, options) if options.propose else _calibrate(softkin, robot, options)
     except ImportError as problem:
-        complain(f"{problem}: install softkin[calibration], which brings SciPy, or {_PACKAGE} beside the compiler")
+        complain(f"{problem}; the package softkin must be installed beside the compiler, with SciPy")
     except ValueError as problem:  # `KinematicsError` of the package is one
         complain(str(problem))
     return WRONG

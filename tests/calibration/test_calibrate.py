@@ -24,9 +24,9 @@ POSITION, TURN = 0.01, 1e-4
 CASES = {
     "Kin_ArticulatedRobot_6DOF": ("pose", ["tilt", "shift"]),
     "Kin_Ac6_ThreeParallel": ("pose", ["tilt", "shift"]),
-    "Kin_Scara3_Z": ("point", ["tilt", "shift", "offset", "tool"]),
+    "Kin_Scara3_Z": ("point", ["tilt", "shift", "tool_x", "tool_y", "tool_z"]),
     "Softkin_TableTable_AC": ("pose", ["tilt", "shift", "tool"]),
-    "Kin_Delta_P3C_Type3": ("point", ["arm", "offset", "tool", "base"]),
+    "Kin_Delta_P3C_Type3": ("point", ["arm", "offset", "base_x", "base_y", "base_z", "base_a", "base_b"]),
 }
 """What is measured, and what is looked for; what `arm` stands for are the inner and the outer arms."""
 WORDS = {"arm": [f"{side}_arm_{i}" for side in ("inner", "outer") for i in "123"]}
@@ -116,15 +116,15 @@ def test_with_noise_it_is_found_within_its_standard_deviations(name: str) -> Non
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_two_standard_deviations_hold_95_percent(name: str) -> None:
-    """Of twenty draws."""
+    """Of ten draws."""
     rng = np.random.default_rng(3)
     inside = []
-    for _ in range(20):
+    for _ in range(10):
         machine = machine_of(name, rng)
         samples = samples_of(machine, 40, rng, 1.0, CASES[name][0])
         found = softkin.calibrate(machine.nominal, samples, parameters=words_of(name))
         inside += [abs(miss) < 2.0 for miss in misses(found, machine.deviations).values()]
-    assert 0.92 < np.mean(inside) < 0.98
+    assert 0.91 < np.mean(inside) < 0.99
 
 
 def test_what_samples_do_not_determine_is_named_and_held() -> None:
@@ -171,7 +171,7 @@ def test_samples_may_be_mixed() -> None:
     quaternions = np.stack([columns.pop(q) for q in ("qx", "qy", "qz", "qw")], axis=1)
     angles = np.array([softkin.Frame.from_quaternion(q).euler for q in quaternions])
     columns |= dict(zip("abc", angles.T, strict=True))
-    again = softkin.calibrate(machine.nominal, columns, parameters=["tilt", "shift", "tool"])
+    again = softkin.calibrate(machine.nominal, columns, parameters=words_of("Kin_Scara3_Z"))
     assert again.after.rotation < 0.2
 
 

@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 import softkin
 from softkin import Frame, KinematicsError, Mechanism, Status
+from softkin._start import IterativeForward
 
 from tests.calibration.machines import LOOPS, SERIAL, Planted, drawn_axes, planted
 from tests.calibration.truth import Truth
 from tests.catalogue.robots import KR6_R900
+from tests.mechanisms import named
 
 EXACT = 1e-11
 """Of the reach, and radians."""
@@ -206,6 +208,58 @@ def test_a_delta_has_other_dimensions_and_stays_in_closed_form() -> None:
     assert machine.true.inverse(frame, configuration) == pytest.approx(axes, abs=1e-9)
     found, statuses = machine.true.inverse_batch([frame.position], [frame.rotation], configuration)
     assert not statuses.any() and found[0] == pytest.approx(axes, abs=1e-9)
+
+
+def test_a_hexapod_has_its_joint_centres() -> None:
+    """Each coordinate of each, in a machine whose forward kinematics iterates from a start."""
+    described = named("Kin_Hexapod")
+    nominal = softkin.Hexapod(**{p.name: p.nominal for p in described.parameters})
+    centres = {name: value for name, value in nominal.parameters.items() if name.startswith(("base_", "platform_"))}
+    assert len(centres) == 36 and set(centres) < set(nominal.deviations) and "home_z" not in nominal.deviations
+    off = dict(zip(centres, np.random.default_rng(6).uniform(-0.5, 0.5, 36).tolist(), strict=True))
+    true = nominal.calibrated({**off, "l1_offset": 0.2, "l2_gain": 1e-3})
+    axes = tuple(float(j.shown) + k for k, j in enumerate(described.joints))
+    frame, configuration = true.forward(axes)
+    own = nominal.changed(**{name: value + off[name] for name, value in centres.items()})
+    moved = (axes[0] + 0.2, axes[1] * 1.001, *axes[2:])
+    assert frame.matrix == pytest.approx(own.forward(moved)[0].matrix, abs=1e-8)
+    assert isinstance(true, IterativeForward)
+    assert true.forward(axes, start=frame)[0].matrix == pytest.approx(frame.matrix, abs=1e-8)
+    assert true.inverse(frame, configuration) == pytest.approx(axes, abs=1e-9)
+    matrices, statuses = true.jacobian_batch([axes], start=frame)
+    assert not statuses.any() and matrices[0] == pytest.approx(np.array(true.jacobian(axes)), abs=1e-8)
+    assert true.in_radians().with_tool(TOOL) == true.with_tool(TOOL).in_radians()
+    assert true.in_radians().deviations["l1_offset"] == 0.2
+
+
+def test_a_branch_stays_along_a_path() -> None:
+    """A curve in the joints that comes near to a straight wrist, followed from step to step."""
+    machine = planted("Kin_Ac6_ThreeParallel", np.random.default_rng(0))
+    t = np.linspace(0.0, 2.0 * np.pi, 300)
+    waves = (40 * np.sin(t), 20 * np.sin(2 * t), 25 * np.cos(t), 60 * np.sin(t), 29 * np.sin(3 * t), 90 * np.cos(t))
+    curve = np.array((10.0, -80.0, 50.0, 20.0, 30.0, 40.0)) + np.stack(waves, axis=1)
+    positions, rotations, configurations, _ = machine.true.forward_batch(curve)
+    near, branch = tuple(curve[0]), (*configurations[0][:3].tolist(), *(0,) * 6)
+    for position, rotation in zip(positions, rotations, strict=True):
+        axes = machine.true.inverse((position, rotation), branch, near)
+        assert np.abs(np.subtract(axes, near)).max() < 15.0
+        near = axes
+
+
+def test_garbage_is_refused() -> None:
+    """Numbers that are none, in the frame and in the reference."""
+    true = planted("Kin_ArticulatedRobot_6DOF", np.random.default_rng(1)).true
+    frame = true.forward((10.0, -80.0, 50.0, 20.0, 30.0, 40.0))[0]
+    for wrong in (float("nan"), float("inf"), 1e300):
+        assert true.diagnose(((wrong, 0.0, 0.0), frame.rotation)).status is Status.BAD_INPUT
+        assert true.diagnose(frame, reference=(wrong, *(0.0,) * 5)).status is Status.BAD_INPUT
+        with pytest.raises(KinematicsError, match="numbers must be finite"):
+            true.forward((wrong, *(0.0,) * 5))
+        assert true.forward_batch([(wrong, *(0.0,) * 5)])[3].tolist() == [Status.BAD_INPUT]
+        assert true.inverse_batch([(wrong, 0.0, 0.0)], [frame.rotation])[1].tolist() == [Status.BAD_INPUT]
+    gantry = softkin.Gantry3().calibrated({"y_tilt_x": 0.1})
+    target = gantry.forward((100.0, 200.0, 300.0))[0]
+    assert gantry.inverse(target, reference=(float("nan"),) * 3) == pytest.approx((100.0, 200.0, 300.0), abs=1e-9)
 
 
 @pytest.mark.slow

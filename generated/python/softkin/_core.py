@@ -626,7 +626,9 @@ class Mechanism(Value, ABC):
         """
         from softkin import _deviations
 
-        return dict.fromkeys(_deviations.units_of(self.in_degrees()), 0.0)
+        if self.in_degrees() is not self:
+            return self.in_degrees().deviations
+        return dict.fromkeys(_deviations.units_of(self), 0.0)
 
     def orientation_image(self) -> OrientationImage:
         """The orientations that the flange can have."""

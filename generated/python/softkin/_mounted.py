@@ -344,7 +344,7 @@ def mounted(robot: Mechanism, base: FrameLike = PLAIN, tool: FrameLike = PLAIN) 
     """
     in_degrees = robot.in_degrees()
     if in_degrees is not robot:
-        return mounted(in_degrees, base, tool).in_radians()
+        return in_degrees.with_base(base).with_tool(tool).in_radians()
     stand, carried = Frame.of(base), Frame.of(tool)
     if isinstance(robot, Mounted):
         stand, carried = stand @ robot.base, robot.tool @ carried

@@ -18,6 +18,7 @@ from softkin._chain import Chain, Placed, columns, moved_along, passed, true_cha
 from softkin._core import Mechanism
 from softkin._deviations import units_of
 from softkin._scalar import DEGREE
+from softkin._start import IterativeForward
 
 Array: TypeAlias = NDArray[np.float64]
 _STEP = 1e-4
@@ -135,13 +136,17 @@ def _turn(turn: tuple[int, float]) -> Array:
 
 
 def _by_differences(nominal: Mechanism, deviations: Mapping[str, float], names: Sequence[str], axes: Array) -> Model:
-    """The same by central differences of forward kinematics."""
-    positions, rotations, _, _ = nominal.calibrated(deviations).forward_batch(axes)
+    """The same by central differences of forward kinematics, which starts at the frames where it iterates."""
+    at = nominal.calibrated(deviations)
+    positions, rotations, _, _ = at.forward_batch(axes)
+    start = {"start": (positions, rotations)} if isinstance(at, IterativeForward) else {}
     units, twists = units_of(bare_of(nominal)), np.empty((len(axes), 6, len(names)))
     for k, name in enumerate(names):
         step = _STEP if units[name] != "1" else 0.01 * _STEP
         (p, r), (q, s) = (
-            nominal.calibrated({**deviations, name: deviations.get(name, 0.0) + sign * step}).forward_batch(axes)[:2]
+            nominal.calibrated({**deviations, name: deviations.get(name, 0.0) + sign * step}).forward_batch(
+                axes, **start
+            )[:2]
             for sign in (1.0, -1.0)
         )
         turn = (r - s) @ rotations.transpose(0, 2, 1)

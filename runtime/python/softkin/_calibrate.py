@@ -13,15 +13,16 @@ from numpy.typing import NDArray
 
 from softkin._calibrated import Calibrated, bare_of
 from softkin._core import Mechanism
-from softkin._deviations import units_of
+from softkin._deviations import ENDS, units_of
 from softkin._identification import SCALES, determined
 from softkin._samples import Measured, Samples, measured, refused
 from softkin._sensitivity import model
 from softkin._types import KinematicsError, Status
 
 Array: TypeAlias = NDArray[np.float64]
-_LOSS = 3.0
-"""Residuals larger than this many standard deviations count less than their square in the first fit."""
+_SUSPECT, _LOSS = 4.0, 3.0
+"""Where a residual is larger than the first, in standard deviations, there may be outliers: then residuals larger than
+the second count less than their square."""
 _LATER = ("tool", "base", "offset", "gain")
 """What is found behind lines and dimensions, in this order, unless a caller has another."""
 _PASSES = 100
@@ -92,10 +93,8 @@ def calibrate(
     `base`, `a2`. What follows from the words before it is held. None stands for all: lines of axes, or dimensions, then
     tool, base, offsets, gains.
     outlier: rows that are missed by more than this many standard deviations are left out, and named.
-    Needs SciPy: softkin[calibration]. Raises BAD_INPUT for samples and names that cannot be used.
+    Raises BAD_INPUT for samples and names that cannot be used, ImportError without SciPy: softkin[calibration].
     """
-    from scipy.optimize import least_squares
-
     given, fit = robot.in_degrees(), measured(robot, samples)
     nominal = given.nominal if isinstance(given, Calibrated) else given
     start = {name: value for name, value in given.deviations.items() if value}
@@ -108,6 +107,7 @@ def calibrate(
     found = determined(problem.jacobian(zero, every), groups)
     if not found.kept:
         raise refused("they determine no deviation")
+    from scipy.optimize import least_squares
 
     def fitted(first: Array, rows: NDArray[np.bool_], loss: str, scale: float) -> Array:
         def whole(values: Array) -> Array:
@@ -119,17 +119,17 @@ def calibrate(
             lambda x: problem.residuals(whole(x), rows),
             first[found.kept],
             jac=lambda x: problem.jacobian(whole(x), rows)[:, found.kept],
-            method="trf", loss=loss, f_scale=scale, x_scale="jac", xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=_PASSES,
+            method="trf", loss=loss, f_scale=scale, x_scale="jac", xtol=1e-11, ftol=1e-11, gtol=1e-11, max_nfev=_PASSES,
         )  # fmt: skip
         return whole(np.asarray(done.x, np.float64))
 
-    best = fitted(zero, every, "linear", 1.0)
-    best = fitted(best, every, "soft_l1", _LOSS * problem.noise(best, every, len(found.kept)))
-    missed = problem.by_row(best)
-    rows = missed <= outlier * problem.noise(best, every, len(found.kept))
-    if rows.sum() * 2 < len(rows):
-        raise refused("more than half of them are outliers: is the machine, or the frame of the instrument, another?")
-    best = fitted(best, rows, "linear", 1.0)
+    best, rows = fitted(zero, every, "linear", 1.0), every
+    if problem.by_row(best).max() > _SUSPECT * problem.noise(best, every, len(found.kept)):
+        best = fitted(best, every, "soft_l1", _LOSS * problem.noise(best, every, len(found.kept)))
+        rows = problem.by_row(best) <= outlier * problem.noise(best, every, len(found.kept))
+        if rows.sum() * 2 < len(rows):
+            raise refused("more than half are outliers: is the machine, or the frame of the instrument, another?")
+        best = fitted(best, rows, "linear", 1.0)
     return _result(problem, best, zero, rows, found.kept, found.held)
 
 
@@ -286,7 +286,11 @@ def _chosen(nominal: Mechanism, parameters: Iterable[str] | None) -> tuple[list[
 
 
 def _means(word: str, name: str) -> bool:
-    """Whether a word stands for a deviation: `tilt` for `a2_tilt_x`, `a2` for all of that axis."""
+    """Whether a word stands for a deviation: `tilt` for `a2_tilt_x`, `a2` for all of that axis; `base` not for
+    `base_radius`.
+    """
+    if word in ENDS:
+        return name in {f"{word}_{k}" for k in "xyzabc"}
     return name.startswith(f"{word}_") or f"_{word}_" in name or name.endswith(f"_{word}")
 
 

@@ -13,8 +13,12 @@ from softkin._types import KinematicsError, Status
 if TYPE_CHECKING:
     from softkin._core import Mechanism
 
+ENDS = ("tool", "base")
+"""What has three shifts and three turns."""
 _DIMENSIONS = ("length", "signed length", "distance", "angle")
 """The kinds of parameters whose deviations a closed loop has."""
+_NO_DIMENSIONS = ("home_", "max_", "min_")
+"""How the names of those begin that say where an iteration starts, and what is refused."""
 
 
 def units_of(robot: Mechanism) -> dict[str, str]:
@@ -24,11 +28,11 @@ def units_of(robot: Mechanism) -> dict[str, str]:
     if links is None:
         others = {f"{word}_{key}" for key in robot.LIMIT_KEYS for word in ("offset", "lower", "upper")}
         own = (p for p in robot.PARAMETERS if p.kind in _DIMENSIONS and p.name not in others)
-        found |= {p.name: p.unit for p in own if not p.name.startswith("home_")}
+        found |= {p.name: p.unit for p in own if not p.name.startswith(_NO_DIMENSIONS)}
     for joint in joints_of(links or (), robot.AXES):
         found |= {f"{joint.name}_tilt_x": "deg", f"{joint.name}_tilt_y": "deg"}
         found |= {f"{joint.name}_shift_x": "u", f"{joint.name}_shift_y": "u"} if joint.turns else {}
-    for end in ("tool", "base"):
+    for end in ENDS:
         found |= {f"{end}_{k}": "u" for k in "xyz"} | {f"{end}_{k}": "deg" for k in "abc"}
     found |= {f"{axis.name.lower()}_offset": axis.unit for axis in robot.AXES}
     return found | {f"{axis.name.lower()}_gain": "1" for axis in robot.AXES}

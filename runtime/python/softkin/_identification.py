@@ -11,7 +11,6 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import qr
 
 Array: TypeAlias = NDArray[np.float64]
 SCALES = {"deg": 0.1, "rad": 0.1, "u": 1.0, "1": 1e-3}
@@ -37,8 +36,12 @@ class Determined(NamedTuple):
 def determined(jacobian: Array, groups: Sequence[int]) -> Determined:
     """What the samples determine. jacobian: residuals in standard deviations, columns by usual sizes.
 
-    groups: the group of each column; those of a lower group are kept first.
+    groups: the group of each column; those of a lower group are kept first. Raises ImportError without SciPy.
     """
+    try:
+        from scipy.linalg import qr
+    except ImportError as error:
+        raise ImportError("calibrate and propose need SciPy: pip install softkin[calibration]") from error
     kept: list[int] = []
     basis = np.zeros((len(jacobian), 0))
     for group in sorted(set(groups)):

@@ -41,6 +41,8 @@ DIRECTIONS = tuple(d for d in every((0.0, 1.0, -1.0), repeat=3) if any(d))
 """The directions in which it is moved."""
 STRAYED = 8.0
 """A solution is on another branch where a margin has the other sign and is larger than the deviations times this."""
+NEAR = 0.05
+"""A frame is near where it is missed by less, in radians and shares of the reach."""
 FOLDED = (0.02, -0.02, 0.1, -0.1, 0.3, -0.3, 0.8, -0.8, 1.6, -1.6)
 """How far beside a pose where branches meet the steps begin again, in radians and shares of the reach."""
 PASSES = 4
@@ -99,18 +101,32 @@ class Meeting:
         found = self._met(target, signs, turns, reference)
         if isinstance(found, Diagnosis):
             return found
-        nominal = self.machine.nominal
-        pose = nominal._forward(found.axes)
-        on_turns = pose if isinstance(pose, Status) else nominal._branch(pose[0], pose[1], signs, turns, reference)
-        if not isinstance(on_turns, Status | Diagnosis):
-            apart = [abs(a - b) for a, b in zip(found.axes, on_turns, strict=True)]
-            if max(apart, default=0.0) > ANOTHER_TURN:
-                again = self._stepped(self._at(on_turns, target), target)
-                found = again if self._is_met(again, signs) else found
+        if any(turns) or self._far(found.axes, reference) or self.machine._beyond_limits(found.axes):
+            found = self._on_turns(found, target, signs, turns, reference)
         return found.axes if len(self.fixed) == 3 else self._in_plane(found, target)
 
+    def _on_turns(self, found: At, target: Placed, signs: Signs, turns: Turns, reference: Reals) -> At:
+        """The same joints on the turns that the nominal machine takes: it is asked for its own frame there."""
+        nominal = self.machine.nominal
+        pose = nominal._forward(found.axes)
+        axes = pose if isinstance(pose, Status) else nominal._branch(pose[0], pose[1], signs, turns, reference)
+        if isinstance(axes, Status | Diagnosis) or not self._far(found.axes, axes):
+            return found
+        again = self._stepped(self._at(axes, target), target)
+        return again if self._is_met(again, signs) else found
+
+    def _far(self, axes: Reals, others: Reals) -> bool:
+        """Whether axes are so far from others that they may be on another turn."""
+        return max((abs(a - b) for a, b in zip(axes, others, strict=True)), default=0.0) > ANOTHER_TURN
+
     def _met(self, target: Placed, signs: Signs, turns: Turns, reference: Reals) -> At | Diagnosis:
-        """The true machine where it meets the frame on the branch."""
+        """The true machine where it meets the frame on the branch: from the reference, if that is near; so a path goes
+        on where two solutions of a branch are near to each other.
+        """
+        if reasonable(*reference, *target[0]):
+            at = self._at(reference, target)
+            if at.size < NEAR and self._is_met(found := self._stepped(at, target), signs):
+                return found
         start = self._start(target, signs, turns, reference)
         if isinstance(start, Diagnosis):
             return start
@@ -279,7 +295,7 @@ class Meeting:
         """Whether the frame is met, and on the branch: where branches meet, either one is."""
         if at.size > MET:
             return False
-        pose = self.machine._forward(at.axes)
+        pose = self.machine.nominal._forward(self.machine._actual(at.axes))
         share = STRAYED * self.off
         return not isinstance(pose, Status) and all(s * m > -share for s, m in zip(signs, pose[2], strict=True))
 
