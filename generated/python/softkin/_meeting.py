@@ -52,6 +52,8 @@ ANOTHER_TURN = 90.0
 """Axis values that differ by more than this are on different turns."""
 FOLLOWED = ("pitch", "roll")
 """The rows of a Jacobian about the last axes of a chain."""
+BEYOND_ALL = 2.0
+"""What is missed by more than the deviations times this is out of reach."""
 BEYOND = "the machine as measured does not reach it [u]"
 OTHER_BRANCH = "the machine as measured reaches it on another branch alone"
 NO_AXIS = "the machine as measured has no axis for a coordinate that is commanded beside its plane [u]"
@@ -133,6 +135,8 @@ class Meeting:
             return start
         least = self._stepped(self._at(start, target), target)
         moved, at = target, self._at(start, target)
+        if least.size > BEYOND_ALL * self.off:
+            return self._refused(least, target)
         for _ in range(ROUNDS):
             if self._is_met(least, signs):
                 return least
