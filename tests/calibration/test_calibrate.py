@@ -175,6 +175,18 @@ def test_samples_may_be_mixed() -> None:
     assert again.after.rotation < 0.2
 
 
+def test_samples_may_be_arrays() -> None:
+    """As batches have them."""
+    rng = np.random.default_rng(10)
+    machine = machine_of("Softkin_TableTable_AC", rng)
+    axes = drawn_axes(machine.nominal, 30, rng)
+    positions, rotations, *_ = machine.true.forward_batch(axes)
+    found = softkin.calibrate(machine.nominal, {"axes": axes, "positions": positions, "rotations": rotations})
+    assert found.after.position < 1e-7 and predicted(found.machine, machine, rng) < 1e-6
+    with pytest.raises(KinematicsError, match=r"axes must have the shape \(N, 5\), not \(2, 2\)"):
+        softkin.calibrate(machine.nominal, {"axes": np.zeros((2, 2)), "positions": np.zeros((2, 3))})
+
+
 def test_a_calibrated_machine_in_radians_is_calibrated_further() -> None:
     """It starts at the deviations that it has; axes are in its unit."""
     rng = np.random.default_rng(7)

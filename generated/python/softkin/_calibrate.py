@@ -89,7 +89,8 @@ def calibrate(
     samples: the path of a CSV file, columns by name, or rows. Columns: each axis by its name, in its unit; x, y, z of
     the tool, or some of them; its rotation as qx, qy, qz, qw or as SoftMotion's a, b, c in degrees; `distance` from
     the point of the first sample; and sigma_x, sigma_y, sigma_z, sigma_rotation (degrees), sigma_distance where they
-    are known. An empty entry was not measured. Where no sigma is given, their size is taken from the residuals.
+    are known; or arrays as batches have them: axes, positions, rotations. An empty entry was not measured. Where no
+    sigma is given, their size is taken from the residuals.
     parameters: names of `robot.deviations`, or words for several of them: `tilt`, `shift`, `offset`, `gain`, `tool`,
     `base`, `a2`. What follows from the words before it is held. None stands for all: lines of axes, or dimensions, then
     tool, base, offsets, gains.

@@ -26,6 +26,8 @@ SIGMAS = {
     "sigma_distance": 0.01,
 }
 """The standard deviations, in lengths and degrees, and those that weigh the samples where they are not given."""
+ARRAYS = ("axes", "positions", "rotations")
+"""Several columns at once, as batches have them."""
 _COLUMNS = (*POINT, *QUATERNION, *EULER, DISTANCE, *SIGMAS)
 
 
@@ -48,8 +50,8 @@ class Measured(NamedTuple):
 
 def measured(robot: Mechanism, samples: Samples) -> Measured:
     """The samples of a machine. Raises BAD_INPUT for a column that is missing or unknown, and for what is no number."""
-    given = columns_of(samples)
     names = [axis.name for axis in robot.AXES]
+    given, turned = _from_arrays(columns_of(samples), names)
     own = {name: f"axis_{name}" if name in _COLUMNS or f"axis_{name}" in given else name for name in names}
     unknown = [name for name in given if name not in (*_COLUMNS, *own.values())]
     missing = [column for column in own.values() if column not in given]
@@ -67,7 +69,7 @@ def measured(robot: Mechanism, samples: Samples) -> Measured:
         raise refused(f"row {row}: every sample needs the values of all axes")
     points = np.stack([columns.get(name, nothing) for name in POINT], axis=1)
     distances = columns.get(DISTANCE, nothing)
-    rotations = _rotations(columns, count)
+    rotations = _rotations(columns, count) if turned is None else turned
     if not (np.isfinite(points).any() or np.isfinite(rotations).any() or np.isfinite(distances).any()):
         raise refused("nothing was measured: x, y, z; qx, qy, qz, qw or a, b, c; or distance")
     sigmas = {name: np.where(np.isfinite(v := columns.get(name, nothing)), v, usual) for name, usual in SIGMAS.items()}
@@ -96,6 +98,25 @@ def columns_of(samples: Samples) -> dict[str, Sequence[Any]]:
     if len({len(values) for values in found.values()}) != 1 or not next(iter(found.values())):
         raise refused("a table has at least one row, and columns of one length")
     return found
+
+
+def _from_arrays(
+    given: Mapping[str, Sequence[Any]], names: Sequence[str]
+) -> tuple[dict[str, Sequence[Any]], Array | None]:
+    """The columns of what is given as arrays: axes (N, n), positions (N, 3); and rotations (N, 3, 3) as they are."""
+    found = {name: values for name, values in given.items() if name not in ARRAYS}
+    turned = None
+    for word, columns in zip(ARRAYS, ([f"axis_{name}" for name in names], POINT, None), strict=True):
+        if word not in given:
+            continue
+        table, width = np.asarray(given[word], np.float64), (3, 3) if columns is None else (len(columns),)
+        if table.shape[1:] != width:
+            raise refused(f"{word} must have the shape (N, {', '.join(map(str, width))}), not {table.shape}")
+        if columns is None:
+            turned = table
+        else:
+            found |= dict(zip(columns, table.T.tolist(), strict=True))
+    return found, turned
 
 
 def _rotations(columns: Mapping[str, Array], count: int) -> Array:
