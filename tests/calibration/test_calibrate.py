@@ -116,15 +116,15 @@ def test_with_noise_it_is_found_within_its_standard_deviations(name: str) -> Non
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_two_standard_deviations_hold_95_percent(name: str) -> None:
-    """Of ten draws."""
+    """Of 25 draws."""
     rng = np.random.default_rng(3)
     inside = []
-    for _ in range(10):
+    for _ in range(25):
         machine = machine_of(name, rng)
         samples = samples_of(machine, 40, rng, 1.0, CASES[name][0])
         found = softkin.calibrate(machine.nominal, samples, parameters=words_of(name))
         inside += [abs(miss) < 2.0 for miss in misses(found, machine.deviations).values()]
-    assert 0.91 < np.mean(inside) < 0.99
+    assert 0.92 < np.mean(inside) < 0.98
 
 
 def test_what_samples_do_not_determine_is_named_and_held() -> None:
