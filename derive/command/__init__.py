@@ -2,6 +2,7 @@
 
 It may import every other folder.
 
+calibrate: `calibrate`: the deviations of a machine from measured samples, or poses to measure
 catalogue: `generate` and `check` without a file: all mechanisms, one output folder
 explain: `explain`: the derivation of a machine, step by step
 line: the commands and their options, and the status of a run

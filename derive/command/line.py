@@ -7,6 +7,7 @@ softkin check my_machine.py                derive and measure it, and write noth
 softkin derive my_machine.py --out build   derive it: Python package, Structured Text, PLCopenXML, picture
 softkin view my_machine.py                 write a page that shows it in a browser
 softkin live --machine my_machine.json     show it in the browser, moved by the axis values of its controller
+softkin calibrate samples.csv --machine my_machine.json --out true.json   find its deviations from measurements
 
 Status 0 is success; 2 a machine, or a command, that cannot be right; 1 a catalogue that is not as it should be;
 3 a mistake of the compiler, which says what to report.
@@ -19,7 +20,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from derive.command import catalogue, explain, live, new, own, report, view
+from derive.command import calibrate, catalogue, explain, live, new, own, report, view
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
 from derive.faults import GenerationError, error
@@ -106,6 +107,8 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     imported = commands.add_parser("import", help=text, description=text)
     importing.add_arguments(imported)
     imported.set_defaults(run=importing.run)
+    text = "find the deviations of a machine from measured samples, or propose poses to measure"
+    calibrate.add_arguments(commands.add_parser("calibrate", help=text, description=text))
     text = "serve the viewer on this computer, and move it with the axis values of a controller"
     live.add_arguments(commands.add_parser("live", help=text, description=text))
 

@@ -1,27 +1,22 @@
-"""Calibration: the offsets of the axes and the second link, by least squares from measured positions."""
+"""Calibration: where a SCARA is not as its drawing, from the points that a tracker saw."""
 
 import numpy as np
 import softkin
-from scipy.optimize import least_squares
 
-drawn = softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0)
-real = drawn.changed(offset_a1=0.31, offset_a2=-0.42, link_length_2=225.18)  # nobody knows this machine
+drawn = softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0, limits={"A3": (-150.0, 0.0)})
+real = drawn.calibrated({"a1_offset": 0.31, "a2_offset": -0.42, "a3_tilt_x": 0.08, "tool_x": 0.18})  # nobody knows it
 
-rng = np.random.default_rng(5)
-axes = rng.uniform((-120.0, 20.0, -50.0, -90.0), (120.0, 140.0, 0.0, 90.0), (40, 4))
-measured = real.forward_batch(axes)[0] + rng.normal(0.0, 0.01, (40, 3))
+axes = np.array(softkin.propose(drawn, 20, rotations=False))
+seen = real.forward_batch(axes)[0] + np.random.default_rng(5).normal(0.0, 0.01, (20, 3))
+samples = {
+    "A1": axes[:, 0],
+    "A2": axes[:, 1],
+    "A3": axes[:, 2],
+    "A4": axes[:, 3],
+    **dict(zip("xyz", seen.T, strict=True)),
+}
 
-
-def machine(x):
-    return drawn.changed(offset_a1=x[0], offset_a2=x[1], link_length_2=x[2])
-
-
-def missed(x):
-    return (machine(x).forward_batch(axes)[0] - measured).ravel()
-
-
-start = np.array([0.0, 0.0, 225.0])
-found = least_squares(missed, start, x_scale=(0.1, 0.1, 0.1))
-print("before:", round(float(np.sqrt(np.mean(missed(start) ** 2))), 2), "mm")
-print("after:", round(float(np.sqrt(np.mean(found.fun**2))), 2), "mm")
-print("offsets and length:", found.x.round(2).tolist())
+found = softkin.calibrate(drawn, samples, parameters=["offset", "tilt", "tool"])
+print("before:", round(found.before.position, 2), "mm, after:", round(found.after.position, 2), "mm")
+print({name: round(value, 2) for name, value in found.deviations.items() if abs(value) > 5.0 * found.sigma[name]})
+print("held:", ", ".join(found.held))

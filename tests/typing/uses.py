@@ -41,6 +41,9 @@ def moves(robot: Scara4ZCcoupledType1) -> tuple[float, ...]:
     radians = robot.in_radians()
     axes, statuses = robot.nearest_batch([frame.position], [frame.rotation], [0.0, 0.0, 0.0, 0.0])
     assert axes.shape == (1, 4) and statuses[0] == softkin.Status.OK
+    true = robot.calibrated({"a2_tilt_x": 0.02})
+    assert_type(true.deviations["a2_tilt_x"], float)
+    assert_type(true, Mechanism)
     mounted = robot.with_tool(Frame((30.0, 0.0, -60.0))).with_base(frame.matrix)
     assert_type(mounted, softkin.Mounted)
     assert_type(mounted.changed(tool=frame).in_radians(), softkin.Mounted)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import count
 from keyword import iskeyword
+
+import sympy as sp
 
 from derive.description.mechanism import Mechanism, Parameter, Role
 from derive.emit.inputs import Inputs, Spelling, inputs_of, word_of
 from derive.emit.language import short_name
 from derive.emit.python.layout import documented, quoted
-from derive.ir.constants import LARGEST
+from derive.emit.python.printer import ScalarPrinter
+from derive.geometry.frames import Motion
+from derive.ir.constants import DEGREE, LARGEST
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.report.cost import Cost, costs_of
@@ -33,13 +37,14 @@ _USUAL: dict[Role, tuple[float, float, float | None]] = {
 
 
 _CLASSES = frozenset(
-    "ArrayPrograms Axis Configuration ConfigurationByte Coupled CoupledPrograms Criterion Diagnosis Frame FrameLike "
-    "Image IterativeForward KinematicsError Limits Matrix Mechanism Mounted OffsetKinematics OrientationImage "
-    "OrientationKinematics OrientationPrograms Parameter PlainFrame Pose Programs Reals Rotation SearchedInverse Signs "
-    "Singularity Solution StartedPrograms Status TotalImage Turns TwistChoice Values Vector".split()
+    "ArrayPrograms Axis Calibrated Calibration Configuration ConfigurationByte Coupled CoupledPrograms "
+    "Criterion Diagnosis Frame FrameLike Image IterativeForward KinematicsError Limits Link Matrix "
+    "Mechanism Mounted OffsetKinematics OrientationImage OrientationKinematics OrientationPrograms "
+    "Parameter PlainFrame Pose Programs Reals Rotation SearchedInverse Signs Singularity Solution "
+    "StartedPrograms Status TotalImage Turns TwistChoice Values Vector".split()
 )
 """Names that the package offers or modules of mechanisms import: no class of a mechanism may have one."""
-_MODULES = frozenset("annotations catalogue core import_module orthonormalize".split())
+_MODULES = frozenset("annotations calibrate catalogue core import_module load orthonormalize propose".split())
 """Names in the package that are no modules: to import a module with one of these names would replace them."""
 
 
@@ -171,6 +176,38 @@ def example(kin: Kinematics) -> list[str]:
     ]
 
 
+def chain(kin: Kinematics) -> list[str]:
+    """The factors of a serial chain as it is described, each with the part of its amount that no axis moves, and what
+    each motor adds per unit. Empty for a loop, and where an amount is not linear in the motors.
+    """
+    described, joints = kin.mechanism.drawn or kin.mechanism.chain, kin.mechanism.joints
+    known = {j.symbol: sp.expand(j.ratio * j.motor + j.coupling) for j in joints} | {sp.pi: 180 * DEGREE}
+    amounts = [] if described is None else [sp.expand(f.amount.xreplace(known)) for f in described.factors]
+    moved = [[sp.diff(amount, j.motor) for j in joints] for amount in amounts]
+    own = {j.motor for j in joints}
+    if described is None or any(own & c.free_symbols for row in moved for c in row):
+        return []
+    printer, lines = _OfParameters(inputs(kin).names), []
+    for factor, amount, row in zip(described.factors, amounts, moved, strict=True):
+        rest = amount.xreplace(dict.fromkeys(own, sp.Integer(0)))
+        fixed = 180 * DEGREE * rest if factor.motion is Motion.FLIP else rest
+        by_motor = "".join(f"({k}, {printer.print(c.xreplace(known))}), " for k, c in enumerate(row) if c != 0)
+        motion = "shift" if factor.motion is Motion.SHIFT else "turn"
+        lines.append(f'Link("{motion}", {factor.axis}, {printer.print(fixed)}, ({by_motor})),')
+    return lines
+
+
+class _OfParameters(ScalarPrinter):
+    """Writes expressions of the parameters of a machine, which stand in the mapping `p`."""
+
+    def __init__(self, names: Mapping[str, str]) -> None:
+        super().__init__()
+        self.names = names
+
+    def name(self, symbol: sp.Symbol) -> str:
+        return f'p["{self.names[symbol.name]}"]' if symbol.name in self.names else super().name(symbol)
+
+
 def literal(value: object) -> str:
     """A value as Python text, with double quotes."""
     if isinstance(value, str):
@@ -193,12 +230,13 @@ _OF_INIT = frozenset({"self", "locals", "unrolled", "Constants", "limits"})
 """The names that the text of `__init__` reads."""
 OF_CLASS = frozenset(
     """
-    AXES BRANCHES CONFIGURATION DEFAULT_CONFIGURATION DISTANCE_AXES FREEDOM HELD JACOBIAN_ROWS KEY LIMIT_KEYS MARGINS
-    NAME PARAMETERS PERIOD_AXES READS_ROTATION ROLE axis_velocities branch branches changed checks_limits condition
-    configuration configuration_offset diagnose forward forward_batch from_dict from_json image_on in_degrees
-    in_radians inverse inverse_all inverse_all_batch inverse_batch inverse_offset is_compatible jacobian
-    jacobian_batch limits line manipulability names nearest nearest_batch orientation orientation_image parameters
-    path project singularity singularity_batch to_dict to_json twist with_base with_tool
+    AXES BRANCHES CONFIGURATION DEFAULT_CONFIGURATION DISTANCE_AXES FREEDOM HELD JACOBIAN_ROWS KEY LIMIT_KEYS
+    MARGINS NAME PARAMETERS PERIOD_AXES READS_ROTATION ROLE axis_velocities branch branches calibrated changed
+    checks_limits condition configuration configuration_offset deviations diagnose forward forward_batch from_dict
+    from_json image_on in_degrees in_radians inverse inverse_all inverse_all_batch inverse_batch inverse_offset
+    is_compatible jacobian jacobian_batch limits line manipulability names nearest nearest_batch orientation
+    orientation_image parameters path project singularity singularity_batch to_dict to_json twist with_base
+    with_tool
     """.split()
 )
 """The attributes of a class besides its parameters."""

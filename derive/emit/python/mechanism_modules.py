@@ -66,6 +66,7 @@ def _class_context(kin: Kinematics, arrays: Sequence[Method], straight_line: Unr
     trusted = trusted_branch(kin) if is_trusted(kin) else None
     setup_lines = setup.setup_body(kin, _constants_read(kin, (*scalar, *arrays), straight_line or trusted))
     types = _types(kin, scalar)
+    chain = entries.chain(kin)
     return {
         "kin": kin,
         "mechanism": kin.mechanism,
@@ -90,10 +91,11 @@ def _class_context(kin: Kinematics, arrays: Sequence[Method], straight_line: Unr
         "binds_in_loops": any(isinstance(s, Iterate) and s.otherwise is None for p in kin.shared for s in p.body),
         "margins": tuple(m.name for m in kin.margins),
         "every_root": _every_root(scalar),
+        "chain": chain,
         "methods": [
             {"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)
         ],
-        **_called(kin, bodies, (*setup_lines, *(trusted.body if trusted else ()))),
+        **_called(kin, bodies, (*setup_lines, *chain, *(trusted.body if trusted else ()))),
     }
 
 

@@ -32,9 +32,9 @@ _ARRANGED = (
 )
 """The files that the compiler writes; all others are the runtime as it stands."""
 _EXPORTS = (
-    "Axis", "Configuration", "ConfigurationByte", "Coupled", "Diagnosis", "Frame", "FrameLike", "KinematicsError",
-    "Mechanism", "Mounted", "OrientationImage", "Parameter", "Rotation", "Singularity", "Solution", "Status",
-    "__version__", "catalogue", "core", "orthonormalize",
+    "Axis", "Calibrated", "Calibration", "Configuration", "ConfigurationByte", "Coupled", "Diagnosis", "Frame",
+    "FrameLike", "KinematicsError", "Mechanism", "Mounted", "OrientationImage", "Parameter", "Rotation", "Singularity",
+    "Solution", "Status", "__version__", "calibrate", "catalogue", "core", "load", "orthonormalize", "propose",
 )  # fmt: skip
 
 

@@ -7,8 +7,10 @@ A class is loaded when it is first used, and NumPy is loaded with the first batc
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING
+from os import PathLike
+from typing import TYPE_CHECKING, Any
 
+from softkin._calibrated import Calibrated
 from softkin._core import Mechanism
 from softkin._coupled import Coupled
 from softkin._frame import Frame, orthonormalize
@@ -30,6 +32,8 @@ from softkin._types import (
 )
 
 if TYPE_CHECKING:
+    from softkin._calibrate import Calibration, calibrate
+    from softkin._propose import propose
     from softkin.ac6_rzryryrxryrz_j6offset import Ac6RZRYRYRXRYRZJ6Offset
     from softkin.ac6_threeparallel import Ac6ThreeParallel
     from softkin.ac6_txtytzryrxrz import Ac6TXTYTZRYRXRZ
@@ -95,6 +99,8 @@ __all__ = [
     "BipodRotary",
     "CAxis",
     "CAxisTool",
+    "Calibrated",
+    "Calibration",
     "Configuration",
     "ConfigurationByte",
     "Coupled",
@@ -153,9 +159,12 @@ __all__ = [
     "Wrist2",
     "Wrist3",
     "__version__",
+    "calibrate",
     "catalogue",
     "core",
+    "load",
     "orthonormalize",
+    "propose",
 ]
 
 __version__ = "0.1.0"
@@ -215,7 +224,12 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Wrist3": ("wrist3", "Wrist3"),
 }
 """The module and the class of every mechanism."""
-_MODULES = {class_name: module for module, class_name in _CLASSES.values()}
+_MODULES = {class_name: module for module, class_name in _CLASSES.values()} | {
+    "Calibration": "_calibrate",
+    "calibrate": "_calibrate",
+    "propose": "_propose",
+}
+"""The module of what is loaded when it is first used."""
 
 
 def catalogue() -> dict[str, type[Mechanism]]:
@@ -223,17 +237,28 @@ def catalogue() -> dict[str, type[Mechanism]]:
     return {name: _load(class_name) for name, (_, class_name) in _CLASSES.items()}
 
 
-def _load(class_name: str) -> type[Mechanism]:
-    module = import_module(f"{__name__}.{_MODULES[class_name]}")
-    found: type[Mechanism] = getattr(module, class_name)
-    globals()[class_name] = found
+def _load(name: str) -> Any:
+    found = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
+    globals()[name] = found
     return found
+
+
+def load(path: str | PathLike[str]) -> Mechanism:
+    """The machine of a file with what `to_json` gives: calibrated, mounted, coupled, in radians, or none of these.
+
+    Raises OSError for a file that cannot be read, NOT_INITIALIZED for one that holds no machine.
+    """
+    try:
+        with open(path, encoding="utf-8") as file:
+            return Mechanism.from_json(file.read())
+    except (KinematicsError, UnicodeDecodeError) as error:
+        raise KinematicsError(Status.NOT_INITIALIZED, f"{path}: {error}") from error
 
 
 if not TYPE_CHECKING:  # a type checker reads the imports above instead, and so finds misspelt names
 
-    def __getattr__(name: str) -> type[Mechanism]:
-        """Load a class that is not loaded yet."""
+    def __getattr__(name: str) -> Any:
+        """Load what is not loaded yet."""
         if name in _MODULES:
             return _load(name)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from softkin._array import Programs
+    from softkin._chain import Link
     from softkin._mounted import Mounted
     from softkin._names import NamedConfiguration
     from softkin._nearest import Measure
@@ -603,6 +604,32 @@ class Mechanism(Value, ABC):
 
         return mounted(self, base=base)
 
+    def calibrated(self, deviations: Mapping[str, float]) -> Mechanism:
+        """This machine as it was measured: the same calls, with its deviations from the drawing.
+
+        deviations: by name, in degrees and lengths; those that `deviations` lists, and all that are missing are as
+        they are in this machine. Without any it is the nominal machine, to the last bit. With tilts of some 5 mrad and
+        shifts of some 5 mm the inverse answers wherever the machine is; what it does not meet is refused.
+        Raises NOT_INITIALIZED for an unknown name, with the one that was perhaps meant.
+        """
+        from softkin import _calibrated
+
+        return _calibrated.calibrated(self, deviations)
+
+    @property
+    def deviations(self) -> Mapping[str, float]:
+        """All deviations that this machine may have, by name, with their values: 0 in the machine as it is drawn.
+
+        Of a serial machine: the tilts of each axis about x and y of a frame whose z is the axis (degrees), and of a
+        turning axis its shifts along them. Of a closed loop: what is added to its dimensions. Of both: shifts and turns
+        of tool and base, offsets of the axes in their own unit, and gains, of which 0.001 is one part in a thousand.
+        """
+        from softkin import _deviations
+
+        if self.in_degrees() is not self:
+            return self.in_degrees().deviations
+        return dict.fromkeys(_deviations.units_of(self), 0.0)
+
     def orientation_image(self) -> OrientationImage:
         """The orientations that the flange can have."""
         image = self._image()
@@ -706,6 +733,14 @@ class Mechanism(Value, ABC):
     def _parameter_units(self) -> dict[str, str]:
         """The units of the parameters by name."""
         return {p.name: p.unit for p in self.PARAMETERS}
+
+    def _chain(self) -> tuple[Link, ...] | None:
+        """The chain of a serial machine as it is described, from the base to the frame; None for a closed loop."""
+        return None
+
+    def _axis_zeros(self) -> Reals:
+        """The axis values at which the joints are zero."""
+        return tuple(self.parameters[f"offset_{key}"] for key in self.LIMIT_KEYS[: len(self.AXES)])
 
     def _full_turn(self) -> float:
         """A full turn in the unit of the rotary axes."""

@@ -33,6 +33,7 @@ from softkin._vectors import moved, plus, product, seen_from, transposed, turned
 
 if TYPE_CHECKING:
     from softkin._array import Programs
+    from softkin._chain import Link
 
 _Choice: TypeAlias = tuple[Signs, Turns, Reals]
 """Signs of the branches, turns and reference of one part."""
@@ -138,6 +139,15 @@ class Coupled(Mechanism):
 
     def _full_turn(self) -> float:
         return self.position_part._full_turn()
+
+    def _chain(self) -> tuple[Link, ...] | None:
+        first, second = self.position_part._chain(), self.orientation_part._chain()
+        if first is None or second is None:
+            return None
+        return (*first, *(k._replace(motors=tuple((i + self._count, share) for i, share in k.motors)) for k in second))
+
+    def _axis_zeros(self) -> Reals:
+        return self.position_part._axis_zeros() + self.orientation_part._axis_zeros()
 
     def to_dict(self) -> dict[str, Any]:
         """Both parts as plain data."""

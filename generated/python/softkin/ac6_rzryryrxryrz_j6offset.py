@@ -57,6 +57,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, root, sin, solve, sqrt
@@ -1827,6 +1828,27 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             ),
             7,
             self._array_programs().try_joint,
+        )
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        p = self.parameters
+        return (
+            Link("turn", 2, 0.0, ((0, 1.0),)),
+            Link("shift", 0, p["a1"], ()),
+            Link("shift", 1, 0.0, ()),
+            Link("shift", 2, p["d1"], ()),
+            Link("turn", 1, 0.0, ((1, 1.0),)),
+            Link("shift", 2, p["a2"], ()),
+            Link("turn", 1, 0.0, ((2, 1.0),)),
+            Link("shift", 0, p["d4"], ()),
+            Link("shift", 1, 0.0, ()),
+            Link("shift", 2, p["a3"], ()),
+            Link("turn", 0, 0.0, ((3, 1.0),)),
+            Link("turn", 1, 0.0, ((4, 1.0),)),
+            Link("shift", 0, p["j6_offset_x"], ()),
+            Link("turn", 2, 0.0, ((5, 1.0),)),
+            Link("shift", 2, p["d6"], ()),
         )
 
     def _array_programs(self) -> ArrayPrograms:

@@ -51,6 +51,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, solve, sqrt
@@ -1425,6 +1426,29 @@ class ArticulatedRobot6DOF(Mechanism):
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         return self._finished(self._all_trusted, self._finish, position, rotation, reference)
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        p = self.parameters
+        return (
+            Link("turn", 2, 0.0, ((0, 1.0),)),
+            Link("shift", 2, p["d1"], ()),
+            Link("shift", 0, p["a1"], ()),
+            Link("turn", 0, 90.0 * DEGREE, ()),
+            Link("turn", 2, 90.0 * DEGREE, ((1, 1.0),)),
+            Link("shift", 0, p["a2"], ()),
+            Link("turn", 2, 0.0, ((2, 1.0),)),
+            Link("shift", 2, p["d3"], ()),
+            Link("shift", 0, p["a3"], ()),
+            Link("turn", 0, 90.0 * DEGREE, ()),
+            Link("turn", 2, 0.0, ((3, 1.0),)),
+            Link("shift", 2, p["d4"], ()),
+            Link("turn", 0, 90.0 * DEGREE, ()),
+            Link("turn", 2, 0.0, ((4, 1.0),)),
+            Link("turn", 0, -90.0 * DEGREE, ()),
+            Link("turn", 2, 0.0, ((5, 1.0),)),
+            Link("shift", 2, p["d6"], ()),
+        )
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

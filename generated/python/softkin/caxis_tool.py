@@ -31,6 +31,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._orientation import OrientationKinematics, TotalImage
@@ -299,6 +300,16 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
             return None
         return (offset_c + arctan2(heading_across, heading_along) * RADIAN,)
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        p = self.parameters
+        return (
+            Link("turn", 2, 0.0, ((0, 1.0),)),
+            Link("shift", 0, p["tool_x"], ()),
+            Link("shift", 1, p["tool_y"], ()),
+            Link("shift", 2, p["tool_z"], ()),
+        )
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

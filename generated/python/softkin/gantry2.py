@@ -29,6 +29,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
@@ -243,6 +244,10 @@ class Gantry2(OffsetKinematics):
         if not (abs(z) <= machine_scale_times_plane):
             return None
         return (offset_x + x, offset_y + y)
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        return (Link("shift", 0, 0.0, ((0, 1.0),)), Link("shift", 1, 0.0, ((1, 1.0),)))
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

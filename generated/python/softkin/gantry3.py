@@ -30,6 +30,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
@@ -247,6 +248,14 @@ class Gantry3(OffsetKinematics):
         k = self._constants
         offset_x, offset_y, offset_z = k.offset_x, k.offset_y, k.offset_z
         return (offset_x + x, offset_y + y, offset_z + z)
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        return (
+            Link("shift", 0, 0.0, ((0, 1.0),)),
+            Link("shift", 1, 0.0, ((1, 1.0),)),
+            Link("shift", 2, 0.0, ((2, 1.0),)),
+        )
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -32,6 +32,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
@@ -337,6 +338,15 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         if not (abs(z) <= machine_scale_times_plane):
             return None
         return (offset_x + x, offset_y + y, offset_r + arctan2(direction_r * heading_across, heading_along) * RADIAN)
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        p = self.parameters
+        return (
+            Link("shift", 0, 0.0, ((0, 1.0),)),
+            Link("shift", 1, 0.0, ((1, 1.0),)),
+            Link("turn", 2, 0.0, ((2, p["direction_r"]),)),
+        )
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

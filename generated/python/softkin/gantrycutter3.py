@@ -33,6 +33,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._offset import OffsetKinematics
@@ -351,6 +352,16 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
             offset_y + y,
             offset_z + z,
             offset_r + arctan2(direction_r * heading_across, heading_along) * RADIAN,
+        )
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        p = self.parameters
+        return (
+            Link("shift", 0, 0.0, ((0, 1.0),)),
+            Link("shift", 1, 0.0, ((1, 1.0),)),
+            Link("shift", 2, 0.0, ((2, 1.0),)),
+            Link("turn", 2, 0.0, ((3, p["direction_r"]),)),
         )
 
     def _array_programs(self) -> Programs:

@@ -43,6 +43,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
@@ -429,6 +430,19 @@ class HeadTableBC(Mechanism):
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         return self._finished(self._all_trusted, self._finish, position, rotation, reference)
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        p = self.parameters
+        return (
+            Link("turn", 2, 0.0, ((4, -1.0),)),
+            Link("shift", 0, 0.0, ((0, 1.0),)),
+            Link("shift", 1, 0.0, ((1, 1.0),)),
+            Link("shift", 2, 0.0, ((2, 1.0),)),
+            Link("turn", 1, 0.0, ((3, 1.0),)),
+            Link("shift", 0, p["head_offset"], ()),
+            Link("shift", 2, -p["pivot_length"], ()),
+        )
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -31,6 +31,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
@@ -293,6 +294,14 @@ class HGantry3(OffsetKinematics):
         offset_a, offset_b, offset_z = k.offset_a, k.offset_b, k.offset_z
         a = x - y  # a and b from the x and y equations, linear in both
         return (a + offset_a, offset_b + (-x - y), offset_z + z)
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        return (
+            Link("shift", 0, 0.0, ((0, 0.5), (1, -0.5))),
+            Link("shift", 1, 0.0, ((0, -0.5), (1, -0.5))),
+            Link("shift", 2, 0.0, ((2, 1.0),)),
+        )
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

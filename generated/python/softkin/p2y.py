@@ -29,6 +29,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
@@ -289,6 +290,10 @@ class P2Y(OffsetKinematics):
             return None
         a1 = x + y  # a1 and a2 from the x and y equations, linear in both
         return (a1 + offset_a1, offset_a2 + (y - x))
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        return (Link("shift", 0, 0.0, ((0, 0.5), (1, -0.5))), Link("shift", 1, 0.0, ((0, 0.5), (1, 0.5))))
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -37,6 +37,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond, beyond_turn
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reasonable, sin, sqrt
@@ -307,6 +308,14 @@ class PolarZ(Mechanism):
             direction_x_c = cos(reference_c)
             direction_y_c = sin(reference_c)
         return (offset_c + arctan2(direction_y_c, direction_x_c) * RADIAN, offset_r + radius_c, offset_z + z)
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        return (
+            Link("turn", 2, 0.0, ((0, 1.0),)),
+            Link("shift", 0, 0.0, ((1, 1.0),)),
+            Link("shift", 2, 0.0, ((2, 1.0),)),
+        )
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -30,6 +30,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond
 from softkin._offset import OffsetKinematics
@@ -290,6 +291,10 @@ class TGantry2(OffsetKinematics):
             return None
         a = x - y  # a and b from the x and y equations, linear in both
         return (a + offset_a, offset_b + (x + y))
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        return (Link("shift", 0, 0.0, ((0, 0.5), (1, 0.5))), Link("shift", 1, 0.0, ((0, -0.5), (1, 0.5))))
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -27,6 +27,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import reasonable, sqrt
@@ -202,6 +203,11 @@ class Tool(OrientationKinematics):
     def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         return ()
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        p = self.parameters
+        return (Link("shift", 0, p["tool_x"], ()), Link("shift", 1, p["tool_y"], ()), Link("shift", 2, p["tool_z"], ()))
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

@@ -36,6 +36,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._chain import Link
 from softkin._core import Image, Mechanism, Pose
 from softkin._limits import beyond_turn
 from softkin._orientation import OrientationKinematics
@@ -419,6 +420,18 @@ class Wrist2(OrientationKinematics):
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
         return self._finished(self._all_trusted, self._finish, position, rotation, reference)
+
+    def _chain(self) -> tuple[Link, ...]:
+        """The chain as it is described, from the base to the frame."""
+        p = self.parameters
+        return (
+            Link("turn", 2, 0.0, ((0, 1.0),)),
+            Link("shift", 0, p["roll_axis_offset_x"], ()),
+            Link("shift", 1, p["roll_axis_offset_y"], ()),
+            Link("shift", 2, p["roll_axis_offset_z"], ()),
+            Link("turn", 1, 0.0, ((1, p["tool_side"]),)),
+            Link("shift", 2, p["tool_length"] * p["tool_side"], ()),
+        )
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

@@ -152,6 +152,11 @@ class Mounted(Mechanism):
     def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:
         return self.bare._joined(branches, periods)
 
+    @property
+    def deviations(self) -> Mapping[str, float]:
+        """The deviations of the bare machine: those of base and tool stand behind its base and in front of its tool."""
+        return self.bare.deviations
+
     def _turn_sizes(self) -> Reals:
         return self.bare._turn_sizes()
 
@@ -338,7 +343,7 @@ def mounted(robot: Mechanism, base: FrameLike = PLAIN, tool: FrameLike = PLAIN) 
     """
     in_degrees = robot.in_degrees()
     if in_degrees is not robot:
-        return mounted(in_degrees, base, tool).in_radians()
+        return in_degrees.with_base(base).with_tool(tool).in_radians()
     stand, carried = Frame.of(base), Frame.of(tool)
     if isinstance(robot, Mounted):
         stand, carried = stand @ robot.base, robot.tool @ carried

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from softkin._types import Reals, Rotation, Vector
 
 
@@ -41,3 +43,19 @@ def moved(twist: Reals, arm: Vector) -> Reals:
     y += about_z * arm[0] - about_x * arm[2]
     z += about_x * arm[1] - about_y * arm[0]
     return x, y, z, about_x, about_y, about_z
+
+
+def dot(first: Sequence[float], second: Sequence[float]) -> float:
+    """The scalar product."""
+    return first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
+
+
+def cross(first: Vector, second: Vector) -> Vector:
+    """The vector product."""
+    (a, b, c), (x, y, z) = first, second
+    return b * z - c * y, c * x - a * z, a * y - b * x
+
+
+def times(vector: Vector, factor: float) -> Vector:
+    """A vector times a number."""
+    return vector[0] * factor, vector[1] * factor, vector[2] * factor
