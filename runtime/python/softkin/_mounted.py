@@ -21,6 +21,7 @@ from softkin._start import IterativeForward
 from softkin._tools import TILTS, check_tool, known_shift, rows_of
 from softkin._types import (
     Configuration,
+    ConfigurationLike,
     Diagnosis,
     FrameLike,
     KinematicsError,
@@ -146,7 +147,7 @@ class Mounted(Mechanism):
     def _period_bytes(self) -> list[int]:
         return self.bare._period_bytes
 
-    def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Turns]:
+    def _read(self, configuration: ConfigurationLike | None) -> tuple[Configuration, Turns]:
         return self.bare._read(configuration)
 
     def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:

@@ -52,6 +52,27 @@ def configuration(robot: Mechanism, given: Mapping[str, str | int]) -> NamedConf
     return NamedConfiguration(tuple(found), robot.CONFIGURATION)
 
 
+def named(robot: Mechanism, given: Mapping[str, str | int] | str) -> NamedConfiguration:
+    """The configuration with these names: branches and turns by the names of bytes, or a text of names of branches.
+
+    Raises BAD_INPUT for an unknown name, and for a branch of a text that several bytes have.
+    """
+    if isinstance(given, Mapping):
+        return configuration(robot, {_keyword(name): value for name, value in given.items()})
+    sides = [(side, byte.name) for byte in robot.CONFIGURATION for side in byte.branches]
+    found: dict[str, str | int] = {}
+    for word in given.replace(",", " ").split():
+        owners = [name for side, name in sides if side == word]
+        if len(owners) != 1 or owners[0] in found:
+            known = ", ".join(f"{name} {side}" for side, name in sides) or "none: it has one solution"
+            why = "names two branches of one byte" if owners else "is no branch"
+            if len(owners) > 1:
+                why = "is a branch of several bytes: give a mapping"
+            raise _bad(robot, f"the configuration {given!r}: {word!r} {why}; the branches are {known}")
+        found[owners[0]] = word
+    return configuration(robot, {_keyword(name): side for name, side in found.items()})
+
+
 def names(robot: Mechanism, given: Configuration) -> dict[str, str | int]:
     """The names of a configuration."""
     for byte, value in zip(robot.CONFIGURATION, given, strict=True):

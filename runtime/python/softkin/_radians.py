@@ -19,6 +19,7 @@ from softkin._twist import TwistChoice
 from softkin._types import (
     Axis,
     Configuration,
+    ConfigurationLike,
     Diagnosis,
     FrameLike,
     Matrix,
@@ -256,7 +257,7 @@ class InRadians(Mechanism):
     def _period_bytes(self) -> list[int]:
         return self.part._period_bytes
 
-    def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Turns]:
+    def _read(self, configuration: ConfigurationLike | None) -> tuple[Configuration, Turns]:
         return self.part._read(configuration)
 
     def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:
