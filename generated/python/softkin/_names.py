@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from softkin._configuration import AUTOMATIC, COINCIDE, FIRST, SECOND
 from softkin._input import bytes_of
@@ -53,25 +53,31 @@ def configuration(robot: Mechanism, given: Mapping[str, str | int]) -> NamedConf
     return NamedConfiguration(tuple(found), robot.CONFIGURATION)
 
 
-def named(robot: Mechanism, given: Mapping[str, str | int] | str) -> NamedConfiguration:
+def named(robot: Mechanism, given: Mapping[str, Any] | str) -> NamedConfiguration:
     """The configuration with these names: branches and turns by the names of bytes, or a text of names of branches.
 
-    Raises BAD_INPUT for an unknown name, and for a branch of a text that several bytes have.
+    A text has one name for each branch byte, in order, or fewer that one byte alone has.
+    Raises BAD_INPUT for an unknown name, and for one that several bytes have.
     """
     if isinstance(given, Mapping):
-        return configuration(robot, {_keyword(name): value for name, value in given.items()})
-    sides = [(side, byte.name) for byte in robot.CONFIGURATION for side in byte.branches]
+        return configuration(robot, {_keyword(str(name)): value for name, value in given.items()})
+    described = [byte for byte in robot.CONFIGURATION if byte.branches]
+    words = given.replace(",", " ").split()
+    in_order = list(zip(words, described, strict=False))
+    if len(words) == len(described) and all(word in byte.branches for word, byte in in_order):
+        return configuration(robot, {_keyword(byte.name): word for word, byte in in_order})
     found: dict[str, str | int] = {}
-    for word in given.replace(",", " ").split():
-        owners = [name for side, name in sides if side == word]
+    for word in words:
+        owners = [_keyword(byte.name) for byte in described if word in byte.branches]
         if len(owners) != 1 or owners[0] in found:
-            known = ", ".join(f"{name} {side}" for side, name in sides) or "none: it has one solution"
-            why = "names two branches of one byte" if owners else "is no branch"
+            why = "is no branch" if not owners else "and another one are branches of one byte"
             if len(owners) > 1:
-                why = "is a branch of several bytes: give a mapping"
-            raise _bad(robot, f"the configuration {given!r}: {word!r} {why}; the branches are {known}")
+                why = f"is a branch of {' and of '.join(owners)}: give a mapping, or a name for each branch"
+            known = ", ".join(f"{byte.name} ({' or '.join(byte.branches)})" for byte in described)
+            known = f"its branches are {known}" if known else "it has one solution"
+            raise _bad(robot, f"the configuration {given!r}: {word!r} {why}; {known}")
         found[owners[0]] = word
-    return configuration(robot, {_keyword(name): side for name, side in found.items()})
+    return configuration(robot, found)
 
 
 def names(robot: Mechanism, given: Configuration) -> dict[str, str | int]:

@@ -37,7 +37,12 @@ def _tables(robot: Mechanism) -> Iterator[_Table]:
     """The tables that have rows: axes, other limits, parameters, frames, branches and turns."""
     limits, known = robot.limits, {axis.name for axis in robot.AXES}
     axes = [(a.name, a.kind, _range(limits.get(a.name), a.unit), a.meaning) for a in robot.AXES]
-    others = [(name, "", _range(ends, ""), "") for name, ends in limits.items() if ends and name not in known]
+    units = robot._parameter_units()
+    others = [
+        (name, "", _range(ends, units.get(f"lower_{name}", "")), "")
+        for name, ends in limits.items()
+        if ends and name not in known
+    ]
     found = [
         _Table(("axis", "kind", "limits", "meaning"), axes + others),
         _Table(("parameter", "value", "meaning"), list(_parameters(robot))),

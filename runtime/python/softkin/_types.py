@@ -23,7 +23,7 @@ Matrix: TypeAlias = tuple[Reals, ...]
 Configuration: TypeAlias = tuple[int, ...]
 """The branch bytes, then a signed period number for every axis that turns more than once."""
 
-ConfigurationLike: TypeAlias = Iterable[int] | Mapping[str, str | int] | str
+ConfigurationLike: TypeAlias = Iterable[int] | Mapping[str, Any] | str
 """A configuration as `forward` gives it or `Mechanism.configuration` makes it, or names: `{"elbow": "left", "A4": 2}`,
 or those of branches alone, as "left" or "left flip". What is not named is as in the default."""
 
