@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from math import inf, isfinite, nan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, Protocol, Self, TypeAlias, cast
@@ -309,17 +310,17 @@ class Mechanism(Value, ABC):
     def inverse_all(self, frame: FrameLike, reference: Numbers | None = None) -> Sequence[Solution]:
         """Every branch of the inverse, in fixed slots: branch 1 before branch 2, the first byte varies fastest.
 
-        Periods are open, as in `inverse`. No slot is left out: a slot without axes has a status, also where the axes
-        are beyond limits. `diagnose`, with the branches of its configuration, gives the reason, and whether another
-        turn is inside. Raises BAD_INPUT only for input that does not have the form of a frame. The result behaves as a
-        tuple.
+        Periods are open, as in `inverse`. No slot is left out: a slot without axes has a status, and a `refusal` with
+        the reason, such as the axis that is beyond a limit, by how much, and whether another turn is inside. Raises
+        BAD_INPUT only for input that does not have the form of a frame. The result behaves as a tuple.
         """
         position, rows = self._pose(frame)
         near, rotation = self._near(reference), self._made(rows)
         every = slots((AUTOMATIC,) * self.BRANCHES)
         if isinstance(rotation, Diagnosis):
-            return Solutions((int(rotation.status),) * len(every), every, self._solution)
-        return Solutions(self._every_branch(position, rotation, near), every, self._solution)
+            return Solutions((rotation,) * len(every), every, self._solution)
+        explained = partial(self._explained, position, rotation, near)
+        return Solutions(self._every_branch(position, rotation, near), every, explained)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None if it has no solution.
@@ -731,12 +732,23 @@ class Mechanism(Value, ABC):
         refused = self._beyond_limits(axes)
         return axes if refused is None else int(refused.status)
 
-    def _solution(self, slot: Slot, found: Reals | int) -> Solution:
-        """The solution of a slot, with its configuration."""
+    def _solution(self, slot: Slot, found: Reals | Diagnosis) -> Solution:
+        """The solution of a slot, with its configuration, or the reason why it has none."""
         branches, _ = slot
-        if isinstance(found, tuple):
-            return Solution(self._joined(branches, self._periods(found)), found, Status.OK)
-        return Solution(self._joined(branches, (0,) * len(self.PERIOD_AXES)), None, _STATUSES[found])
+        if isinstance(found, Diagnosis):
+            return Solution(self._joined(branches, (0,) * len(self.PERIOD_AXES)), None, found.status, (), found)
+        return Solution(self._joined(branches, self._periods(found)), found, Status.OK)
+
+    def _explained(
+        self, position: Vector, rotation: Rotation, reference: Reals, slot: Slot, found: Reals | int
+    ) -> Solution:
+        """The solution of a slot; for the number of a status, the slot is solved again for its reason."""
+        if not isinstance(found, int):
+            return self._solution(slot, found)
+        axes = self._branch(position, rotation, slot[1], (0,) * len(self.PERIOD_AXES), reference)
+        refused = axes if isinstance(axes, Diagnosis) else self._beyond_limits(axes)
+        is_same = refused is not None and refused.status == found
+        return self._solution(slot, refused if refused and is_same else Diagnosis(_STATUSES[found], "", 0.0))
 
     def _pose(self, frame: FrameLike) -> tuple[Vector, Rotation]:
         """Position and rotation as given; a mechanism that reads no rotation accepts any."""

@@ -264,8 +264,7 @@ class Mounted(Mechanism):
         position, rows = self._pose(frame)
         near, rotation = self._near(reference), self._made(rows)
         if isinstance(rotation, Diagnosis):
-            status = int(rotation.status)
-            return tuple(self._solution(slot, status) for slot in slots((AUTOMATIC,) * self.BRANCHES))
+            return tuple(self._solution(slot, rotation) for slot in slots((AUTOMATIC,) * self.BRANCHES))
         return self.bare.inverse_all(self._flange(*self._seen_from_base(position, rotation)), near)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:

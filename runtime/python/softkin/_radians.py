@@ -185,7 +185,9 @@ class InRadians(Mechanism):
 
     def _solution_in_radians(self, found: Solution) -> Solution:
         axes = None if found.axes is None else self._rad(found.axes)
-        return found._replace(axes=axes, others=tuple(self._rad(other) for other in found.others))
+        refusal = None if found.refusal is None else _said(found.refusal)
+        others = tuple(self._rad(other) for other in found.others)
+        return found._replace(axes=axes, others=others, refusal=refusal)
 
     def _every_solution(
         self, position: Vector, rotation: Rotation, reference: Reals

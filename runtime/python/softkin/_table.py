@@ -64,7 +64,9 @@ def whole_numbers(values: ArrayLike, count: int, size: int, what: str) -> NDArra
 
 def configuration_rows(robot: Mechanism, given: ArrayLike | ConfigurationLike | None, count: int) -> NDArray[np.int64]:
     """The bytes of `count` configurations; names, or a single row, stand for all, and None for the default."""
-    rows: Any = robot._bytes(given) if given is None or isinstance(given, str | Mapping) else given
+    rows: Any = robot.DEFAULT_CONFIGURATION if given is None else given
+    if isinstance(given, str | Mapping):
+        rows = robot._bytes(given)
     return whole_numbers(rows, count, len(robot.CONFIGURATION), "configurations")
 
 
