@@ -245,9 +245,16 @@ def files_of(
         texts = _texts(built, outputs)
         if cache and whole:
             cache.write(whole, texts)
-    return {name: text.encode() for name, text in texts.items()} | {
-        n: data for one in built for n, data in one.pictures.items() if Path(n).parts[0] in names
-    }
+    pictures = {n: data for one in built for n, data in one.pictures.items() if Path(n).parts[0] in names}
+    return {name: text.encode() for name, text in texts.items()} | pictures | dict(_drawings(built, outputs))
+
+
+def _drawings(built: Sequence[Built], outputs: Sequence[Language]) -> Iterator[tuple[str, bytes]]:
+    """The drawings beside the classes of the Python package, with their paths, if blocks are drawn, too."""
+    for language in (one for one in outputs if isinstance(one, NamedPackage) or one is python):
+        for one in built:
+            for data in (data for n, data in one.pictures.items() if n.endswith(".svg")):
+                yield f"{language.name}/{language.drawing(one.parts[language.name])}", data
 
 
 def _texts(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, str]:

@@ -29,6 +29,10 @@ class NamedPackage:
         """The files of one mechanism, and its entries in the lists."""
         return python.part(kinematics)
 
+    def drawing(self, part: Part) -> str:
+        """The file of the drawing of a mechanism."""
+        return self._path(python.drawing(part))
+
     def files(self, parts: Sequence[Part]) -> dict[str, str]:
         """All files of the package: path → text."""
         found = python.texts(parts, self.package)

@@ -41,6 +41,11 @@ def part(kinematics: Kinematics) -> Part:
     return {**found, "notes": list(given.notes), "inputs": dict(given.names)}
 
 
+def drawing(part: Part) -> str:
+    """The file of the drawing of a mechanism, which a notebook shows."""
+    return f"{PACKAGE}/_pictures/{part['index']['name']}.svg"
+
+
 def files(parts: Sequence[Part]) -> dict[str, str]:
     """All files of the package: path → text."""
     return formatted(texts(parts, PACKAGE))

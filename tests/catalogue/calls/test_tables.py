@@ -20,7 +20,11 @@ def test_all_that_a_machine_has_is_in_its_tables(name: str) -> None:
         mounted = bare.with_base(BASE).with_tool(tool_of(bare))
         for robot in (bare, bare.in_radians(), mounted, mounted.in_radians()):
             text = str(robot)
-            cells = ["".join(cell.itertext()) for cell in ET.fromstring(robot._repr_html_()).iter("td")]
+            page = ET.fromstring(robot._repr_html_())
+            cells = ["".join(cell.itertext()) for cell in page.iter("td")]
+            drawings = ["".join(drawing.itertext()) for drawing in page.iter("{http://www.w3.org/2000/svg}svg")]
+            assert len(drawings) == (2 if isinstance(bare, softkin.Coupled) else 1)
+            assert all(axis.name.removeprefix("orientation ") in "".join(drawings) for axis in robot.AXES)
             lines = text.splitlines()
             assert lines[0] == robot.NAME and "\n" not in repr(robot)
             expected = [name for axis in robot.AXES for name in (axis.name, axis.meaning)]
