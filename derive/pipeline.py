@@ -249,7 +249,16 @@ def files_of(
     found = {n: data for one in built for n, data in one.pictures.items() if Path(n).parts[0] in names}
     found |= {path: text.encode() for path, text in texts.items() if Path(path).parts[0] != fmu.name}
     archived = {str(Path(path).relative_to(fmu.name)): text for path, text in texts.items() if path not in found}
-    return found | {str(Path(fmu.name) / path): data for path, data in fmu.finished(archived).items()}
+    found |= {str(Path(fmu.name) / path): data for path, data in fmu.finished(archived).items()}
+    return found | dict(_drawings(built, outputs))
+
+
+def _drawings(built: Sequence[Built], outputs: Sequence[Language]) -> Iterator[tuple[str, bytes]]:
+    """The drawings beside the classes of the Python package, with their paths, if blocks are drawn, too."""
+    for language in (one for one in outputs if isinstance(one, NamedPackage) or one is python):
+        for one in built:
+            for data in (data for n, data in one.pictures.items() if n.endswith(".svg")):
+                yield f"{language.name}/{language.drawing(one.parts[language.name])}", data
 
 
 def _texts(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, str]:

@@ -59,6 +59,8 @@ def wrong_amounts(mechanism: Mechanism) -> Iterator[str]:
             yield f"{written(factor)} of the chain holds {strange}: it is made of +, -, *, powers, sines and cosines"
         elif factor.motion is Motion.TURN:
             yield from _wrong_turn(mechanism, factor)
+        else:
+            yield from _wrong_shift(mechanism, factor)
 
 
 def _strange(mechanism: Mechanism, amount: sp.Expr) -> sp.Basic | None:
@@ -90,6 +92,18 @@ def _wrong_turn(mechanism: Mechanism, factor: Factor) -> Iterator[str]:
     for joint in (j for j in mechanism.joints if j.is_angle):
         if sp.diff(factor.amount, joint.symbol).has(DEGREE):
             yield f"{place} of the chain converts {joint.name}, which is in radians already: leave out radians()"
+
+
+def _wrong_shift(mechanism: Mechanism, factor: Factor) -> Iterator[str]:
+    """A term that is a product of powers of lengths, such as an area, and no length."""
+    lengths = {p.symbol for p in mechanism.parameters if p.role in _LENGTHS}
+    lengths |= {j.symbol for j in mechanism.joints if not j.is_angle}
+    for term in sp.Add.make_args(sp.expand(factor.amount)):
+        powers = [part.as_base_exp() for part in sp.Mul.make_args(term) if part.free_symbols & lengths]
+        degree = sp.Add(*[exponent for _, exponent in powers])
+        if powers and all(base in lengths for base, _ in powers) and degree.is_number and degree not in (0, 1):
+            amount = sp.sstr(term, full_prec=False)
+            yield f"{written(factor)} of the chain shifts by {amount}, which is no length: its powers must add to 1"
 
 
 def with_exact_angles(mechanism: Mechanism) -> Mechanism:

@@ -14,7 +14,7 @@ from types import ModuleType
 from derive.description.fields import is_field
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.places import in_place, line_of_field
-from derive.description.remedies import with_remedy
+from derive.description.remedies import did_you_mean, with_remedy
 from derive.description.validate import validate
 
 _COMPILER = Path(__file__).resolve().parents[1]
@@ -102,7 +102,18 @@ def _fault(problem: BaseException, path: Path) -> str:
         text = f"{type(problem).__name__}: {_text(problem)}"
     field = re.match(r"(\w+) must", text)
     place = f"{path}:{line_of_field(path, field[1])}" if field and is_field(field[1]) else _line_of(problem, path)
-    return f"{place}: {with_remedy(text)}"
+    meant = _meant(problem)
+    return f"{place}: {text}; {meant}" if meant else f"{place}: {with_remedy(text)}"
+
+
+def _meant(problem: BaseException) -> str:
+    """The name that was meant: one that the file has, or an attribute of what it asks; empty if none is like it."""
+    if isinstance(problem, AttributeError):
+        return did_you_mean(problem.name or "", [] if problem.obj is None else dir(problem.obj))
+    if isinstance(problem, NameError):
+        frames = [frame for frame, _ in traceback.walk_tb(problem.__traceback__)]
+        return did_you_mean(problem.name or "", [*frames[-1].f_globals, *frames[-1].f_locals])
+    return ""
 
 
 def _with_aliases(mechanism: Mechanism) -> tuple[Mechanism, ...]:

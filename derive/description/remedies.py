@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from difflib import get_close_matches
 from inspect import signature
 
@@ -115,6 +116,11 @@ def _another_field(owner: str, word: str) -> str:
 
 def _another_name(word: str) -> str:
     """The word of the vocabulary that was meant, whatever its capital letters; empty if none is like it."""
-    known = {name.lower(): name for name in (*mechanism.__all__, *_FRAMES, "sin", "cos", "sqrt", "pi")}
+    return did_you_mean(word, (*mechanism.__all__, *_FRAMES, "sin", "cos", "sqrt", "pi"))
+
+
+def did_you_mean(word: str, names: Iterable[str]) -> str:
+    """The question about a name that is like a word, whatever its capital letters; empty if none is."""
+    known = {name.lower(): name for name in names if not name.startswith("_")}
     close = get_close_matches(word.lower(), known, 1, 0.8)
     return f"did you mean {known[close[0]]!r}?" if close and known[close[0]] != word else ""

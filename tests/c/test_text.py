@@ -111,9 +111,9 @@ def test_the_command_writes_it_alone(tmp_path: Path, capsys: pytest.CaptureFixtu
     capsys.readouterr()
 
 
-def test_the_program_of_the_readme() -> None:
-    """It compiles as the README says, and prints what the README says."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
+def test_the_program_of_the_guide() -> None:
+    """It compiles as docs/C.md says, and prints what the page says."""
+    text = (ROOT / "docs/C.md").read_text(encoding="utf-8")
     program = re.search(r"```c\n(.*?)```", text, re.DOTALL)
     printed = re.search(r"    cc -std=c99 (.*)\n    (.*)\n", text)
     assert program and printed

@@ -30,6 +30,8 @@ def with_parameter(name: str) -> str:
 WRONG: dict[str, str] = {
     "SyntaxError: …": changed(ARM, ("MECHANISM = Mechanism(", "MECHANISM = Mechanism((")),
     "NameError: name '…' is not defined; define it above this line": changed(ARM, ("Rz(A2)", "Rz(A3)")),
+    "…Error: …; did you mean '…'?": changed(ARM, ("Rz(A2)", "Rz(a2)")),
+    "… of the chain shifts by …, which is no length": changed(ARM, ("Tx(L1)", "Tx(L1**2)")),
     "ImportError: cannot import name …; joints and lengths are in derive.mechanism": changed(
         ARM, ("rotary\n", "knee\n")
     ),

@@ -109,7 +109,7 @@ def test_the_object_itself() -> None:
     """It cannot be made wrong, copied or changed; a machine of no name, or of wrong parameters, answers nothing."""
     from _softkin_native import Machine  # type: ignore[import-not-found]
 
-    key, good = softkin.Crane.KEY, (Frame, softkin.Solution, tuple(softkin.Status))
+    key, good = softkin.Crane.KEY, (Frame, softkin.Solution, softkin.Diagnosis, tuple(softkin.Status))
     count = len(softkin.Crane.PARAMETERS)
     for parameters in ((), (nan,) * count, (HUGE,) * count, ("1",) * count, None, 7):
         assert not Machine(key, parameters, *good).answers
@@ -118,7 +118,14 @@ def test_the_object_itself() -> None:
             assert not Machine(wrong, (), *good).answers
         except ValueError:
             assert wrong == "\0"
-    for given in ((), (key,), (key, (), 1, 2, ()), (key, (), int, str, ()), (key, (), *good, 1)):
+    for given in (
+        (),
+        (key,),
+        (key, (), 1, 2, 3, ()),
+        (key, (), int, str, int, ()),
+        (key, (), tuple, tuple, int, ()),
+        (key, (), *good, 1),
+    ):
         with pytest.raises(TypeError):
             Machine(*given)
     machine = Machine("", (), *good)

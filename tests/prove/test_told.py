@@ -1,4 +1,4 @@
-"""What is said of the proof: the table in the README is the one that is printed, and documents name what there is."""
+"""What is said of the proof: the table in docs/LINUXCNC.md is the printed one, and documents name what there is."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def shown() -> list[list[str]]:
-    """The rows of the table in the README."""
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    part = readme.partition("## On a real controller")[2].partition("\n## ")[0]
+    """The rows of the table in docs/LINUXCNC.md."""
+    page = (ROOT / "docs/LINUXCNC.md").read_text(encoding="utf-8")
+    part = page.partition("## On the real LinuxCNC")[2].partition("\n## ")[0]
     assert re.search(r"On 20\d\d-\d\d-\d\d, LinuxCNC 2\.9", part)
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in part.splitlines() if line[:1] == "|"]
 
 
-def test_the_readme_shows_every_machine_proven() -> None:
+def test_the_guide_shows_every_machine_proven() -> None:
     """Its head is that of the printed table, and no row claims what the verdict would call a fault."""
     head, _, *rows = shown()
     assert tuple(head) == HEAD

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import assert_type
 
+import numpy as np
 import softkin
 from softkin import Frame, KinematicsError, Mechanism, Scara4ZCcoupledType1
 
@@ -34,6 +35,10 @@ def moves(robot: Scara4ZCcoupledType1) -> tuple[float, ...]:
     assert_type(robot.nearest(frame, [0, 0, 0, 0], weights=[1, 1, 0, 1], measure="largest"), tuple[float, ...])
     named = robot.configuration(elbow="left", A4=2)
     assert_type(named.names, dict[str, str | int])
+    assert_type(robot.inverse(frame, {"elbow": "left", "A4": 2}), tuple[float, ...])
+    assert_type(frame @ (1.0, 2.0, 3.0), tuple[float, float, float])
+    assert_type(frame @ Frame.from_rpy(10.0, 20.0, 30.0), Frame)
+    print(robot.inverse(frame, "left"), (frame @ np.zeros((5, 3))).shape, frame.shifted(z=5.0))
     line = robot.line(frame, ((350.0, 200.0, 5.0), frame.rotation), robot.configuration(), samples=20)
     if line.stop is not None:
         print(line.stop.place, line.stop.refusal.in_words)

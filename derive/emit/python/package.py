@@ -45,6 +45,11 @@ def part(kinematics: Kinematics) -> Part:
     return {**found, "notes": list(given.notes), "inputs": dict(given.names)}
 
 
+def drawing(part: Part) -> str:
+    """The file of the drawing of a mechanism, which a notebook shows."""
+    return f"{PACKAGE}/_pictures/{part['index']['name']}.svg"
+
+
 def files(parts: Sequence[Part]) -> dict[str, str]:
     """All files of the package: path → text."""
     return formatted(texts(parts, PACKAGE))
@@ -85,6 +90,10 @@ class NamedPackage:
     def part(self, kinematics: Kinematics) -> Part:
         """The files of one mechanism, and its entries in the lists."""
         return python.part(kinematics)
+
+    def drawing(self, part: Part) -> str:
+        """The file of the drawing of a mechanism."""
+        return self._path(python.drawing(part))
 
     def files(self, parts: Sequence[Part]) -> dict[str, str]:
         """All files of the package: path → text."""

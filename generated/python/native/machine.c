@@ -23,9 +23,9 @@ typedef struct {
   const softkin_mechanism *kind; /* NULL: every call answers NotImplemented */
   softkin_in_lanes in_lanes;
   void *machine;
-  PyObject *frame, *solution, *named; /* the classes of results, and of a configuration by names */
-  PyObject *statuses;                 /* the members of the class Status, by their numbers */
-  PyObject *array;                    /* the class of arrays, once NumPy is there */
+  PyObject *frame, *solution, *diagnosis; /* the classes of results */
+  PyObject *statuses;                     /* the members of the class Status, by their numbers */
+  PyObject *array;                        /* the class of arrays, once NumPy is there */
 } machine_object;
 
 enum { SLOTS_ON_STACK = 16, SOFTKIN_MOST_ROWS = 24, SOFTKIN_MOST_MARGINS = 64 };
@@ -398,9 +398,21 @@ static PyObject *others_of(const softkin_others *others, int slot, int width) {
   return every;
 }
 
+/* Why a slot has no axes: status, reason with the unit of the missing amount, amount, turn. */
+static PyObject *diagnosis_of(const machine_object *self, const softkin_refusal *why) {
+  PyObject *found = named_tuple(self->diagnosis, 4);
+  PyObject *known = PyTuple_GetItem(self->statuses, why->status);
+  if (found == NULL || known == NULL || !put(found, 0, Py_NewRef(known))
+      || !put(found, 1, PyUnicode_FromFormat(why->unit[0] == '\0' ? "%s" : "%s [%s]", why->reason, why->unit))
+      || !put(found, 2, PyFloat_FromDouble(why->missing)) || !put(found, 3, PyLong_FromLong(why->turn))) {
+    return drop(found);
+  }
+  return found;
+}
+
 static PyObject *solution_of(const machine_object *self, softkin_status status, const double *axes,
-    const int8_t *bytes, PyObject *others) {
-  PyObject *found = others == NULL ? NULL : named_tuple(self->solution, 4);
+    const int8_t *bytes, PyObject *others, const softkin_refusal *why) {
+  PyObject *found = others == NULL ? NULL : named_tuple(self->solution, 5);
   if (found == NULL) {
     return drop(others);
   }
@@ -408,7 +420,8 @@ static PyObject *solution_of(const machine_object *self, softkin_status status, 
   PyObject *known = PyTuple_GetItem(self->statuses, status);
   if (!put(found, 3, others) || known == NULL || !put(found, 0, bytes_of(bytes, size))
       || !put(found, 1, status == SOFTKIN_OK ? reals_of(axes, self->kind->axis_count) : Py_NewRef(Py_None))
-      || !put(found, 2, Py_NewRef(known))) {
+      || !put(found, 2, Py_NewRef(known))
+      || !put(found, 4, status == SOFTKIN_OK ? Py_NewRef(Py_None) : diagnosis_of(self, why))) {
     return drop(found);
   }
   return found;
@@ -420,6 +433,7 @@ typedef struct {
   double axes[SLOTS_ON_STACK*SOFTKIN_MOST_AXES];
   int8_t bytes[SLOTS_ON_STACK*(SOFTKIN_MOST_BRANCHES + SOFTKIN_MOST_AXES)];
   softkin_status statuses[SLOTS_ON_STACK];
+  softkin_refusal whys[SLOTS_ON_STACK];
 } every_slot;
 
 static PyObject *solutions_of(const machine_object *self, const every_slot *found,
@@ -430,7 +444,7 @@ static PyObject *solutions_of(const machine_object *self, const every_slot *foun
     PyObject *further = others == NULL ? PyTuple_New(0) : others_of(others, slot, self->kind->axis_count);
     PyObject *own = solution_of(
         self, found->statuses[slot], &found->axes[slot*self->kind->axis_count], &found->bytes[slot*size],
-            further);
+            further, &found->whys[slot]);
     if (!put(every, slot, own)) {
       return drop(every);
     }
@@ -454,14 +468,14 @@ static PyObject *inverse_all(PyObject *object, PyObject *const *given, Py_ssize_
     int slots[SOFTKIN_MOST_SOLUTIONS];
     softkin_others others = {SOFTKIN_MOST_SOLUTIONS, axes, slots, 0};
     if (softkin_inverse_all(self->kind, self->machine, &frame, reference, found.statuses, found.axes,
-        found.bytes, NULL, &others)
+        found.bytes, found.whys, &others)
             != SOFTKIN_OK || others.count == SOFTKIN_MOST_SOLUTIONS) {
       return unanswered();
     }
     return solutions_of(self, &found, &others);
   }
   if (softkin_inverse_all(self->kind, self->machine, &frame, reference, found.statuses, found.axes,
-      found.bytes, NULL, NULL) != SOFTKIN_OK) {
+      found.bytes, found.whys, NULL) != SOFTKIN_OK) {
     return unanswered();
   }
   return solutions_of(self, &found, NULL);
@@ -735,23 +749,23 @@ static bool made(const softkin_mechanism *kind, PyObject *given, void *machine) 
   return is_made;
 }
 
-/* Machine(key, parameters, Frame, Solution, statuses): unknown keys and refused parameters give one that
+/* Machine(key, parameters, Frame, Solution, Diagnosis, statuses): unknown keys and refused parameters give one that
  * answers nothing. */
 static PyObject *make(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
   const char *key;
-  PyObject *parameters, *frame, *solution, *statuses;
+  PyObject *parameters, *frame, *solution, *diagnosis, *statuses;
   if (keywords != NULL && PyDict_Size(keywords) != 0) {
     PyErr_SetString(PyExc_TypeError, "Machine takes no keywords");
     return NULL;
   }
-  if (!PyArg_ParseTuple(arguments, "sOO!O!O!", &key, &parameters, &PyType_Type, &frame, &PyType_Type,
-      &solution,
-          &PyTuple_Type, &statuses)) {
+  if (!PyArg_ParseTuple(arguments, "sOO!O!O!O!", &key, &parameters, &PyType_Type, &frame, &PyType_Type,
+      &solution, &PyType_Type, &diagnosis, &PyTuple_Type, &statuses)) {
     return NULL;
   }
   if (!PyType_IsSubtype((PyTypeObject *)frame, &PyTuple_Type)
-      || !PyType_IsSubtype((PyTypeObject *)solution, &PyTuple_Type)) {
-    PyErr_SetString(PyExc_TypeError, "frames and solutions are tuples");
+      || !PyType_IsSubtype((PyTypeObject *)solution, &PyTuple_Type)
+      || !PyType_IsSubtype((PyTypeObject *)diagnosis, &PyTuple_Type)) {
+    PyErr_SetString(PyExc_TypeError, "frames, solutions and diagnoses are tuples");
     return NULL;
   }
   machine_object *self = (machine_object *)PyType_GenericAlloc(type, 0);
@@ -761,6 +775,7 @@ static PyObject *make(PyTypeObject *type, PyObject *arguments, PyObject *keyword
   const softkin_native *found = find(key);
   self->frame = Py_NewRef(frame);
   self->solution = Py_NewRef(solution);
+  self->diagnosis = Py_NewRef(diagnosis);
   self->statuses = Py_NewRef(statuses);
   if (found != NULL) {
     self->machine = PyMem_Calloc(1, found->kind->machine_size);
@@ -782,6 +797,7 @@ static void destroy(PyObject *object) {
   PyMem_Free(self->machine);
   Py_XDECREF(self->frame);
   Py_XDECREF(self->solution);
+  Py_XDECREF(self->diagnosis);
   Py_XDECREF(self->statuses);
   Py_XDECREF(self->array);
   freefunc release = (freefunc)PyType_GetSlot(type, Py_tp_free);

@@ -10,7 +10,7 @@ from math import isnan, nan
 from typing import Any
 
 from softkin._constants import LARGEST
-from softkin._types import FrameLike, KinematicsError, Numbers, Parameter, Rotation, Status, Vector
+from softkin._types import FrameLike, KinematicsError, Numbers, Parameter, Rotation, RotationLike, Status, Vector
 
 _LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 _ROUNDED = 1e-9
@@ -77,8 +77,14 @@ def rotation_of(frame: FrameLike) -> Rotation:
     return rotation_by_rows(rows)
 
 
-def rotation_by_rows(rows: Iterable[Numbers]) -> Rotation:
+def matrix_of(rotation: Any) -> Any:
+    """The matrix of an object that has one, as SciPy's `Rotation`; anything else as it is."""
+    return rotation.as_matrix() if hasattr(rotation, "as_matrix") else rotation
+
+
+def rotation_by_rows(rotation: RotationLike) -> Rotation:
     """A rotation by rows."""
+    rows: Any = matrix_of(rotation)
     refuse_strange(rows, "rotation must be three rows of three numbers")
     try:
         first, second, third = rows

@@ -22,6 +22,7 @@ from softkin._start import IterativeForward
 from softkin._tools import TILTS, check_tool, known_shift, rows_of
 from softkin._types import (
     Configuration,
+    ConfigurationLike,
     Diagnosis,
     FrameLike,
     KinematicsError,
@@ -147,7 +148,7 @@ class Mounted(Mechanism):
     def _period_bytes(self) -> list[int]:
         return self.bare._period_bytes
 
-    def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Turns]:
+    def _read(self, configuration: ConfigurationLike | None) -> tuple[Configuration, Turns]:
         return self.bare._read(configuration)
 
     def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:
@@ -269,8 +270,7 @@ class Mounted(Mechanism):
         position, rows = self._pose(frame)
         near, rotation = self._near(reference), self._made(rows)
         if isinstance(rotation, Diagnosis):
-            status = int(rotation.status)
-            return tuple(self._solution(slot, status) for slot in slots((AUTOMATIC,) * self.BRANCHES))
+            return tuple(self._solution(slot, rotation) for slot in slots((AUTOMATIC,) * self.BRANCHES))
         return self.bare.inverse_all(self._flange(*self._seen_from_base(position, rotation)), near)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:

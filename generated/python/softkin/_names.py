@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from softkin._configuration import AUTOMATIC, COINCIDE, FIRST, SECOND
 from softkin._input import bytes_of
@@ -51,6 +51,33 @@ def configuration(robot: Mechanism, given: Mapping[str, str | int]) -> NamedConf
             raise _bad(robot, f"it has no branch and no turn {name!r}: the names are {known}")
         found[places[name]] = _byte(robot, robot.CONFIGURATION[places[name]], value)
     return NamedConfiguration(tuple(found), robot.CONFIGURATION)
+
+
+def named(robot: Mechanism, given: Mapping[str, Any] | str) -> NamedConfiguration:
+    """The configuration with these names: branches and turns by the names of bytes, or a text of names of branches.
+
+    A text has one name for each branch byte, in order, or fewer that one byte alone has.
+    Raises BAD_INPUT for an unknown name, and for one that several bytes have.
+    """
+    if isinstance(given, Mapping):
+        return configuration(robot, {_keyword(str(name)): value for name, value in given.items()})
+    described = [byte for byte in robot.CONFIGURATION if byte.branches]
+    words = given.replace(",", " ").split()
+    in_order = list(zip(words, described, strict=False))
+    if len(words) == len(described) and all(word in byte.branches for word, byte in in_order):
+        return configuration(robot, {_keyword(byte.name): word for word, byte in in_order})
+    found: dict[str, str | int] = {}
+    for word in words:
+        owners = [_keyword(byte.name) for byte in described if word in byte.branches]
+        if len(owners) != 1 or owners[0] in found:
+            why = "is no branch" if not owners else "and another one are branches of one byte"
+            if len(owners) > 1:
+                why = f"is a branch of {' and of '.join(owners)}: give a mapping, or a name for each branch"
+            known = ", ".join(f"{byte.name} ({' or '.join(byte.branches)})" for byte in described)
+            known = f"its branches are {known}" if known else "it has one solution"
+            raise _bad(robot, f"the configuration {given!r}: {word!r} {why}; {known}")
+        found[owners[0]] = word
+    return configuration(robot, found)
 
 
 def names(robot: Mechanism, given: Configuration) -> dict[str, str | int]:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from softkin._constants import EXTENSION, SOURCES
 from softkin._frame import Frame
-from softkin._types import Solution, Status
+from softkin._types import Diagnosis, Solution, Status
 
 if TYPE_CHECKING:
     from softkin._core import Mechanism
@@ -64,7 +64,7 @@ def machine_of(robot: Mechanism, *, is_changed: bool = False) -> Any:
     own: Any = next(cls for cls in type(robot).__mro__ if "KEY" in vars(cls))
     is_changed = is_changed or any(getattr(type(robot), name) is not getattr(own, name) for name in _PROGRAMS)
     values = tuple(robot.parameters[p.name] for p in robot.PARAMETERS)
-    return _NATIVE.Machine("" if is_changed else own.KEY, values, Frame, Solution, _STATUSES)
+    return _NATIVE.Machine("" if is_changed else own.KEY, values, Frame, Solution, Diagnosis, _STATUSES)
 
 
 def take_over(cls: type[Mechanism]) -> bool:

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 
 from softkin._array import Array, Codes
 from softkin._columns import Bytes, Table
-from softkin._table import numbers, whole_numbers
+from softkin._table import configuration_rows, numbers
+from softkin._types import ConfigurationLike
 
 if TYPE_CHECKING:
     from softkin._core import Mechanism
@@ -43,13 +44,12 @@ def inverse(
     robot: Mechanism,
     positions: ArrayLike,
     rotations: ArrayLike | None,
-    bytes_: ArrayLike | None,
+    bytes_: ArrayLike | ConfigurationLike | None,
     references: ArrayLike | None,
 ) -> tuple[Array, Codes]:
     """Inverse kinematics of every row."""
     table = Table(robot, positions, rotations, references)
-    given = robot.DEFAULT_CONFIGURATION if bytes_ is None else bytes_
-    codes = whole_numbers(given, table.count, len(robot.CONFIGURATION), "configurations")
+    codes = configuration_rows(robot, bytes_, table.count)
     asked = (table.positions, table.rotations, codes, table.references)
     found = np.empty((table.count, len(robot.AXES))), np.empty(table.count, np.uint8)
     _in_pieces(table.count, lambda start, stop: robot._machine.inverse_rows(*asked, *found, start, stop))

@@ -20,6 +20,7 @@ from softkin._twist import TwistChoice
 from softkin._types import (
     Axis,
     Configuration,
+    ConfigurationLike,
     Diagnosis,
     FrameLike,
     Matrix,
@@ -185,7 +186,9 @@ class InRadians(Mechanism):
 
     def _solution_in_radians(self, found: Solution) -> Solution:
         axes = None if found.axes is None else self._rad(found.axes)
-        return found._replace(axes=axes, others=tuple(self._rad(other) for other in found.others))
+        refusal = None if found.refusal is None else _said(found.refusal)
+        others = tuple(self._rad(other) for other in found.others)
+        return found._replace(axes=axes, others=others, refusal=refusal)
 
     def _every_solution(
         self, position: Vector, rotation: Rotation, reference: Reals
@@ -257,7 +260,7 @@ class InRadians(Mechanism):
     def _period_bytes(self) -> list[int]:
         return self.part._period_bytes
 
-    def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Turns]:
+    def _read(self, configuration: ConfigurationLike | None) -> tuple[Configuration, Turns]:
         return self.part._read(configuration)
 
     def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:

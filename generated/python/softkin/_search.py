@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 
 from softkin._configuration import AUTOMATIC, Slot, slots
 from softkin._constants import FREE_ANGLE
@@ -48,20 +49,21 @@ class SearchedInverse(Mechanism):
         position, rows = self._pose(frame)
         near, rotation, every = self._near(reference), self._made(rows), slots((AUTOMATIC,) * self.BRANCHES)
         if isinstance(rotation, Diagnosis):
-            return tuple(self._solution(slot, int(rotation.status)) for slot in every)
+            return tuple(self._solution(slot, rotation) for slot in every)
         turns = (0,) * len(self.PERIOD_AXES)
         given = self._search_given(position, rotation, every[0][1], turns, near)
+        explained = partial(self._explained, position, rotation, near)
         if isinstance(given, Status):
-            return tuple(self._solution(slot, int(given)) for slot in every)
+            return tuple(explained(slot, int(given)) for slot in every)
         if not self._is_searched():
             answers = (self._branch(position, rotation, slot[1], turns, near) for slot in every)
-            return tuple(map(self._solution, every, map(self._inside, answers)))
+            return tuple(map(self._solution, every, (self._refused_or(axes) for axes in answers)))
         found: dict[Signs, list[Reals]] = {}
         for signs in dict.fromkeys(slot[1][: self.SIDES] for slot in every):
             given = self._search_given(position, rotation, (*signs, *(0,) * (self.BRANCHES - self.SIDES)), turns, near)
             for joints in self._all_joints(given) if not isinstance(given, Status) else ():
                 self._sort_in(found, self._from_joints(joints, turns, near))
-        return tuple(self._solutions(slot, found.get(slot[1], [])) for slot in every)
+        return tuple(self._solutions(explained, slot, found.get(slot[1], [])) for slot in every)
 
     def _every_solution(
         self, position: Vector, rotation: Rotation, reference: Reals
@@ -105,10 +107,16 @@ class SearchedInverse(Mechanism):
             if not any(self._are_same(axes, other) for other in others):
                 others.append(axes)
 
-    def _solutions(self, slot: Slot, found: Sequence[Reals]) -> Solution:
+    def _refused_or(self, axes: Reals | Diagnosis) -> Reals | Diagnosis:
+        """The axes if they are inside their limits, else the reason why not."""
+        return axes if isinstance(axes, Diagnosis) else self._beyond_limits(axes) or axes
+
+    def _solutions(
+        self, explained: Callable[[Slot, Reals | int], Solution], slot: Slot, found: Sequence[Reals]
+    ) -> Solution:
         """The slot with its solutions inside the limits, the nearest one first."""
         allowed = [axes for axes in found if self._beyond_limits(axes) is None]
-        first = self._solution(slot, allowed[0] if allowed else int(Status.UNREACHABLE))
+        first = explained(slot, allowed[0] if allowed else int(Status.UNREACHABLE))
         return first._replace(others=tuple(allowed[1:]))
 
     def _are_same(self, axes: Reals, other: Reals) -> bool:

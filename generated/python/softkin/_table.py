@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from softkin._input import refuse_strange
-from softkin._types import FrameLike, KinematicsError, Status
+from softkin._input import matrix_of, refuse_strange
+from softkin._types import ConfigurationLike, FrameLike, KinematicsError, Status
+
+if TYPE_CHECKING:
+    from softkin._core import Mechanism
 
 _Number = TypeVar("_Number", np.float64, np.int64)
 
@@ -25,7 +29,7 @@ def numbers(values: ArrayLike, count: int | None, row: tuple[int, ...], what: st
 def poses(positions: ArrayLike, rotations: ArrayLike | None) -> tuple[ArrayLike, ArrayLike | None]:
     """Positions and rotations: those that are given, or those of frames (N, 4, 4) in the place of the positions."""
     if rotations is not None:
-        return positions, rotations
+        return positions, matrix_of(rotations)
     found = _array(positions, "positions")
     if found.ndim != 3 or found.shape[1:] != (4, 4) or found.dtype.kind not in "fiub":
         return positions, None
@@ -57,6 +61,14 @@ def whole_numbers(values: ArrayLike, count: int, size: int, what: str) -> NDArra
     if found.dtype.kind not in "iub" and found.size > 0:
         raise _bad(f"{what} must be whole numbers, not {found.dtype}")
     return _shaped(found.astype(np.int64, copy=False), count, (size,), what)
+
+
+def configuration_rows(robot: Mechanism, given: ArrayLike | ConfigurationLike | None, count: int) -> NDArray[np.int64]:
+    """The bytes of `count` configurations; names, or a single row, stand for all, and None for the default."""
+    rows: Any = robot.DEFAULT_CONFIGURATION if given is None else given
+    if isinstance(given, str | Mapping):
+        rows = robot._bytes(given)
+    return whole_numbers(rows, count, len(robot.CONFIGURATION), "configurations")
 
 
 def _array(values: object, what: str) -> NDArray[np.generic]:

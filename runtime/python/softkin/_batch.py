@@ -26,8 +26,8 @@ from softkin._array_rotation import made_rotations
 from softkin._columns import Bytes, Configurations, Mask, Poses, Rows, Table, columns, configurations
 from softkin._configuration import COINCIDE, COINCIDENT, FIRST, SECOND
 from softkin._constants import EDGE, OF_A_SEARCH
-from softkin._table import numbers, starts, whole_numbers
-from softkin._types import FrameLike, Status
+from softkin._table import configuration_rows, numbers, starts
+from softkin._types import ConfigurationLike, FrameLike, Status
 
 if TYPE_CHECKING:
     from softkin._core import Mechanism
@@ -107,13 +107,12 @@ def inverse(
     programs: Programs,
     positions: ArrayLike,
     rotations: ArrayLike | None,
-    bytes_: ArrayLike | None,
+    bytes_: ArrayLike | ConfigurationLike | None,
     references: ArrayLike | None,
 ) -> tuple[Array, Codes]:
     """Inverse kinematics of every row."""
     table = Table(robot, positions, rotations, references)
-    given = robot.DEFAULT_CONFIGURATION if bytes_ is None else bytes_
-    codes = whole_numbers(given, table.count, len(robot.CONFIGURATION), "configurations")
+    codes = configuration_rows(robot, bytes_, table.count)
     axes, statuses = np.empty((table.count, len(robot.AXES))), np.empty(table.count, np.uint8)
     for rows in _chunks(table.count):
         with np.errstate(all="ignore"):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from math import inf, isfinite, nan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, Protocol, Self, TypeAlias, cast
@@ -31,6 +32,7 @@ from softkin._types import (
     Axis,
     Configuration,
     ConfigurationByte,
+    ConfigurationLike,
     Diagnosis,
     FrameLike,
     KinematicsError,
@@ -279,14 +281,15 @@ class Mechanism(Value, ABC):
         return rows
 
     def inverse(
-        self, frame: FrameLike, configuration: Iterable[int] | None = None, reference: Numbers | None = None
+        self, frame: FrameLike, configuration: ConfigurationLike | None = None, reference: Numbers | None = None
     ) -> Reals:
         """The axis values that reach a frame.
 
         frame: position (3) and rotation (3 rows of 3), a `Frame` or any pair of sequences, or a matrix (4, 4). A
         rotation with few exact digits, as from single precision, is repaired: the direction of z is kept. No entry of
         R^T R - I may be beyond 0.0001.
-        configuration: see `CONFIGURATION`; None stands for `DEFAULT_CONFIGURATION`. If it leaves a branch open, the
+        configuration: see `CONFIGURATION`; bytes, or names as in `{"elbow": "left"}`; None stands for
+        `DEFAULT_CONFIGURATION`. If it leaves a branch open, the
         solution nearest to the reference is taken. If it leaves a period open, an axis whose limits are at most
         350 degrees apart takes its one value inside them; any other axis takes the value nearest to the
         reference. Limits then refuse, and never choose another turn: for a move from point to point name the period of
@@ -308,17 +311,17 @@ class Mechanism(Value, ABC):
     def inverse_all(self, frame: FrameLike, reference: Numbers | None = None) -> Sequence[Solution]:
         """Every branch of the inverse, in fixed slots: branch 1 before branch 2, the first byte varies fastest.
 
-        Periods are open, as in `inverse`. No slot is left out: a slot without axes has a status, also where the axes
-        are beyond limits. `diagnose`, with the branches of its configuration, gives the reason, and whether another
-        turn is inside. Raises BAD_INPUT only for input that does not have the form of a frame. The result behaves as a
-        tuple.
+        Periods are open, as in `inverse`. No slot is left out: a slot without axes has a status, and a `refusal` with
+        the reason, such as the axis that is beyond a limit, by how much, and whether another turn is inside. Raises
+        BAD_INPUT only for input that does not have the form of a frame. The result behaves as a tuple.
         """
         position, rows = self._pose(frame)
         near, rotation = self._near(reference), self._made(rows)
         every = slots((AUTOMATIC,) * self.BRANCHES)
         if isinstance(rotation, Diagnosis):
-            return Solutions((int(rotation.status),) * len(every), every, self._solution)
-        return Solutions(self._every_branch(position, rotation, near), every, self._solution)
+            return Solutions((rotation,) * len(every), every, self._solution)
+        explained = partial(self._explained, position, rotation, near)
+        return Solutions(self._every_branch(position, rotation, near), every, explained)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None if it has no solution.
@@ -341,7 +344,7 @@ class Mechanism(Value, ABC):
         return None if isinstance(axes, Diagnosis) else axes
 
     def diagnose(
-        self, frame: FrameLike, configuration: Iterable[int] | None = None, reference: Numbers | None = None
+        self, frame: FrameLike, configuration: ConfigurationLike | None = None, reference: Numbers | None = None
     ) -> Diagnosis:
         """Why `inverse` refuses these arguments, without raising: which quantity, and how much is missing.
 
@@ -421,7 +424,7 @@ class Mechanism(Value, ABC):
 
         return _names.configuration(self, names)
 
-    def names(self, configuration: Iterable[int]) -> dict[str, str | int]:
+    def names(self, configuration: ConfigurationLike) -> dict[str, str | int]:
         """The inverse of `configuration`: by the name of each byte, the name of the branch or the number of the turn.
 
         An open branch is `automatic`; `coincide` where `forward` says that the branches meet.
@@ -429,12 +432,12 @@ class Mechanism(Value, ABC):
         """
         from softkin import _names
 
-        return _names.names(self, bytes_of(configuration, len(self.CONFIGURATION)))
+        return _names.names(self, self._bytes(configuration))
 
     def path(
         self,
         frames: Iterable[FrameLike],
-        configuration: Iterable[int] | None = None,
+        configuration: ConfigurationLike | None = None,
         reference: Numbers | None = None,
         *,
         samples: int = 1,
@@ -458,7 +461,7 @@ class Mechanism(Value, ABC):
         self,
         start: FrameLike,
         goal: FrameLike,
-        configuration: Iterable[int] | None = None,
+        configuration: ConfigurationLike | None = None,
         reference: Numbers | None = None,
         *,
         samples: int = 100,
@@ -466,6 +469,18 @@ class Mechanism(Value, ABC):
     ) -> Path:
         """The path from one frame straight to another: `path` of both."""
         return self.path((start, goal), configuration, reference, samples=samples, singular=singular)
+
+    def __str__(self) -> str:
+        """A table of the axes with their limits, the parameters that are given, and the branches, by name."""
+        from softkin import _tables
+
+        return _tables.text(self)
+
+    def _repr_html_(self) -> str:
+        """For a notebook: the same tables, and the drawing of a machine of the catalogue."""
+        from softkin import _tables
+
+        return _tables.html(self)
 
     def in_radians(self) -> Self:
         """The same machine with radians for degrees: axes, references, offsets, limits, the amounts of `diagnose`.
@@ -652,15 +667,15 @@ class Mechanism(Value, ABC):
         self,
         positions: ArrayLike,
         rotations: ArrayLike | None = None,
-        configurations: ArrayLike | None = None,
+        configurations: ArrayLike | ConfigurationLike | None = None,
         references: ArrayLike | None = None,
     ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
         """Inverse kinematics of N rows → axes (N, n), statuses (N,).
 
         positions (N, 3); rotations (N, 3, 3), not read (and may be None) where `READS_ROTATION` is False. Frames, or
         their matrices (N, 4, 4), may stand in the place of both: `inverse_batch(frames)`.
-        configurations (N, m), or (m,) for all rows, or None for the default; references (N, n), or (n,) for all rows,
-        or None for zeros.
+        configurations (N, m), or (m,) or names for all rows, or None for the default; references (N, n), or (n,) for
+        all rows, or None for zeros.
         A row whose status is not OK holds NaN. Raises BAD_INPUT for a wrong shape.
         """
         from softkin import _batch
@@ -752,12 +767,23 @@ class Mechanism(Value, ABC):
         refused = self._beyond_limits(axes)
         return axes if refused is None else int(refused.status)
 
-    def _solution(self, slot: Slot, found: Reals | int) -> Solution:
-        """The solution of a slot, with its configuration."""
+    def _solution(self, slot: Slot, found: Reals | Diagnosis) -> Solution:
+        """The solution of a slot, with its configuration, or the reason why it has none."""
         branches, _ = slot
-        if isinstance(found, tuple):
-            return Solution(self._joined(branches, self._periods(found)), found, Status.OK)
-        return Solution(self._joined(branches, (0,) * len(self.PERIOD_AXES)), None, _STATUSES[found])
+        if isinstance(found, Diagnosis):
+            return Solution(self._joined(branches, (0,) * len(self.PERIOD_AXES)), None, found.status, (), found)
+        return Solution(self._joined(branches, self._periods(found)), found, Status.OK)
+
+    def _explained(
+        self, position: Vector, rotation: Rotation, reference: Reals, slot: Slot, found: Reals | int
+    ) -> Solution:
+        """The solution of a slot; for the number of a status, the slot is solved again for its reason."""
+        if not isinstance(found, int):
+            return self._solution(slot, found)
+        axes = self._branch(position, rotation, slot[1], (0,) * len(self.PERIOD_AXES), reference)
+        refused = axes if isinstance(axes, Diagnosis) else self._beyond_limits(axes)
+        is_same = refused is not None and refused.status == found
+        return self._solution(slot, refused if refused and is_same else Diagnosis(_STATUSES[found], "", 0.0))
 
     def _pose(self, frame: FrameLike) -> tuple[Vector, Rotation]:
         """Position and rotation as given; a mechanism that reads no rotation accepts any."""
@@ -796,11 +822,19 @@ class Mechanism(Value, ABC):
             )
         return (0.0,) * len(self.AXES)
 
-    def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Turns]:
-        """The branch bytes, and the numbers of the commanded turns."""
+    def _bytes(self, configuration: ConfigurationLike | None) -> Configuration:
+        """The bytes of a configuration in any of its forms."""
         if configuration is None:
-            configuration = self.DEFAULT_CONFIGURATION
-        found = bytes_of(configuration, len(self.CONFIGURATION))
+            return self.DEFAULT_CONFIGURATION
+        if isinstance(configuration, str | Mapping):
+            from softkin import _names
+
+            return _names.named(self, configuration)
+        return bytes_of(configuration, len(self.CONFIGURATION))
+
+    def _read(self, configuration: ConfigurationLike | None) -> tuple[Configuration, Turns]:
+        """The branch bytes, and the numbers of the commanded turns."""
+        found = self._bytes(configuration)
         return found[: self.BRANCHES], found[self.BRANCHES :]
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self, TypeAlias, TypeVar
@@ -11,13 +11,13 @@ from softkin._configuration import Criterion
 from softkin._constants import TIE
 from softkin._core import SEVERAL_AXES, TURN, TWIST, Image, Mechanism, Pose
 from softkin._ends import Ends
-from softkin._input import bytes_of
 from softkin._orientation import OrientationKinematics, turning_axis
 from softkin._twist import TwistChoice
 from softkin._types import (
     Axis,
     Configuration,
     ConfigurationByte,
+    ConfigurationLike,
     Diagnosis,
     KinematicsError,
     Matrix,
@@ -176,10 +176,9 @@ class Coupled(Mechanism):
     def _period_bytes(self) -> list[int]:
         return [i for i, byte in enumerate(self.CONFIGURATION) if byte.kind == "period"]
 
-    def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Turns]:
+    def _read(self, configuration: ConfigurationLike | None) -> tuple[Configuration, Turns]:
         """The branch bytes and the commanded turns of both parts."""
-        given = self.DEFAULT_CONFIGURATION if configuration is None else configuration
-        found = bytes_of(given, len(self.CONFIGURATION))
+        found = self._bytes(configuration)
         return tuple(found[i] for i in self._branch_bytes), tuple(found[i] for i in self._period_bytes)
 
     def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from math import cos, hypot, sin
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, overload
 
 from softkin._constants import FREE_ANGLE, LARGEST, LARGEST_ERROR
 from softkin._input import pose_of, reals, rotation_by_rows
 from softkin._rotation import in_words, made_rotation
 from softkin._scalar import DEGREE, RADIAN, atan2
-from softkin._types import Diagnosis, FrameLike, KinematicsError, Numbers, Rotation, Status, Vector
+from softkin._types import Diagnosis, FrameLike, KinematicsError, Numbers, Rotation, RotationLike, Status, Vector
 from softkin._vectors import plus, product, transposed, turned
 
 if TYPE_CHECKING:
@@ -57,12 +57,25 @@ class Frame(_Parts):
         return cls.of(rows)  # type: ignore[arg-type]
 
     @classmethod
-    def from_quaternion(cls, quaternion: Numbers, position: Numbers = ORIGIN) -> Frame:
-        """The frame with the rotation of a quaternion x, y, z, w: the scalar is last, as in SciPy and ROS.
+    def from_rotation(cls, rotation: RotationLike, position: Numbers = ORIGIN) -> Frame:
+        """The frame with a rotation: three rows, or an object that has `as_matrix`, as SciPy's `Rotation`.
 
-        Raises BAD_INPUT for a length that differs from one by more than 0.0001.
+        It is made orthonormal; errors as in `orthonormalize`.
         """
+        return cls(_place(position), orthonormalize(rotation))
+
+    @classmethod
+    def from_quaternion(cls, quaternion: Numbers, position: Numbers = ORIGIN, *, order: str = "xyzw") -> Frame:
+        """The frame with the rotation of a quaternion.
+
+        order: `xyzw`, the scalar is last, as in SciPy and ROS; or `wxyz`, the scalar is first, as in MuJoCo and Eigen's
+        constructor. Raises BAD_INPUT for another order, and for a length that differs from one by more than 0.0001.
+        """
+        if order not in ("xyzw", "wxyz"):
+            raise KinematicsError(Status.BAD_INPUT, f"the order of a quaternion is xyzw or wxyz, not {order!r}")
         given = reals(quaternion, 4, "quaternion")
+        if order == "wxyz":
+            given = (*given[1:], given[0])
         length = hypot(*given)
         if not abs(length - 1.0) <= LARGEST_ERROR:
             raise KinematicsError(Status.BAD_INPUT, f"quaternion not of length one by {abs(length - 1.0):.2g}: {given}")
@@ -82,12 +95,22 @@ class Frame(_Parts):
         `SMC_GroupSetTool` documents it. (In G-code, A, B and C are axes of the machine.) Raises BAD_INPUT for numbers
         that are not finite.
         """
-        angles = _finite(reals((a, b, c), 3, "angles"), "angles")
-        (cos_a, sin_a), (cos_b, sin_b), (cos_c, sin_c) = [(cos(DEGREE * t), sin(DEGREE * t)) for t in angles]
-        about_a: Rotation = ((cos_a, -sin_a, 0.0), (sin_a, cos_a, 0.0), (0.0, 0.0, 1.0))
-        about_b: Rotation = ((cos_b, 0.0, sin_b), (0.0, 1.0, 0.0), (-sin_b, 0.0, cos_b))
-        about_c: Rotation = ((cos_c, -sin_c, 0.0), (sin_c, cos_c, 0.0), (0.0, 0.0, 1.0))
-        return cls(_place(position), product(product(about_a, about_b), about_c))
+        a, b, c = _finite(reals((a, b, c), 3, "angles"), "angles")
+        return cls(_place(position), product(product(_about_z(a), _about_y(b)), _about_z(c)))
+
+    @classmethod
+    def from_rpy(
+        cls, roll: float, pitch: float, yaw: float, position: Numbers = ORIGIN, *, radians: bool = False
+    ) -> Frame:
+        """The frame with the rotation of roll, pitch and yaw, as in URDF and ROS: R = Rz(yaw) Ry(pitch) Rx(roll).
+
+        The angles are in degrees, as everywhere here; `radians=True` takes those of a URDF as they stand there. Raises
+        BAD_INPUT for numbers that are not finite.
+        """
+        x, y, z = _finite(reals((roll, pitch, yaw), 3, "angles"), "angles")
+        if radians:
+            x, y, z = RADIAN * x, RADIAN * y, RADIAN * z
+        return cls(_place(position), product(product(_about_z(z), _about_y(y)), _about_x(x)))
 
     @property
     def matrix(self) -> NDArray[np.float64]:
@@ -124,21 +147,64 @@ class Frame(_Parts):
         b = atan2(across if across > _NO_DIRECTION else 0.0, z)
         return RADIAN * a, RADIAN * b, RADIAN * c
 
+    @property
+    def rpy(self) -> Vector:
+        """Roll, pitch and yaw in degrees, as `from_rpy` takes them: pitch in [-90, 90].
+
+        Where x of the frame is parallel to z (the cosine of the pitch is at most 1e-11), yaw is 0, roll the whole turn.
+        """
+        (x, r12, r13), (y, r22, r23), (z, _, _) = orthonormalize(self.rotation)
+        across = hypot(x, y)
+        cos_yaw, sin_yaw = (x / across, y / across) if across > _NO_DIRECTION else (1.0, 0.0)
+        # the second row of Rz(-yaw) R is that of Rx(roll)
+        roll = atan2(sin_yaw * r13 - cos_yaw * r23, cos_yaw * r22 - sin_yaw * r12)
+        pitch = atan2(0.0 - z, across if across > _NO_DIRECTION else 0.0)
+        return RADIAN * roll, RADIAN * pitch, RADIAN * atan2(sin_yaw, cos_yaw)
+
+    def shifted(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Frame:
+        """This frame moved along the axes in which it is given; `frame @ Frame((x, y, z))` moves it along its own."""
+        return Frame(plus(self.position, _place((x, y, z))), self.rotation)
+
     def inverse(self) -> Frame:
         """The frame in which this one is the origin: `frame @ frame.inverse()` is the identity."""
         back = transposed(orthonormalize(self.rotation))
         x, y, z = turned(back, self.position)
         return Frame((0.0 - x, 0.0 - y, 0.0 - z), back)
 
-    def __matmul__(self, other: FrameLike) -> Frame:
-        """The other frame, which is given relative to this one."""
-        position, rotation = Frame.of(other)
+    @overload
+    def __matmul__(self, other: Vector) -> Vector: ...
+
+    @overload
+    def __matmul__(self, other: NDArray[Any]) -> Any: ...
+
+    @overload
+    def __matmul__(self, other: FrameLike) -> Frame: ...
+
+    def __matmul__(self, other: Any) -> Any:
+        """The other frame, or a point, which is given relative to this one; in the coordinates of this one.
+
+        other: a frame in any form; the three numbers of a point, which give a tuple; or an array of points (..., 3),
+        which gives an array of this shape. An array (3, 3) is three points: for a rotation see `from_rotation`.
+        """
         base = orthonormalize(self.rotation)
+        if getattr(other, "shape", ())[-1:] == (3,):
+            import numpy as np
+
+            return np.asarray(other, np.float64) @ np.asarray(base).T + self.position
+        if isinstance(other, tuple | list) and len(other) == 3 and not any(isinstance(v, Iterable) for v in other):
+            return plus(self.position, turned(base, _place(other)))
+        position, rotation = Frame.of(other)
         return Frame(plus(self.position, turned(base, position)), product(base, rotation))
 
     def __rmatmul__(self, other: FrameLike) -> Frame:
         """This frame, which is given relative to the other one: a matrix (4, 4) or a pair."""
         return Frame.of(other) @ self
+
+    def __add__(self, other: object) -> NoReturn:
+        """A frame is no sum: the concatenation of tuples would be no frame."""
+        raise TypeError("frames are not added: `frame.shifted(x, y, z)` moves a frame, `a @ b` puts b into a")
+
+    __radd__ = __mul__ = __rmul__ = __add__
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         """The homogeneous matrix (4, 4)."""
@@ -147,9 +213,10 @@ class Frame(_Parts):
         return self.matrix if dtype is None else self.matrix.astype(dtype)
 
 
-def orthonormalize(rotation: Iterable[Numbers], largest_error: float = LARGEST_ERROR) -> Rotation:
-    """The rotation (3 rows of 3) made orthonormal: z keeps its direction, x is made perpendicular to it, y = z x x.
+def orthonormalize(rotation: RotationLike, largest_error: float = LARGEST_ERROR) -> Rotation:
+    """The rotation made orthonormal: z keeps its direction, x is made perpendicular to it, y = z x x.
 
+    rotation: 3 rows of 3, or an object that has `as_matrix`.
     largest_error: no entry of |R^T R - I| may be larger; the default is what all calls accept. Up to it the result is
     that of the calls and of the blocks: a rotation that is exact to 1e-12 is returned as it is.
     Raises BAD_INPUT for a matrix that is no rotation; the message says by how much.
@@ -161,6 +228,21 @@ def orthonormalize(rotation: Iterable[Numbers], largest_error: float = LARGEST_E
     if isinstance(made, Diagnosis):
         raise KinematicsError(made.status, f"no rotation: {in_words(made)}", made)
     return made
+
+
+def _about_x(angle: float) -> Rotation:
+    c, s = cos(DEGREE * angle), sin(DEGREE * angle)
+    return (1.0, 0.0, 0.0), (0.0, c, -s), (0.0, s, c)
+
+
+def _about_y(angle: float) -> Rotation:
+    c, s = cos(DEGREE * angle), sin(DEGREE * angle)
+    return (c, 0.0, s), (0.0, 1.0, 0.0), (-s, 0.0, c)
+
+
+def _about_z(angle: float) -> Rotation:
+    c, s = cos(DEGREE * angle), sin(DEGREE * angle)
+    return (c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)
 
 
 def _error(rows: Rotation) -> float:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable
 
 from softkin._core import Mechanism
 from softkin._input import reals
-from softkin._types import Configuration, Diagnosis, Numbers, Reals, Signs, Status, Turns, Vector
+from softkin._types import Configuration, ConfigurationLike, Diagnosis, Numbers, Reals, Signs, Status, Turns, Vector
 
 
 class OffsetKinematics(Mechanism):
@@ -23,7 +22,7 @@ class OffsetKinematics(Mechanism):
         self,
         point: Numbers,
         offset: Numbers,
-        configuration: Iterable[int] | None = None,
+        configuration: ConfigurationLike | None = None,
         reference: Numbers | None = None,
     ) -> Reals:
         """The axis values that bring a point of the flange to a position.

@@ -10,7 +10,17 @@ from typing import TYPE_CHECKING, NamedTuple
 from softkin._configuration import slots
 from softkin._frame import Frame
 from softkin._slerp import between
-from softkin._types import Configuration, Diagnosis, FrameLike, KinematicsError, Numbers, Reals, Signs, Status
+from softkin._types import (
+    Configuration,
+    ConfigurationLike,
+    Diagnosis,
+    FrameLike,
+    KinematicsError,
+    Numbers,
+    Reals,
+    Signs,
+    Status,
+)
 
 if TYPE_CHECKING:
     from softkin._core import Mechanism
@@ -46,7 +56,7 @@ class Stretch(NamedTuple):
     """Its least size at the samples."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Path:
     """The axes along a path, up to its end or to where it stops."""
 
@@ -69,6 +79,11 @@ class Path:
     def __bool__(self) -> bool:
         """Whether it reaches its last frame."""
         return self.stop is None
+
+    def __repr__(self) -> str:
+        """The machine, the number of samples, and where the path stops."""
+        end = f"stops at {self.stop.place:.6g}: {self.stop.refusal.in_words}" if self.stop else "reaches its last frame"
+        return f"<Path of {self.robot.NAME}: {len(self.axes)} samples, {end}>"
 
     @property
     def configuration(self) -> Configuration:
@@ -122,7 +137,7 @@ def _solved(path: Path, place: float, near: Reals) -> Reals | Diagnosis:
 def path(
     robot: Mechanism,
     frames: Iterable[FrameLike],
-    configuration: Iterable[int] | None,
+    configuration: ConfigurationLike | None,
     reference: Numbers | None,
     samples: int,
     singular: float,

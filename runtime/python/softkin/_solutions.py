@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import TypeAlias, overload
+from typing import Any, TypeAlias, overload
 
 from softkin._configuration import Slot
-from softkin._types import Reals, Solution
+from softkin._types import Diagnosis, Reals, Solution
 
-_Make: TypeAlias = Callable[[Slot, Reals | int], Solution]
+_Make: TypeAlias = Callable[[Slot, Any], Solution]
 
 
 class Solutions(Sequence[Solution]):
@@ -16,8 +16,8 @@ class Solutions(Sequence[Solution]):
 
     __slots__ = ("_found", "_make", "_slots")
 
-    def __init__(self, found: tuple[Reals | int, ...], slots: tuple[Slot, ...], make: _Make) -> None:
-        """found: the axes of each slot, or the number of its status; make: creates the solution of a slot."""
+    def __init__(self, found: tuple[Reals | int | Diagnosis, ...], slots: tuple[Slot, ...], make: _Make) -> None:
+        """found: the axes of each slot, or the number of its status, or the reason; make: creates the solution."""
         self._found, self._slots, self._make = found, slots, make
 
     def __len__(self) -> int:

@@ -23,6 +23,10 @@ Matrix: TypeAlias = tuple[Reals, ...]
 Configuration: TypeAlias = tuple[int, ...]
 """The branch bytes, then a signed period number for every axis that turns more than once."""
 
+ConfigurationLike: TypeAlias = Iterable[int] | Mapping[str, Any] | str
+"""A configuration as `forward` gives it or `Mechanism.configuration` makes it, or names: `{"elbow": "left", "A4": 2}`,
+or those of branches alone, as "left" or "left flip". What is not named is as in the default."""
+
 Numbers: TypeAlias = Iterable[float]
 
 
@@ -32,8 +36,16 @@ class SupportsArray(Protocol):
     def __array__(self) -> Any: ...
 
 
-FrameLike: TypeAlias = tuple[Numbers, Iterable[Numbers]] | Sequence[Numbers] | SupportsArray
-"""A `Frame`, a pair of a position and three rows of a rotation, of any sequence type, or a matrix (4, 4)."""
+class SupportsMatrix(Protocol):
+    """A rotation that has a matrix (3, 3), as SciPy's `Rotation`."""
+
+    def as_matrix(self) -> Any: ...
+
+
+RotationLike: TypeAlias = Iterable[Numbers] | SupportsMatrix
+"""Three rows, or a rotation that has `as_matrix`."""
+FrameLike: TypeAlias = tuple[Numbers, RotationLike] | Sequence[Numbers] | SupportsArray
+"""A `Frame`, a pair of a position and a rotation, of any sequence type, or a matrix (4, 4)."""
 PlainFrame: TypeAlias = tuple[Vector, Rotation]
 """A frame in tuples of floats: a `Frame`, or the pair alone, which is read a little faster."""
 
@@ -87,6 +99,8 @@ class Solution(NamedTuple):
     status: Status
     others: tuple[Reals, ...] = ()
     """Further solutions on the same branch, where the inverse is a root scan, the nearest to the reference first."""
+    refusal: Diagnosis | None = None
+    """Why there are no axes, as `diagnose` says: which axis is beyond a limit, and by how much."""
 
 
 class Diagnosis(NamedTuple):

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import copy
 import pickle
+from functools import partial
 from itertools import product
 
 import pytest
 import softkin
 from softkin import KinematicsError, Status
 
+from tests.catalogue.calls.mountings import radian
 from tests.catalogue.calls.robots import NAMES, poses, robots
 
 
@@ -34,7 +36,14 @@ def test_names_and_back(name: str) -> None:
         axes = poses(name, number, 1)[0]
         frame, own = robot.forward(axes)
         named = robot.configuration(**{key.replace(" ", "_"): value for key, value in robot.names(own).items()})
-        assert robot.inverse(frame, named, axes) == robot.inverse(frame, own, axes)
+        answer = robot.inverse(frame, own, axes)
+        sides = ", ".join(str(side) for side in list(robot.names(own).values())[: robot.BRANCHES])
+        assert robot.inverse(frame, named, axes) == robot.inverse(frame, robot.names(own), axes) == answer
+        assert robot.in_radians().diagnose(frame, robot.names(own), radian(robot, axes)).status is Status.OK
+        if 3 not in own and not isinstance(robot, softkin.Coupled):
+            words = robot.inverse(frame, sides, axes), robot.inverse_batch([frame], None, sides, axes)[0][0]
+            assert robot.names(sides) == robot.names(own[: robot.BRANCHES] + (0,) * (len(own) - robot.BRANCHES))
+            assert words[0] == pytest.approx(answer, abs=1e-6) and words[1] == pytest.approx(answer, abs=1e-6)
         assert robot.configuration() == robot.DEFAULT_CONFIGURATION
 
 
@@ -56,6 +65,23 @@ def test_what_is_refused() -> None:
         with pytest.raises(KinematicsError, match=words) as refused:
             robot.configuration(**given)  # type: ignore[arg-type]
         assert refused.value.status is Status.BAD_INPUT
+    frame = robot.forward((10.0, 20.0, 5.0, 30.0))[0]
+    for told, words in (
+        ("up", r"'up' is no branch; its branches are elbow \(right or left\)"),
+        ("left right", "'right' and another one are branches of one byte"),
+        ({"elbow": "up"}, "'right', 'left', 'automatic'"),
+        ({"arm": "left"}, "elbow, A4, A1, A2"),
+        ({0: 1}, "no branch and no turn"),
+    ):
+        for one in (robot, robot.in_radians(), robot.with_tool(softkin.Frame((1.0, 0.0, 0.0)))):
+            for call, given in (
+                (one.inverse, frame),
+                (one.diagnose, frame),
+                (partial(one.inverse_batch, [frame]), None),
+            ):
+                with pytest.raises(KinematicsError, match=words) as refused:
+                    call(given, told)  # type: ignore[operator]
+                assert refused.value.status is Status.BAD_INPUT
     with pytest.raises(KinematicsError, match="none"):
         softkin.Gantry2().configuration(elbow="left")
     for wrong in ((4, 0, 0, 0), (1, 0, 0)):

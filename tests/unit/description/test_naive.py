@@ -165,6 +165,26 @@ FAULTS = {
         written(chain=CHAIN.replace("Rz(A2)", "RZ(A2)")),
         "name 'RZ' is not defined; did you mean 'Rz'?",
     ),
+    "a joint in small letters": (
+        written(chain=CHAIN.replace("A2", "a2")),
+        ":9: NameError: name 'a2' is not defined; did you mean 'A2'?",
+    ),
+    "a misspelt member": (
+        written(task='Task("xyz", Turning.ABOUTZ)'),
+        ":9: AttributeError: ABOUTZ; did you mean 'ABOUT_Z'?",
+    ),
+    "a misspelt function of a module": (
+        written("import sympy", branches='(branch("elbow", sympy.Sin(A2), right=1, left=-1),)'),
+        "AttributeError: module 'sympy' has no attribute 'Sin'; did you mean 'sin'?",
+    ),
+    "an area for a length": (
+        written(chain=CHAIN.replace("Tx(L1)", "Tx(L1 * L2)")),
+        "Tx(link_1*link_2) of the chain shifts by link_1*link_2, which is no length: its powers must add to 1",
+    ),
+    "a slide times a length": (
+        written(chain=CHAIN.replace("Tz(Z1)", "Tz(L1 + Z1 * L1 / 2)")),
+        "of the chain shifts by link_1*z1/2, which is no length: its powers must add to 1",
+    ),
     "a misspelt import": (
         written("from derive.mechanism import Mechanizm"),
         "did you mean 'Mechanism'?",

@@ -11,6 +11,7 @@ import softkin
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 from softkin import Frame, KinematicsError, Status, orthonormalize
 
 Array = NDArray[np.float64]
@@ -91,6 +92,73 @@ def test_half_turns_have_one_quaternion() -> None:
     for wrong in ((0.0,) * 4, (math.nan,) * 4, (1.0, 0.0, 0.0), (math.inf, 0.0, 0.0, 0.0)):
         with pytest.raises(KinematicsError):
             Frame.from_quaternion(wrong)
+
+
+@given(ANGLES, ANGLES, ANGLES, PLACES)
+def test_roll_pitch_yaw(roll: float, pitch: float, yaw: float, place: tuple[float, float, float]) -> None:
+    """R = Rz(yaw) Ry(pitch) Rx(roll), in degrees and in radians, and back to the same rotation."""
+    frame = Frame.from_rpy(roll, pitch, yaw, place)
+    assert np.abs(frame.rotation - about(2, yaw) @ about(1, pitch) @ about(0, roll)).max() < 1e-14
+    assert frame.position == place
+    in_radians = Frame.from_rpy(*map(math.radians, (roll, pitch, yaw)), radians=True)
+    assert np.abs(np.subtract(in_radians.rotation, frame.rotation)).max() < 1e-14
+    assert -90.0 <= frame.rpy[1] <= 90.0
+    assert np.abs(np.subtract(Frame.from_rpy(*frame.rpy).rotation, frame.rotation)).max() < 2e-11
+
+
+@pytest.mark.parametrize("pitch", [90.0, -90.0, 90.0 - 1e-13, 90.0 - 1e-9, -90.0 + 1e-4])
+def test_roll_and_yaw_about_one_axis(pitch: float) -> None:
+    """Where x is parallel to z, yaw is 0 and roll has the whole turn; near there no digits are lost."""
+    for roll, yaw in ((30.0, 40.0), (-170.0, -100.0), (0.0, 0.0)):
+        frame = Frame.from_rpy(roll, pitch, yaw)
+        assert np.abs(np.subtract(Frame.from_rpy(*frame.rpy).rotation, frame.rotation)).max() < 1e-11
+        assert frame.rpy[2] == 0.0 or abs(abs(pitch) - 90.0) > 1e-10
+
+
+@given(ANGLES, ANGLES, ANGLES, PLACES, PLACES)
+def test_points(
+    a: float, b: float, c: float, place: tuple[float, float, float], at: tuple[float, float, float]
+) -> None:
+    """A point is the last column of a frame: as a tuple, as a list, as an array, as a row of an array."""
+    frame = Frame.from_euler(a, b, c, place)
+    expected = (frame.matrix @ [*at, 1.0])[:3]
+    rows = frame @ np.array([[at, place], [place, at]])
+    assert isinstance(frame @ at, tuple) and isinstance(frame @ np.array(at), np.ndarray)
+    for found in (frame @ at, frame @ list(at), frame @ np.array(at), rows[0, 0], rows[1, 1]):
+        assert np.abs(np.subtract(found, expected)).max() < 1e-11
+    assert rows.shape == (2, 2, 3)
+    assert frame.shifted(*at) == (tuple(p + d for p, d in zip(place, at, strict=True)), frame.rotation)
+    assert frame.shifted(z=1.0).position == (place[0], place[1], place[2] + 1.0)
+
+
+def test_rotations_of_scipy() -> None:
+    """SciPy's `Rotation` stands for a matrix wherever one is taken, and quaternions have the order that is named."""
+    turn = Rotation.from_euler("xyz", [10.0, 20.0, 30.0], degrees=True)
+    frame = Frame.from_rotation(turn, (1.0, 2.0, 3.0))
+    assert frame == Frame.of(((1.0, 2.0, 3.0), turn)) == Frame.from_rotation(turn.as_matrix(), (1.0, 2.0, 3.0))
+    assert np.abs(np.subtract(frame.rotation, Frame.from_rpy(10.0, 20.0, 30.0).rotation)).max() < 1e-15
+    assert orthonormalize(turn) == frame.rotation and (frame.inverse() @ (frame.position, turn)).position == (0, 0, 0)
+    x, y, z, w = turn.as_quat()
+    for other in (Frame.from_quaternion((x, y, z, w)), Frame.from_quaternion((w, x, y, z), order="wxyz")):
+        assert np.abs(np.subtract(other.rotation, frame.rotation)).max() < 1e-15
+    with pytest.raises(KinematicsError, match="xyzw or wxyz, not 'zyxw'"):
+        Frame.from_quaternion((x, y, z, w), order="zyxw")
+    arm = softkin.ArticulatedRobot6DOF(a2=300.0, d4=250.0, d6=80.0)
+    place = (300.0, 20.0, 100.0)
+    assert arm.inverse((place, turn)) == arm.inverse((place, turn.as_matrix()))
+    found = arm.inverse_batch([place] * 2, Rotation.concatenate([turn, turn]))[0]
+    assert np.abs(found - arm.inverse((place, turn))).max() < 1e-9
+
+
+def test_frames_are_not_added() -> None:
+    """A sum or a multiple of tuples is no frame: the message names what is."""
+    frame = Frame((1.0, 2.0, 3.0))
+    for wrong in (lambda: frame + (0, 0, 5), lambda: (0, 0, 5) + frame, lambda: frame * 2, lambda: 2 * frame):
+        with pytest.raises(TypeError, match=r"frame.shifted\(x, y, z\)"):
+            wrong()
+    for point in ((1.0, math.nan, 2.0), (1.0, "2", 3.0), (1.0, 2.0)):
+        with pytest.raises(KinematicsError):
+            frame @ point  # type: ignore[operator]
 
 
 @given(*[st.tuples(ANGLES, ANGLES, ANGLES, PLACES)] * 2)

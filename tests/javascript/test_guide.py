@@ -1,4 +1,4 @@
-"""The program in the README does what its comments say."""
+"""The program in docs/JAVASCRIPT.md does what its comments say."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import pytest
 from tests.javascript.modules import module_of
 from tests.javascript.node import run
 
-README = Path(__file__).parents[2] / "README.md"
+PAGE = Path(__file__).parents[2] / "docs/JAVASCRIPT.md"
 
 
-def test_the_program_of_the_readme() -> None:
+def test_the_program_of_the_guide() -> None:
     """Each line gives what stands behind it."""
-    (shown,) = re.findall(r"```js\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+    (shown,) = re.findall(r"```js\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     head, _, body = shown.partition("\n\n")
     assert head == 'import { create, description } from "./build/javascript/scara4_zccoupled_type1.js";'
     lines = [re.sub(r"^machine\.(.*?); // .*$", r"found.push(machine.\1);", line) for line in body.splitlines()]
