@@ -8,7 +8,7 @@ import sympy as sp
 
 from derive.description.mechanism import Mechanism
 from derive.equations.problem import Conditioning
-from derive.ir.constants import FREE_ANGLE
+from derive.ir.constants import COINCIDENT
 from derive.ir.primitives import Select
 from derive.ir.program import Let
 from derive.ir.symbols import SCALE, real
@@ -33,8 +33,8 @@ class Factor:
         if not self.is_length:
             return (Let(margin, self.value),)
         length = real(f"length_{self.name}")
-        other = Select(sp.Lt(length, -FREE_ANGLE), sp.Integer(-1), sp.Integer(0)) if self.is_signed else sp.Integer(0)
-        value = Select(sp.Gt(length, FREE_ANGLE), sp.Integer(1), other)
+        other = Select(sp.Lt(length, -COINCIDENT), sp.Integer(-1), sp.Integer(0)) if self.is_signed else sp.Integer(0)
+        value = Select(sp.Gt(length, COINCIDENT), sp.Integer(1), other)
         return Let(length, self.value), Let(margin, value, "0 where no equation determines the axis, else 1 or -1")
 
 

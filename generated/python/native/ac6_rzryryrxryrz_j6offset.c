@@ -986,7 +986,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         + r33_from_q123_closed*r33_from_q123_closed);
     const double sign_wrist_closed = sigma_wrist; /* wrist: +1 positive, -1 negative */
     double direction_x_q4_closed, direction_y_q4_closed;
-    if (radius_q4_closed > 1e-11) {
+    if (radius_q4_closed > 2e-12) {
       /* polar coordinates: angle q4 from the r33 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_closed = r33_from_q123_closed*sign_wrist_closed;
@@ -1554,7 +1554,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* effective length of the arm that q3 turns */
   const double effective_q3_tried = sqrt(p->a3*p->a3 + p->d4*p->d4);
   const bool searched = fabs(p->j6_offset_x) > 0.0; /* whether to scan A6 for a root */
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double a2_minus_effective_q3_tried = p->a2 - effective_q3_tried;
   const double a2_plus_effective_q3_tried = p->a2 + effective_q3_tried;
   const double d4_by_effective_q3_tried = p->d4/effective_q3_tried;

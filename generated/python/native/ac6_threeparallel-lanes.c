@@ -52,7 +52,7 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     const double r22_from_q1 = r22*cos_q1 - r12*sin_q1;
     /* polar coordinates: the radius at angle q6 */
     const double radius_q6 = softkin_lane_root(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1);
-    missed += radius_q6 > 1e-11 ? 0.0 : 1.0;
+    missed += radius_q6 > 2e-12 ? 0.0 : 1.0;
     const double sign_wrist = sigma_wrist; /* wrist: +1 down, -1 up */
     const double q6_radius_of_q5 = radius_q6*sign_wrist;
     /* cosine and sine of q5 from the q6 radius and r22 equations */
@@ -171,7 +171,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* polar coordinates: the radius at angle q6 */
     const double radius_q6_left = softkin_lane_root(r21_from_q1_left*r21_from_q1_left
         + r22_from_q1_left*r22_from_q1_left);
-    missed += radius_q6_left > 1e-11 ? 0.0 : 1.0;
+    missed += radius_q6_left > 2e-12 ? 0.0 : 1.0;
     /* cosine and sine of q5 from the q6 radius and r22 equations */
     const double cos_q5_left = r13*sin_q1_left - r23*cos_q1_left;
     const double r21_from_q1_left_by_radius_q6_left = r21_from_q1_left/radius_q6_left;
@@ -233,7 +233,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* polar coordinates: the radius at angle q6 */
     const double radius_q6_right = softkin_lane_root(r21_from_q1_right*r21_from_q1_right
         + r22_from_q1_right*r22_from_q1_right);
-    missed += radius_q6_right > 1e-11 ? 0.0 : 1.0;
+    missed += radius_q6_right > 2e-12 ? 0.0 : 1.0;
     /* cosine and sine of q5 from the q6 radius and r22 equations */
     const double cos_q5_right = r13*sin_q1_right - r23*cos_q1_right;
     const double r21_from_q1_right_by_radius_q6_right = r21_from_q1_right/radius_q6_right;

@@ -225,7 +225,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int next_attempt, passes_left_now;
   bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, mirrors,
       from_the_met_pose, is_nearer, no_start_is_left;
-  for (int pass = 0; pass < 282; pass += 1) {
+  for (int pass = 0; pass < 308; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -311,7 +311,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_wrist);
     from_the_met_pose = mirrors && (passes_left > 32); /* what is nearly free is known now */
-    free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 1e-11;
+    free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 2e-12;
     product_in_damping = 0.001*error;
     damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
     rate_1_1 = -k->one_by_machine_scale*y;
@@ -399,11 +399,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     error_left = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3
         + multiplier_4*multiplier_4 + multiplier_5*multiplier_5 + multiplier_6*multiplier_6)*damping
         + step_length*step_length;
-    is_nearer = (attempt > 1) && (attempt < 89) && (error_left < least_error_left);
+    is_nearer = (attempt > 1) && (attempt < 115) && (error_left < least_error_left);
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
     free_turn = next_attempt > 62 ? nearest_turn_now
-        + ((next_attempt > 62) && (next_attempt < 89) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
+        + ((next_attempt > 62) && (next_attempt < 115) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
     closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
         *SOFTKIN_DEGREE;
     free_angle_times_machine_scale = free_angle*k->machine_scale;
@@ -484,7 +484,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     least_error_left_now = is_nearer ? error_left : least_error_left;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 89))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 115))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -502,13 +502,13 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a6 = (another || from_the_met_pose ? closed_axis_a6
         : (mirrors ? (beside_wrist ? 2.0*closed_axis_a6 - tried_a6 : tried_a6) : tried_a6
         + shared_quotient*step_a6));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 89) ? 0 : 64) : passes_left_now);
-    attempt = (no_start_is_left ? 90 : next_attempt);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 115) ? 0 : 64) : passes_left_now);
+    attempt = (no_start_is_left ? 116 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
-    turn_beside = ((next_attempt > 62) && (next_attempt < 89) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
+    turn_beside = ((next_attempt > 62) && (next_attempt < 115) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
         : turn_beside);
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
@@ -664,7 +664,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* cosine and sine of q5 from the q6 radius and r22 equations */
   const double cos_q5 = r13*sin_q1 - r23*cos_q1;
   double cos_q6, sin_q6;
-  if (radius_q6 > 1e-11) {
+  if (radius_q6 > 2e-12) {
     /* polar coordinates: angle q6 from the r21 and r23 equations */
     const double along_q6 = -r21_from_q1*sign_wrist;
     cos_q6 = along_q6/radius_q6; /* at a singularity: the angle of the reference */
@@ -1135,7 +1135,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* cosine and sine of q5 from the q6 radius and r22 equations */
   const double cos_q5_left = r13*sin_q1_left - r23*cos_q1_left;
   double cos_q6_left_down, sin_q6_left_down, cos_q6_left_up, sin_q6_left_up;
-  if (radius_q6_left > 1e-11) {
+  if (radius_q6_left > 2e-12) {
     const double r21_from_q1_left_by_radius_q6_left = r21_from_q1_left/radius_q6_left;
     /* at a singularity: the angle of the reference */
     cos_q6_left_down = -r21_from_q1_left_by_radius_q6_left;
@@ -1182,7 +1182,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       + softkin_angle_of(sin_q6_left_down, cos_q6_left_down)*SOFTKIN_RADIAN;
   double r31_from_q1_before_q56_left_up, r33_from_q1_before_q6_left_up, angle_with_q4_left_up,
       axis_a6_left_up;
-  if (radius_q6_left > 1e-11) {
+  if (radius_q6_left > 2e-12) {
     r31_from_q1_before_q56_left_up = -r31_from_q1_before_q56_left_down;
     r33_from_q1_before_q6_left_up = -r33_from_q1_before_q6_left_down;
     angle_with_q4_left_up = 180.0*SOFTKIN_DEGREE + angle_with_q4_left_down;
@@ -1224,7 +1224,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* cosine and sine of q5 from the q6 radius and r22 equations */
   const double cos_q5_right = r13*sin_q1_right - r23*cos_q1_right;
   double cos_q6_right_down, sin_q6_right_down, cos_q6_right_up, sin_q6_right_up;
-  if (radius_q6_right > 1e-11) {
+  if (radius_q6_right > 2e-12) {
     const double r21_from_q1_right_by_radius_q6_right = r21_from_q1_right/radius_q6_right;
     /* at a singularity: the angle of the reference */
     cos_q6_right_down = -r21_from_q1_right_by_radius_q6_right;
@@ -1269,7 +1269,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       + softkin_angle_of(sin_q6_right_down, cos_q6_right_down)*SOFTKIN_RADIAN;
   double r31_from_q1_before_q56_right_up, r33_from_q1_before_q6_right_up, angle_with_q4_right_up,
       axis_a6_right_up;
-  if (radius_q6_right > 1e-11) {
+  if (radius_q6_right > 2e-12) {
     r31_from_q1_before_q56_right_up = -r31_from_q1_before_q56_right_down;
     r33_from_q1_before_q6_right_up = -r33_from_q1_before_q6_right_down;
     angle_with_q4_right_up = 180.0*SOFTKIN_DEGREE + angle_with_q4_right_down;
@@ -1545,7 +1545,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
   /* largest cosine within reach: 1, and the rounding of squared lengths */
   const double bound_of_cos_q3 = 1.0000000000005 + 5e-16*machine_scale*machine_scale/(p->a2*p->a3);
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double product_in_lost_digits_38 = 0.01*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double a2_plus_a3 = p->a2 + p->a3;

@@ -93,7 +93,7 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     const double r23_from_q1 = r23*cos_q1 - r13*sin_q1;
     /* polar coordinates: the radius at angle q4 */
     const double radius_q4 = softkin_lane_root(r23_from_q1*r23_from_q1 + r33_from_q123*r33_from_q123);
-    missed += radius_q4 > 1e-11 ? 0.0 : 1.0;
+    missed += radius_q4 > 2e-12 ? 0.0 : 1.0;
     const double axis_a1 = offset_a1 + softkin_lane_angle(sin_q1, cos_q1)*SOFTKIN_RADIAN;
     const double axis_a2 = offset_a2 + softkin_lane_angle(sin_q2, cos_q2)*SOFTKIN_RADIAN;
     const double axis_a3 = offset_a3 + softkin_lane_angle(sin_q3, cos_q3)*SOFTKIN_RADIAN;
@@ -287,7 +287,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* polar coordinates: the radius at angle q4 */
     const double radius_q4_front_down = softkin_lane_root(r23_from_q1_front_squared
         + r33_from_q123_front_down*r33_from_q123_front_down);
-    missed += radius_q4_front_down > 1e-11 ? 0.0 : 1.0;
+    missed += radius_q4_front_down > 2e-12 ? 0.0 : 1.0;
     const double length_q2_front_up = softkin_lane_root(across_q2_squared_plus_along_q2_squared_front_up);
     /* at a singularity: the angle of the reference */
     const double cos_q2_front_up = along_q2_front_up/length_q2_front_up;
@@ -301,7 +301,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* polar coordinates: the radius at angle q4 */
     const double radius_q4_front_up = softkin_lane_root(r23_from_q1_front_squared
         + r33_from_q123_front_up*r33_from_q123_front_up);
-    missed += radius_q4_front_up > 1e-11 ? 0.0 : 1.0;
+    missed += radius_q4_front_up > 2e-12 ? 0.0 : 1.0;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_back = (-ahead_q1_front_times_wrist_x - d3_times_wrist_y)*one_by_distance_q1_squared;
     const double sin_q1_back = (d3_times_wrist_x - ahead_q1_front_times_wrist_y)*one_by_distance_q1_squared;
@@ -325,7 +325,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* polar coordinates: the radius at angle q4 */
     const double radius_q4_back_down = softkin_lane_root(r23_from_q1_back_squared
         + r33_from_q123_back_down*r33_from_q123_back_down);
-    missed += radius_q4_back_down > 1e-11 ? 0.0 : 1.0;
+    missed += radius_q4_back_down > 2e-12 ? 0.0 : 1.0;
     const double length_q2_back_up = softkin_lane_root(across_q2_squared_plus_along_q2_squared_back_up);
     /* at a singularity: the angle of the reference */
     const double cos_q2_back_up = along_q2_back_up/length_q2_back_up;
@@ -339,7 +339,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* polar coordinates: the radius at angle q4 */
     const double radius_q4_back_up = softkin_lane_root(r23_from_q1_back_squared
         + r33_from_q123_back_up*r33_from_q123_back_up);
-    missed += radius_q4_back_up > 1e-11 ? 0.0 : 1.0;
+    missed += radius_q4_back_up > 2e-12 ? 0.0 : 1.0;
     /* q3: out of reach */
     const double refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
     const double axis_a1_front = offset_a1 + softkin_lane_angle(sin_q1_front, cos_q1_front)*SOFTKIN_RADIAN;

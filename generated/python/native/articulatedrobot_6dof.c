@@ -263,7 +263,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int next_attempt, passes_left_now;
   bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, mirrors,
       from_the_met_pose, is_nearer, no_start_is_left;
-  for (int pass = 0; pass < 282; pass += 1) {
+  for (int pass = 0; pass < 308; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -354,7 +354,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
     from_the_met_pose = mirrors && (passes_left > 32); /* what is nearly free is known now */
-    free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 1e-11;
+    free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 2e-12;
     product_in_damping = 0.001*error;
     damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
     rate_1_1 = -k->one_by_machine_scale*y;
@@ -451,11 +451,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     error_left = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3
         + multiplier_4*multiplier_4 + multiplier_5*multiplier_5 + multiplier_6*multiplier_6)*damping
         + step_length*step_length;
-    is_nearer = (attempt > 1) && (attempt < 89) && (error_left < least_error_left);
+    is_nearer = (attempt > 1) && (attempt < 115) && (error_left < least_error_left);
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
     free_turn = next_attempt > 62 ? nearest_turn_now
-        + ((next_attempt > 62) && (next_attempt < 89) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
+        + ((next_attempt > 62) && (next_attempt < 115) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
     closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
         *SOFTKIN_DEGREE;
     free_angle_times_machine_scale = free_angle*k->machine_scale;
@@ -522,7 +522,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     least_error_left_now = is_nearer ? error_left : least_error_left;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 89))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 115))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -540,13 +540,13 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
     tried_a6 = (another || from_the_met_pose ? closed_axis_a6
         : (mirrors ? tried_a6 : tried_a6 + shared_quotient*step_a6));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 89) ? 0 : 64) : passes_left_now);
-    attempt = (no_start_is_left ? 90 : next_attempt);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 115) ? 0 : 64) : passes_left_now);
+    attempt = (no_start_is_left ? 116 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
-    turn_beside = ((next_attempt > 62) && (next_attempt < 89) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
+    turn_beside = ((next_attempt > 62) && (next_attempt < 115) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
         : turn_beside);
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
@@ -772,7 +772,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double radius_q4 = sqrt(r23_from_q1*r23_from_q1 + r33_from_q123*r33_from_q123);
   const double sign_hand = sigma_hand; /* hand: +1 down, -1 up */
   double direction_x_q4, direction_y_q4;
-  if (radius_q4 > 1e-11) {
+  if (radius_q4 > 2e-12) {
     /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4 = -r33_from_q123*sign_hand;
@@ -1302,7 +1302,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double sin_of_reference_a4 = sin(reference_a4);
     const double r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front;
     const double r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front;
-    if (radius_q4_front_down > 1e-11) {
+    if (radius_q4_front_down > 2e-12) {
       /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_down_down = -r33_from_q123_front_down;
@@ -1328,7 +1328,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double r31_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down;
     direction_y_q6_front_down_down = -direction_x_q4_front_down_down*r21_from_q1_front
         - direction_y_q4_front_down_down*r31_from_q123_front_down;
-    if (radius_q4_front_down > 1e-11) {
+    if (radius_q4_front_down > 2e-12) {
       /* cosine and sine of q6 from the r22 and r23 equations */
       direction_x_q6_front_down_up = -direction_x_q6_front_down_down;
       direction_y_q6_front_down_up = -direction_y_q6_front_down_down;
@@ -1349,7 +1349,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a6_front_down_down = k->offset_a6
       + softkin_angle_of(direction_y_q6_front_down_down, direction_x_q6_front_down_down)*SOFTKIN_RADIAN;
   double axis_a4_front_down_up, axis_a6_front_down_up;
-  if (radius_q4_front_down > 1e-11) {
+  if (radius_q4_front_down > 2e-12) {
     axis_a4_front_down_up = 180.0 + axis_a4_front_down_down;
     axis_a6_front_down_up = 180.0 + axis_a6_front_down_down;
   } else {
@@ -1395,7 +1395,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double sin_of_reference_a4 = sin(reference_a4);
     const double r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front;
     const double r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front;
-    if (radius_q4_front_up > 1e-11) {
+    if (radius_q4_front_up > 2e-12) {
       /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_up_down = -r33_from_q123_front_up;
@@ -1421,7 +1421,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double r31_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up;
     direction_y_q6_front_up_down = -direction_x_q4_front_up_down*r21_from_q1_front
         - direction_y_q4_front_up_down*r31_from_q123_front_up;
-    if (radius_q4_front_up > 1e-11) {
+    if (radius_q4_front_up > 2e-12) {
       /* cosine and sine of q6 from the r22 and r23 equations */
       direction_x_q6_front_up_up = -direction_x_q6_front_up_down;
       direction_y_q6_front_up_up = -direction_y_q6_front_up_down;
@@ -1442,7 +1442,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a6_front_up_down = k->offset_a6
       + softkin_angle_of(direction_y_q6_front_up_down, direction_x_q6_front_up_down)*SOFTKIN_RADIAN;
   double axis_a4_front_up_up, axis_a6_front_up_up;
-  if (radius_q4_front_up > 1e-11) {
+  if (radius_q4_front_up > 2e-12) {
     axis_a4_front_up_up = 180.0 + axis_a4_front_up_down;
     axis_a6_front_up_up = 180.0 + axis_a6_front_up_down;
   } else {
@@ -1513,7 +1513,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double sin_of_reference_a4 = sin(reference_a4);
     const double r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back;
     const double r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back;
-    if (radius_q4_back_down > 1e-11) {
+    if (radius_q4_back_down > 2e-12) {
       /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_down_down = -r33_from_q123_back_down;
@@ -1539,7 +1539,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double r31_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down;
     direction_y_q6_back_down_down = -direction_x_q4_back_down_down*r21_from_q1_back
         - direction_y_q4_back_down_down*r31_from_q123_back_down;
-    if (radius_q4_back_down > 1e-11) {
+    if (radius_q4_back_down > 2e-12) {
       /* cosine and sine of q6 from the r22 and r23 equations */
       direction_x_q6_back_down_up = -direction_x_q6_back_down_down;
       direction_y_q6_back_down_up = -direction_y_q6_back_down_down;
@@ -1560,7 +1560,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a6_back_down_down = k->offset_a6
       + softkin_angle_of(direction_y_q6_back_down_down, direction_x_q6_back_down_down)*SOFTKIN_RADIAN;
   double axis_a4_back_down_up, axis_a6_back_down_up;
-  if (radius_q4_back_down > 1e-11) {
+  if (radius_q4_back_down > 2e-12) {
     axis_a4_back_down_up = 180.0 + axis_a4_back_down_down;
     axis_a6_back_down_up = 180.0 + axis_a6_back_down_down;
   } else {
@@ -1605,7 +1605,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double sin_of_reference_a4 = sin(reference_a4);
     const double r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back;
     const double r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back;
-    if (radius_q4_back_up > 1e-11) {
+    if (radius_q4_back_up > 2e-12) {
       /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_up_down = -r33_from_q123_back_up;
@@ -1631,7 +1631,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double r31_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up;
     direction_y_q6_back_up_down = -direction_x_q4_back_up_down*r21_from_q1_back
         - direction_y_q4_back_up_down*r31_from_q123_back_up;
-    if (radius_q4_back_up > 1e-11) {
+    if (radius_q4_back_up > 2e-12) {
       /* cosine and sine of q6 from the r22 and r23 equations */
       direction_x_q6_back_up_up = -direction_x_q6_back_up_down;
       direction_y_q6_back_up_up = -direction_y_q6_back_up_down;
@@ -1652,7 +1652,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a6_back_up_down = k->offset_a6
       + softkin_angle_of(direction_y_q6_back_up_down, direction_x_q6_back_up_down)*SOFTKIN_RADIAN;
   double axis_a4_back_up_up, axis_a6_back_up_up;
-  if (radius_q4_back_up > 1e-11) {
+  if (radius_q4_back_up > 2e-12) {
     axis_a4_back_up_up = 180.0 + axis_a4_back_up_down;
     axis_a6_back_up_up = 180.0 + axis_a6_back_up_down;
   } else {
@@ -1769,7 +1769,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
   const double product_in_lost_digits_23 = 0.01*machine_scale;
   const double a2_minus_effective_q3 = p->a2 - effective_q3;
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double one_by_effective_q3 = 1.0/effective_q3;
   const double a2_plus_effective_q3 = p->a2 + effective_q3;

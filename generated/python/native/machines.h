@@ -11,7 +11,7 @@
 #define SOFTKIN_MODULE "_softkin_native"
 #define SOFTKIN_START PyInit__softkin_native
 /** The digest of what all machines share: the package compares it. */
-#define SOFTKIN_SOURCES "5cbf3e6aa21f3ca7"
+#define SOFTKIN_SOURCES "05b5711234033e9d"
 #define SOFTKIN_MACHINES 52
 
 /** A machine, with the key that its class has, too: the module, and a digest of the C. */

@@ -35,7 +35,7 @@ void palletizer_regular(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_z = z - base_height_plus_wrist_offset_z;
     const double sign_shoulder = sigma_shoulder; /* shoulder: +1 front, -1 back */
@@ -123,7 +123,7 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     /* polar coordinates: the radius at angle a1 */
     const double radius_a1 = softkin_lane_root(x*x + y*y);
     missed += radius_a1 > machine_scale_times_free_angle ? 0.0 : 1.0;

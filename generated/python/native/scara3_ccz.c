@@ -351,7 +351,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double bound_of_cos_a2 = 1.0000000000005
       + 5e-16*machine_scale*machine_scale/(p->link_length_1*p->link_length_2);
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double quotient_in_cos_a2 = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);
   made.lowest_a1 = window_of_a1.lowest;

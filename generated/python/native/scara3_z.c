@@ -146,7 +146,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "the tool points exactly the opposite way", "", 0.0, 0);
   }
   const double heading_length = sqrt(heading_across*heading_across + heading_along*heading_along);
@@ -367,7 +367,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
    * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 2);
   }
   const double heading_length = sqrt(heading_across*heading_across + heading_along*heading_along);
@@ -463,7 +463,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double bound_of_cos_a2 = 1.0000000000005
       + 5e-16*machine_scale*machine_scale/(p->arm_length_1*p->arm_length_2);
   const double arm_length_1_minus_arm_length_2 = p->arm_length_1 - p->arm_length_2;
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double arm_length_1_plus_arm_length_2 = p->arm_length_1 + p->arm_length_2;
   const double quotient_in_cos_a2 = 0.25/(p->arm_length_1*p->arm_length_2);
   const double half_by_arm_length_1_by_arm_length_2 = 0.5/(p->arm_length_1*p->arm_length_2);

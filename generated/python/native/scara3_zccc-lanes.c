@@ -32,7 +32,7 @@ void scara3_zccc_regular(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     const double heading_length = softkin_lane_root(heading_across*heading_across
         + heading_along*heading_along);
     const double cos_heading = heading_along/heading_length;
@@ -108,7 +108,7 @@ void scara3_zccc_regular_all(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     const double heading_length = softkin_lane_root(heading_across*heading_across
         + heading_along*heading_along);
     const double cos_heading = heading_along/heading_length;

@@ -31,7 +31,7 @@ void scara4_cczc_zccoupled_regular(const void *machine, const softkin_lanes *giv
     const double heading_along = flange_down ? r11 - r22 : r11 + r22;
     const double heading_across = flange_down ? r12 + r21 : r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     const double reach = softkin_lane_root(x*x + y*y); /* distance that the remaining links must span */
     /* law of cosines for a2 (x² + y²): 1 - cosine, times a scale */
     const double one_less_cos_a2 = (machine_scale + reach)*(machine_scale - reach);
@@ -102,7 +102,7 @@ void scara4_cczc_zccoupled_regular_all(const void *machine, const softkin_lanes 
     const double heading_along = flange_down ? r11 - r22 : r11 + r22;
     const double heading_across = flange_down ? r12 + r21 : r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     const double reach = softkin_lane_root(x*x + y*y); /* distance that the remaining links must span */
     /* law of cosines for a2 (x² + y²): 1 - cosine, times a scale */
     const double one_less_cos_a2 = (machine_scale + reach)*(machine_scale - reach);

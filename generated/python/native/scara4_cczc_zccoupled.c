@@ -170,7 +170,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     heading_across = r21 - r12;
   }
   /* the tool points exactly the opposite way */
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "the tool points exactly the opposite way", "", 0.0, 0);
   }
   const double reach = sqrt(x*x + y*y); /* distance that the remaining links must span */
@@ -388,7 +388,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     heading_along = r11 + r22;
     heading_across = r21 - r12;
   }
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 2);
   }
   const double reach = sqrt(x*x + y*y); /* distance that the remaining links must span */
@@ -494,7 +494,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double shared_sum = p->gear_coupling*SOFTKIN_RADIAN - p->pitch_zc/360.0*SOFTKIN_RADIAN;
   const double shared_value = (p->flange_down != 0.0) ? -1.0 : 1.0;
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double quotient_in_z = (p->gear_coupling - p->pitch_zc/360.0)*SOFTKIN_RADIAN;
   const double quotient_in_cos_a2 = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);

@@ -31,7 +31,7 @@ void scaraonrail_regular(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     const double reference_e1 = ref_e1 - offset_e1;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x = x - reference_e1;
@@ -102,7 +102,7 @@ void scaraonrail_regular_all(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     const double reference_e1 = ref_e1 - offset_e1;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x = x - reference_e1;

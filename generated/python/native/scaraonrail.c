@@ -156,7 +156,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "the tool points exactly the opposite way", "", 0.0, 0);
   }
   const double reference_e1 = ref_e1 - k->offset_e1;
@@ -381,7 +381,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
    * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 2);
   }
   const double reference_e1 = ref_e1 - k->offset_e1;
@@ -478,7 +478,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double bound_of_cos_a2 = 1.0000000000005
       + 5e-16*machine_scale*machine_scale/(p->link_length_1*p->link_length_2);
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double quotient_in_cos_a2 = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);
   made.lowest_e1 = window_of_e1.lowest;

@@ -159,7 +159,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "the tool points exactly the opposite way", "", 0.0, 0);
   }
   /* z: a planar machine has none */
@@ -499,7 +499,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
       + 5e-16*machine_scale*machine_scale/(p->link_length_1*p->link_length_2);
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double coupling_12_plus_coupling_13_plus_one = 1.0 + p->coupling_12 + p->coupling_13;
   const double coupling_23_plus_one = 1.0 + p->coupling_23;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;

@@ -88,7 +88,7 @@ class Constants:
         machine_scale = a1 + a2 + d4  # characteristic length of the machine
         effective_q3_tried = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
         searched = abs(j6_offset_x) > 0.0  # whether to scan A6 for a root
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         a2_minus_effective_q3_tried = a2 - effective_q3_tried
         a2_plus_effective_q3_tried = a2 + effective_q3_tried
         d4_by_effective_q3_tried = d4 / effective_q3_tried
@@ -116,7 +116,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 05a204f57792e934"
+    KEY = "ac6_rzryryrxryrz_j6offset d6b7a937dc986248"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1456,7 +1456,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
             # polar coordinates: angle q4 from the r33 and r23 equations; at a singularity: the angle of the
             # reference
-            if radius_q4_closed > 1e-11:
+            if radius_q4_closed > 2e-12:
                 direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
                 direction_y_q4_closed = -sigma_wrist * r23_from_q1_closed
             else:

@@ -63,7 +63,7 @@ class Constants:
         # largest cosine within reach: 1, and the rounding of squared lengths
         bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (arm_length_1 * arm_length_2)
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         arm_length_1_times_shortest_link = 1e-9 * arm_length_1
         quotient_in_cos_a2 = 0.25 / (arm_length_1 * arm_length_2)
         half_by_arm_length_1_by_arm_length_2 = 0.5 / (arm_length_1 * arm_length_2)
@@ -87,7 +87,7 @@ class Scara2Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara2_Z"
-    KEY = "scara2_z 9d1a44d7958ea54b"
+    KEY = "scara2_z b37de2a39400f06c"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),

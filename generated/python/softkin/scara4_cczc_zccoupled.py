@@ -82,7 +82,7 @@ class Constants:
         shared_sum = gear_coupling * RADIAN - pitch_zc / 360.0 * RADIAN
         shared_value = -1.0 if flange_down else 1.0
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         quotient_in_z = (gear_coupling - pitch_zc / 360.0) * RADIAN
         quotient_in_cos_a2 = 0.25 / (link_length_1 * link_length_2)
@@ -108,7 +108,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_CCZC_ZCcoupled"
-    KEY = "scara4_cczc_zccoupled 14a57655ef1f1388"
+    KEY = "scara4_cczc_zccoupled a75095bde19021b6"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -326,7 +326,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             heading_along = r11 + r22
             heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         reach = sqrt(x * x + y * y)  # distance that the remaining links must span
         # law of cosines for a2 (x² + y²): 1 - cosine, times a scale
@@ -456,7 +456,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             heading_along = r11 + r22
             heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Status.UNREACHABLE
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length

@@ -1118,7 +1118,7 @@ class ArrayPrograms(Programs):
             # polar coordinates: angle q4 from the r33 and r23 equations; at a singularity: the angle of the
             # reference
             direction_x_q4_closed, direction_y_q4_closed = elsewhere(
-                radius_q4_closed > 1e-11,
+                radius_q4_closed > 2e-12,
                 (direction_x_q4_closed, direction_y_q4_closed),
                 elsewhere_direction_x_q4_closed,
                 (ref_a4,),

@@ -165,7 +165,7 @@ class ArrayPrograms(Programs):
         ) = initial(
             start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
         )
-        for _ in range(282):
+        for _ in range(308):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -292,7 +292,7 @@ class ArrayPrograms(Programs):
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_arm | beside_elbow | beside_hand)
             from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
-            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
+            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 2e-12)
             product_in_damping = 0.001 * error
             damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
             rate_1_1 = -k.one_by_machine_scale * y
@@ -474,12 +474,12 @@ class ArrayPrograms(Programs):
                 * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) & (attempt < 89) & (error_left < least_error_left)
+            is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
                 next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 89), turn_beside, 0.0),
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
                 -360.0 * (1 - next_attempt) / 61.0,
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
@@ -573,7 +573,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             least_error_left_now = select(is_nearer, error_left, least_error_left)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
             if settled(done, status):
                 break
             (
@@ -650,14 +650,14 @@ class ArrayPrograms(Programs):
                         closed_axis_a6,
                         select(mirrors, tried_a6, tried_a6 + shared_quotient * step_a6),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
-                    select(no_start_is_left, 90, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
+                    select(no_start_is_left, 116, next_attempt),
                     select(another | mirrors, 9.0, error),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 89),
+                        (next_attempt > 62) & (next_attempt < 115),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),
@@ -855,7 +855,7 @@ class ArrayPrograms(Programs):
         # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
         # reference
         direction_x_q4, direction_y_q4 = elsewhere(
-            radius_q4 > 1e-11, (direction_x_q4, direction_y_q4), elsewhere_direction_x_q4, (ref_a4,)
+            radius_q4 > 2e-12, (direction_x_q4, direction_y_q4), elsewhere_direction_x_q4, (ref_a4,)
         )
         open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)

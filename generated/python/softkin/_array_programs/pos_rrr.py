@@ -118,7 +118,7 @@ class ArrayPrograms(Programs):
             turn_of_attempt,
             turn_beside,
         ) = initial(start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
-        for _ in range(282):
+        for _ in range(308):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -161,7 +161,7 @@ class ArrayPrograms(Programs):
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_arm | beside_elbow)
             from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
-            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
+            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 2e-12)
             free_angle_times_machine_scale = free_angle * k.machine_scale
             no_start_is_left = (
                 another
@@ -206,12 +206,12 @@ class ArrayPrograms(Programs):
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) & (attempt < 89) & (error_left < least_error_left)
+            is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
                 next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 89), turn_beside, 0.0),
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
                 -360.0 * (1 - next_attempt) / 61.0,
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
@@ -251,7 +251,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             least_error_left_now = select(is_nearer, error_left, least_error_left)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
             if settled(done, status):
                 break
             (
@@ -303,14 +303,14 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
-                    select(no_start_is_left, 90, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
+                    select(no_start_is_left, 116, next_attempt),
                     select(another | mirrors, 9.0, error),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 89),
+                        (next_attempt > 62) & (next_attempt < 115),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),
@@ -411,7 +411,7 @@ class ArrayPrograms(Programs):
             turn_of_attempt,
             turn_beside,
         ) = initial(start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
-        for _ in range(282):
+        for _ in range(308):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -457,7 +457,7 @@ class ArrayPrograms(Programs):
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_arm | beside_elbow)
             from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
-            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
+            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 2e-12)
             free_angle_times_machine_scale = free_angle * k.machine_scale
             no_start_is_left = (
                 another
@@ -502,12 +502,12 @@ class ArrayPrograms(Programs):
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) & (attempt < 89) & (error_left < least_error_left)
+            is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
                 next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 89), turn_beside, 0.0),
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
                 -360.0 * (1 - next_attempt) / 61.0,
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
@@ -547,7 +547,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             least_error_left_now = select(is_nearer, error_left, least_error_left)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
             if settled(done, status):
                 break
             (
@@ -599,14 +599,14 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
-                    select(no_start_is_left, 90, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
+                    select(no_start_is_left, 116, next_attempt),
                     select(another | mirrors, 9.0, error),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 89),
+                        (next_attempt > 62) & (next_attempt < 115),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),

@@ -137,7 +137,7 @@ class ArrayPrograms(Programs):
         a3 = z - a4 * k.quotient_in_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + k.offset_a3
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         # a2: out of reach
         require(status, absolute(cos_a2) <= k.bound_of_cos_a2, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
@@ -212,12 +212,12 @@ class ArrayPrograms(Programs):
             heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(
-            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+            (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), heading_length, 1.0
         )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         return (
             (cos_heading, -k.shared_value * sin_heading, 0.0),
             (sin_heading, k.shared_value * cos_heading, 0.0),

@@ -75,13 +75,13 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q5_left = r13 * sin_q1_left - r23 * cos_q1_left
         reference_a6 = (ref_a6 - offset_a6) * DEGREE
         cos_of_reference_a6 = cos(reference_a6)
-        length_q6 = radius_q6_left if radius_q6_left > 1e-11 else 1.0
+        length_q6 = radius_q6_left if radius_q6_left > 2e-12 else 1.0
         r21_from_q1_left_by_radius_q6 = r21_from_q1 / length_q6
         # at a singularity: the angle of the reference
-        cos_q6_left_down = -r21_from_q1_left_by_radius_q6 if radius_q6_left > 1e-11 else cos_of_reference_a6
+        cos_q6_left_down = -r21_from_q1_left_by_radius_q6 if radius_q6_left > 2e-12 else cos_of_reference_a6
         sin_of_reference_a6 = sin(reference_a6)
         r22_from_q1_left_by_radius_q6 = r22_from_q1 / length_q6
-        sin_q6_left_down = r22_from_q1_left_by_radius_q6 if radius_q6_left > 1e-11 else sin_of_reference_a6
+        sin_q6_left_down = r22_from_q1_left_by_radius_q6 if radius_q6_left > 2e-12 else sin_of_reference_a6
         radius_q6_left_times_r33 = r33 * radius_q6_left
         r31_from_q1_before_q56_left_down = (
             r31 * cos_q6_left_down - r32 * sin_q6_left_down
@@ -110,7 +110,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (not lost_digits_38):
             return ()
         # at a singularity: the angle of the reference
-        if radius_q6_left > 1e-11:
+        if radius_q6_left > 2e-12:
             cos_q6_left_up = r21_from_q1_left_by_radius_q6
             sin_q6_left_up = -r22_from_q1_left_by_radius_q6
             r31_from_q1_before_q56_left_up = -r31_from_q1_before_q56_left_down
@@ -158,12 +158,12 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q6_right = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
         # cosine and sine of q5 from the q6 radius and r22 equations
         cos_q5_right = r13 * sin_q1_right - r23 * cos_q1_right
-        length_q6 = radius_q6_right if radius_q6_right > 1e-11 else 1.0
+        length_q6 = radius_q6_right if radius_q6_right > 2e-12 else 1.0
         r21_from_q1_right_by_radius_q6 = r21_from_q1 / length_q6
         # at a singularity: the angle of the reference
-        cos_q6_right_down = -r21_from_q1_right_by_radius_q6 if radius_q6_right > 1e-11 else cos_of_reference_a6
+        cos_q6_right_down = -r21_from_q1_right_by_radius_q6 if radius_q6_right > 2e-12 else cos_of_reference_a6
         r22_from_q1_right_by_radius_q6 = r22_from_q1 / length_q6
-        sin_q6_right_down = r22_from_q1_right_by_radius_q6 if radius_q6_right > 1e-11 else sin_of_reference_a6
+        sin_q6_right_down = r22_from_q1_right_by_radius_q6 if radius_q6_right > 2e-12 else sin_of_reference_a6
         radius_q6_right_times_r33 = r33 * radius_q6_right
         r31_from_q1_before_q56_right_down = (
             r31 * cos_q6_right_down - r32 * sin_q6_right_down
@@ -191,7 +191,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (not lost_digits_38):
             return ()
         # at a singularity: the angle of the reference
-        if radius_q6_right > 1e-11:
+        if radius_q6_right > 2e-12:
             cos_q6_right_up = r21_from_q1_right_by_radius_q6
             sin_q6_right_up = -r22_from_q1_right_by_radius_q6
             r31_from_q1_before_q56_right_up = -r31_from_q1_before_q56_right_down
@@ -259,7 +259,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_left_down_up = reference_a2
         angle_q3_up = arctan2(sin_q3, cos_q3_left_up)
         quotient_in_axis_a3_left_up_up = angle_q3_up * RADIAN
-        if radius_q6_left > 1e-11:
+        if radius_q6_left > 2e-12:
             angle_with_q4_up = 180.0 * DEGREE + angle_with_q4_down
             axis_a6_left_up = 180.0 + axis_a6_left_down
         else:
@@ -309,7 +309,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_right_down_up = reference_a2
         angle_q3_up = arctan2(sin_q3, cos_q3_right_up)
         quotient_in_axis_a3_right_up_up = angle_q3_up * RADIAN
-        if radius_q6_right > 1e-11:
+        if radius_q6_right > 2e-12:
             angle_with_q4_up = 180.0 * DEGREE + angle_with_q4_down
             axis_a6_right_up = 180.0 + axis_a6_right_down
         else:
@@ -439,7 +439,7 @@ def unrolled(k: Constants) -> Unrolled:
         q6_radius_of_q5 = sigma_wrist * radius_q6
         cos_q5 = r13 * sin_q1 - r23 * cos_q1  # cosine and sine of q5 from the q6 radius and r22 equations
         # at a singularity: the angle of the reference
-        if radius_q6 > 1e-11:
+        if radius_q6 > 2e-12:
             along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r21 and r23 equations
             cos_q6 = along_q6 / radius_q6
             sin_q6 = (sigma_wrist * r22_from_q1) / radius_q6

@@ -150,7 +150,7 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1 = r21 * cos_q1_front - r11 * sin_q1_front
             # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 direction_x_q4_down = -r33_from_q123
                 direction_y_q4_down = r23_from_q1
                 direction_x_q4_up = -direction_x_q4_down
@@ -166,7 +166,7 @@ def unrolled(k: Constants) -> Unrolled:
             r31_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
             direction_y_q6_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r31_from_q123
             # cosine and sine of q6 from the r22 and r23 equations
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 direction_x_q6_up = -direction_x_q6_down
                 direction_y_q6_up = -direction_y_q6_down
             else:
@@ -174,7 +174,7 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_y_q6_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r31_from_q123
             axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
             axis_a6_front_down_down = offset_a6 + arctan2(direction_y_q6_down, direction_x_q6_down) * RADIAN
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
                 axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
             else:
@@ -210,7 +210,7 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1 = r21 * cos_q1_front - r11 * sin_q1_front
             # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 direction_x_q4_down = -r33_from_q123
                 direction_y_q4_down = r23_from_q1
                 direction_x_q4_up = -direction_x_q4_down
@@ -226,7 +226,7 @@ def unrolled(k: Constants) -> Unrolled:
             r31_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
             direction_y_q6_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r31_from_q123
             # cosine and sine of q6 from the r22 and r23 equations
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 direction_x_q6_up = -direction_x_q6_down
                 direction_y_q6_up = -direction_y_q6_down
             else:
@@ -234,7 +234,7 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_y_q6_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r31_from_q123
             axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
             axis_a6_front_up_down = offset_a6 + arctan2(direction_y_q6_down, direction_x_q6_down) * RADIAN
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
                 axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
             else:
@@ -288,7 +288,7 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1 = r21 * cos_q1_back - r11 * sin_q1_back
             # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 direction_x_q4_down = -r33_from_q123
                 direction_y_q4_down = r23_from_q1
                 direction_x_q4_up = -direction_x_q4_down
@@ -304,7 +304,7 @@ def unrolled(k: Constants) -> Unrolled:
             r31_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
             direction_y_q6_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r31_from_q123
             # cosine and sine of q6 from the r22 and r23 equations
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 direction_x_q6_up = -direction_x_q6_down
                 direction_y_q6_up = -direction_y_q6_down
             else:
@@ -312,7 +312,7 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_y_q6_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r31_from_q123
             axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
             axis_a6_back_down_down = offset_a6 + arctan2(direction_y_q6_down, direction_x_q6_down) * RADIAN
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
                 axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
             else:
@@ -348,7 +348,7 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1 = r21 * cos_q1_back - r11 * sin_q1_back
             # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 direction_x_q4_down = -r33_from_q123
                 direction_y_q4_down = r23_from_q1
                 direction_x_q4_up = -direction_x_q4_down
@@ -364,7 +364,7 @@ def unrolled(k: Constants) -> Unrolled:
             r31_from_q123 = r31 * cos_q23 - r11_from_q1 * sin_q23
             direction_y_q6_down = -direction_x_q4_down * r21_from_q1 - direction_y_q4_down * r31_from_q123
             # cosine and sine of q6 from the r22 and r23 equations
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 direction_x_q6_up = -direction_x_q6_down
                 direction_y_q6_up = -direction_y_q6_down
             else:
@@ -372,7 +372,7 @@ def unrolled(k: Constants) -> Unrolled:
                 direction_y_q6_up = -direction_x_q4_up * r21_from_q1 - direction_y_q4_up * r31_from_q123
             axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down) * RADIAN
             axis_a6_back_up_down = offset_a6 + arctan2(direction_y_q6_down, direction_x_q6_down) * RADIAN
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
                 axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
             else:
@@ -535,7 +535,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
             # reference
-            if radius_q4 > 1e-11:
+            if radius_q4 > 2e-12:
                 direction_x_q4 = -sigma_hand * r33_from_q123
                 direction_y_q4 = sigma_hand * r23_from_q1
             else:

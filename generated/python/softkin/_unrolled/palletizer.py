@@ -39,7 +39,7 @@ def unrolled(k: Constants) -> Unrolled:
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return 4 * (refused[Status.UNREACHABLE],)
         radius_a1 = sqrt(x * x + y * y)  # polar coordinates: the radius at angle a1
         # coordinate of the point that the remaining links must reach
@@ -189,7 +189,7 @@ def unrolled(k: Constants) -> Unrolled:
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return None
         wrist_z = z - base_height_plus_wrist_offset_z  # coordinate of the point that the remaining links must reach
         radius_a1 = sqrt(x * x + y * y)  # polar coordinates: the radius at angle a1

@@ -41,10 +41,10 @@ def unrolled(k: Constants) -> Unrolled:
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return 2 * (refused[Status.UNREACHABLE],)
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
-        heading_divisor = heading_length if (abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11) else 1.0
+        heading_divisor = heading_length if (abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12) else 1.0
         cos_heading = heading_along / heading_divisor
         wrist_x = x - link_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across / heading_divisor
@@ -91,10 +91,10 @@ def unrolled(k: Constants) -> Unrolled:
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return None
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
-        heading_divisor = heading_length if (abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11) else 1.0
+        heading_divisor = heading_length if (abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12) else 1.0
         cos_heading = heading_along / heading_divisor
         wrist_x = x - link_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
         sin_heading = heading_across / heading_divisor

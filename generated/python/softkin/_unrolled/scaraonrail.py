@@ -41,7 +41,7 @@ def unrolled(k: Constants) -> Unrolled:
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return 2 * (refused[Status.UNREACHABLE],)
         wrist_x = x - (ref_e1 - offset_e1)  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + y * y)  # distance that the remaining links must span
@@ -86,7 +86,7 @@ def unrolled(k: Constants) -> Unrolled:
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return None
         wrist_x = x - (ref_e1 - offset_e1)  # coordinate of the point that the remaining links must reach
         reach = sqrt(wrist_x * wrist_x + y * y)  # distance that the remaining links must span
