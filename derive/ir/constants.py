@@ -69,6 +69,8 @@ DAMPED = sp.Float("1e-12")
 lengths of the machine, is left."""
 DOUBTFUL = sp.Float("1e-2")
 """A step whose margin is at most this may have lost digits that a later step needs; there its angle is set free."""
+NEARLY_FREE = sp.Float("1e-5")
+"""The same where the nearest value of a free angle is sought ever closer: there more angles are determined."""
 SCANNED = 61
 """The values of free angles that are tried, all around the circle, to find the start of which one step leaves least."""
 REFINED = 52
