@@ -119,7 +119,7 @@ def files_in(folder: Path) -> Iterator[Path]:
 
 _NUMBERS = {
     **{name: float(vars(constants)[name]) for name in (
-        *("EDGE", "FREE_ANGLE", "GEARED_TURN", "HELD", "LARGEST", "LEAST", "LIMIT"),
+        *("COINCIDENT", "EDGE", "GEARED_TURN", "HELD", "LARGEST", "LEAST", "LIMIT"),
         *("ONE_TURN", "PIVOT", "SINGULAR", "SOLVABLE", "TIE", "UNLIMITED"),
     )},
     "EXACT": float(constants.EXACT_ROTATION),

@@ -112,6 +112,8 @@ class Conditioning:
     scale: sp.Expr
     word: str = "free"
     """What happens where it vanishes: the angle is "free", or two solutions "meet" of which the machine has one."""
+    missed: sp.Expr | None = None
+    """The value is a length that is turned: its square less that of the length that it turns to, which is as long."""
 
     @property
     def name(self) -> str:

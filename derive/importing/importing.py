@@ -100,7 +100,13 @@ def _imported(robot: Robot, options: Options) -> Imported:
     axes = axis_names(robot)
     places = place_names([line.drives for line in raw.lines], axes)
     arm, turned = aligned(arm_of(put_back), places, options.snap)
-    task = followed(arm, len(axes), _held(robot, axes, options.hold))
+    too_many = [*redundant(arm, places, options.snap)]
+    if too_many and "DH table" in robot.source:
+        too_many.append("A table that is read by the wrong convention has such joints: is its convention right?")
+    try:
+        task = followed(arm, len(axes), _held(robot, axes, options.hold))
+    except UnreadableRobot as problem:
+        raise UnreadableRobot("; ".join([str(problem), *too_many[:1]]).removesuffix(".")) from None
     weak = list(weak_axes(arm, task, axes))
     arm, faced = _faced(on_axis(arm, task), task)
     faced = (*_moved_tip(task, axes, options.unit), *faced)
@@ -109,9 +115,6 @@ def _imported(robot: Robot, options: Options) -> Imported:
     description = description_of(robot, arm, chain, task)
     notes = (*weak, *faced, *robot.notes)
     found = bounds(moved, raw, _strokes(robot, raw))
-    too_many = [*redundant(arm, places, options.snap)]
-    if too_many and "DH table" in robot.source:
-        too_many.append("A table that is read by the wrong convention has such joints: is its convention right?")
     report = "\n".join(
         [
             _head(robot, description, task, options.unit),

@@ -7,8 +7,12 @@ import sympy as sp
 
 DEGREE = sp.Symbol("DEGREE", positive=True)
 """One degree in radians: a named constant of every language."""
-FREE_ANGLE = sp.Float("1e-11")
-"""Conditioning over its scale at or below this leaves the angle of a step free, and a branch byte reads 3."""
+FREE_ANGLE = sp.Float("2e-12")
+"""Conditioning over its scale at or below this leaves the angle of a step free. The pose is missed by twice as much, a
+chord of 2, and two angles may be free at once: together that is less than 1e-11.
+"""
+COINCIDENT = sp.Float("1e-11")
+"""A branch byte reads 3 where the scaled margin of the branch is at most this."""
 KNOWN_ANGLE = sp.Float("0.1")
 """Conditioning over its scale above this gives the angle of a step to 1e-15: there is hardly a reason to move it."""
 OUT_OF_REACH = sp.Float("1e-9")
@@ -65,10 +69,14 @@ DAMPED = sp.Float("1e-12")
 lengths of the machine, is left."""
 DOUBTFUL = sp.Float("1e-2")
 """A step whose margin is at most this may have lost digits that a later step needs; there its angle is set free."""
+NEARLY_FREE = sp.Float("1e-5")
+"""The same where the nearest value of a free angle is sought ever closer: there more angles are determined."""
 SCANNED = 61
 """The values of free angles that are tried, all around the circle, to find the start of which one step leaves least."""
-REFINED = 26
-"""So many more beside the nearest, ever closer."""
+REFINED = 52
+"""So many more beside the nearest, at half the distance each second time: up to 1e-7 radians. The error grows with the
+square of the distance where a link is stretched, so that the nearest is met within `BOUNDARY`.
+"""
 LATTICE = 17
 """The angle of joint k, counted from 0, is turned this to the power of k times as far, modulo `SCANNED`: the values of
 several free angles are a lattice. It is prime to `SCANNED`.

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.equations.problem import Conditioning
-from derive.ir.constants import FREE_ANGLE
+from derive.ir.constants import COINCIDENT
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.primitives import Select
@@ -139,8 +139,8 @@ class Factor:
         if not self.is_length:
             return (Let(margin, self.value),)
         length = real(f"length_{self.name}")
-        other = Select(sp.Lt(length, -FREE_ANGLE), sp.Integer(-1), sp.Integer(0)) if self.is_signed else sp.Integer(0)
-        value = Select(sp.Gt(length, FREE_ANGLE), sp.Integer(1), other)
+        other = Select(sp.Lt(length, -COINCIDENT), sp.Integer(-1), sp.Integer(0)) if self.is_signed else sp.Integer(0)
+        value = Select(sp.Gt(length, COINCIDENT), sp.Integer(1), other)
         return Let(length, self.value), Let(margin, value, "0 where no equation determines the axis, else 1 or -1")
 
 

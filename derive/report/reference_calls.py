@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.equations.rotation_repair import rotation_program
-from derive.ir.constants import EDGE, FREE_ANGLE, TIE
+from derive.ir.constants import COINCIDENT, EDGE, TIE
 from derive.ir.interpret import Array, Repeats, evaluate, repeats_counted, run
 from derive.ir.program import Program, Status
 from derive.ir.symbols import ROTATION_ENTRIES, branch_sign
@@ -217,7 +217,7 @@ def _axes(machine: Machine, poses: Sequence[Reals]) -> dict[str, Array]:
 
 
 def _branch_byte(margin: float) -> int:
-    return 3 if abs(margin) <= float(FREE_ANGLE) else 1 if margin > 0 else 2
+    return 3 if abs(margin) <= float(COINCIDENT) else 1 if margin > 0 else 2
 
 
 def _period(axis: float) -> int:

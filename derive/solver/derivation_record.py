@@ -53,13 +53,14 @@ class DerivationRecord:
         own = {f(u) for u in binding.unknowns for f in (sine, cosine)}
         names = self._write(binding.statements, keep=own | {*binding.unknowns})
         self.renamed = names
+        residual = None if binding.residual is None else binding.residual.xreplace(names)
         binding = replace(
             binding,
             determinant=None if binding.determinant is None else binding.determinant.renamed(names),
             conditioning=None
             if binding.conditioning is None
-            else replace(binding.conditioning, value=binding.conditioning.value.xreplace(names)),
-            residual=None if binding.residual is None else binding.residual.xreplace(names),
+            else replace(binding.conditioning, value=binding.conditioning.value.xreplace(names), missed=residual),
+            residual=residual,
             new_equations=tuple(
                 replace(e, expression=e.expression.xreplace(names), lets=()) for e in binding.new_equations
             ),

@@ -87,6 +87,16 @@ BROKEN: Mapping[str, tuple[str, str | bytes, str]] = {
     ),
     "a character of zero": ("r.urdf", ARM.replace('"link1"', '"link\0"'), r"r\.urdf:\d+: broken XML: "),
     "limits that are none": ("r.urdf", ARM.replace('lower="-3.0"', 'lower="nan"', 1), "'nan' is no number$"),
+    "a class that another file defines": (
+        "r.xml",
+        MODEL.replace('name="b"', 'name="b" class="tilt"'),
+        "joint 'b': its class 'tilt' is not defined: import the model that includes this file$",
+    ),
+    "three joints on one line": (
+        "r.toml",
+        TABLE.replace("a = 200", "a = 0", 2).replace('"pi/2"', "0"),
+        "1 free motion .*another tip; A1 and A2 turn about the same line: one of them moves nothing of its own$",
+    ),
     "a range of one number": ("r.xml", MODEL.replace("-1 2", "-1"), "joint 'a', range: '-1' is not two numbers$"),
 }
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as some
 
 from derive.command.catalogue import OUTPUT
 from derive.ir import primitives
-from derive.ir.constants import EDGE, FREE_ANGLE
+from derive.ir.constants import COINCIDENT, EDGE
 from tests.harness.library import Library, StError, compile_st
 
 TEXTS = {p.name: p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st" / "softkin").glob("*.st"))}
@@ -102,7 +102,7 @@ def test_a_period_that_no_byte_holds_is_automatic(period: int) -> None:
     assert call("ByteOfPeriod", period) == 0
 
 
-@pytest.mark.parametrize(("margin", "byte"), [(1.0, 1), (-1.0, 2), (0.0, 3), (float(FREE_ANGLE), 3), (-2e-11, 2)])
+@pytest.mark.parametrize(("margin", "byte"), [(1.0, 1), (-1.0, 2), (0.0, 3), (float(COINCIDENT), 3), (-2e-11, 2)])
 def test_branch_byte(margin: float, byte: int) -> None:
     """Softkin_BranchByte is 1 or 2 by the sign of the margin, and 3 where branches coincide."""
     assert call("BranchByte", margin) == byte

@@ -18,7 +18,7 @@ from derive.emit.c.printer import C, list_of, member, number, page, text
 from derive.emit.interface import searches
 from derive.emit.language import GENERATED, Part, environment
 from derive.emit.linuxcnc.words import LETTERS, Orientation, Words, flange_of, turn_row, words_of
-from derive.ir.constants import FREE_ANGLE, LARGEST, TIE
+from derive.ir.constants import COINCIDENT, LARGEST, TIE
 from derive.kinematics.kinematics import Kinematics
 
 name, title = "linuxcnc", "LinuxCNC"
@@ -99,7 +99,7 @@ def _templates() -> Environment:
         "search_source": begin + search,
         "macros": _macros(source),
         "largest": number(float(LARGEST)),
-        "free_angle": number(float(FREE_ANGLE)),
+        "coincident": number(float(COINCIDENT)),
         "tie": number(float(TIE)),
         "letters": list(LETTERS),
     }

@@ -17,7 +17,7 @@ from derive.emit.st.layout import WIDTH
 from derive.emit.st.names import respelled
 from derive.geometry.frames import Motion
 from derive.geometry.pose import Screw, pose_of
-from derive.ir.constants import EXACT_ROTATION, FREE_ANGLE, ONE_TURN, ROTATION
+from derive.ir.constants import COINCIDENT, EXACT_ROTATION, ONE_TURN, ROTATION
 from derive.ir.program import Call, Status, shared
 from derive.kinematics.kinematics import Called, Kinematics
 from derive.report.cost import Bound, Cost, Costs, costs_of, open_slots, worst_inverse
@@ -60,7 +60,7 @@ _KINDS = {
 }
 """The sentences on couplings, by whether it is a position kinematics, and whether it is an orientation kinematics."""
 _WITHOUT_LENGTH = (
-    f"where an axis is not determined: within {float(FREE_ANGLE):g} of your unit of length. The machine has no "
+    f"where an axis is not determined: within {float(COINCIDENT):g} of your unit of length. The machine has no "
     "length with which this distance could be compared, so the margin is 1 everywhere else, and IsSingularity gives "
     "no earlier warning"
 )

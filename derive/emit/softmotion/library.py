@@ -29,7 +29,7 @@ from derive.emit.st.layout import assigned, beside, case, gathered, quoted
 from derive.emit.st.reserved import refuse_clashes
 from derive.emit.st.rotation import limits_function, rotation_function
 from derive.emit.st.scan import SEARCH
-from derive.ir.constants import EDGE, FREE_ANGLE, HELD, LARGEST, LEAST, PIVOT, SOLVABLE
+from derive.ir.constants import COINCIDENT, EDGE, HELD, LARGEST, LEAST, PIVOT, SOLVABLE
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.report.branch_stretches import MOST_KEPT, MOST_SIDES
@@ -159,7 +159,7 @@ def _templates() -> Environment:
         generated=GENERATED,
         degree=literal(math.pi / 180.0),
         radian=literal(180.0 / math.pi),
-        free_angle=literal(float(FREE_ANGLE)),
+        coincident=literal(float(COINCIDENT)),
         edge=literal(float(EDGE)),
         half_turn=literal(180.0 + float(EDGE)),
         per_turn=literal(1.0 / 360.0),

@@ -32,6 +32,7 @@ from derive.importing.robot import (
 )
 
 Element = ElementTree.Element
+_UNDEFINED = "undefined class"
 _FREE = {"free": "moves freely in space", "ball": "turns freely about a point"}
 
 
@@ -122,16 +123,18 @@ def _file(path: Path, root: Element, scale: float) -> File:
 
 
 def _defaults(file: File, joint: Element, body_class: str | None) -> dict[str, str]:
-    """The attributes of a joint, with those of its default class."""
-    found: dict[str, str] = {}
-    for default in _classes(file.root, joint.get("class") or body_class):
+    """The attributes of a joint, with those of its default class; the name of a class that is not defined."""
+    name = joint.get("class") or body_class
+    classes = _classes(file.root, name)
+    found = {} if classes is not None else {_UNDEFINED: name or ""}
+    for default in classes or ():
         element = default.find("joint")
         found |= dict(element.attrib) if element is not None else {}
     return found | dict(joint.attrib)
 
 
-def _classes(root: Element, name: str | None) -> Sequence[Element]:
-    """The default classes that hold for a class, outermost first."""
+def _classes(root: Element, name: str | None) -> Sequence[Element] | None:
+    """The default classes that hold for a class, outermost first; None if there is no such class."""
     top = root.findall("default")
 
     def below(defaults: Sequence[Element], before: tuple[Element, ...]) -> tuple[Element, ...] | None:
@@ -144,7 +147,8 @@ def _classes(root: Element, name: str | None) -> Sequence[Element]:
                 return found
         return None
 
-    return (below(top, ()) if name else None) or tuple(top)
+    found = below(top, ()) if name else None
+    return tuple(top) if found is None and name in (None, "", "main") else found
 
 
 def _only_end(path: Path, root: Element, frames: Mapping[str, Frame], why: str) -> str:
@@ -177,6 +181,11 @@ def _steps(
 
 def _joint_steps(file: File, name: str, stated: Mapping[str, str], followers: Mapping[str, Follower]) -> list[Step]:
     element = Element("joint", dict(stated))
+    if _UNDEFINED in stated:
+        raise UnreadableRobot(
+            f"{file.path}: joint {name!r}: its class {stated[_UNDEFINED]!r} is not defined: import the model that "
+            "includes this file"
+        )
     kind = _kind(file, name, stated)
     x, y, z = (v * file.scale for v in numbers(file.path, element, "pos", f"joint {name!r}", (0.0, 0.0, 0.0)))
     direction = numbers(file.path, element, "axis", f"joint {name!r}", (0.0, 0.0, 1.0))

@@ -3,6 +3,9 @@
 A two-root step near its fold, and a step whose conditioning nearly vanishes, know their angle to a few digits. If a
 later step refuses there, this is not final: the branch calls the program of `closure_steps`. If no earlier step is
 near its singularity the refusal is final, and the branch does nothing more.
+
+A step that turns one length to another needs both alike. Where they nearly vanish, the rounding of their squares is
+large beside them: such a step refuses lengths that differ.
 """
 
 from __future__ import annotations
@@ -12,16 +15,18 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.ir.constants import BOUNDARY, DOUBTFUL
+from derive.equations.problem import Conditioning
+from derive.ir.constants import BOUNDARY, CONVERGED, DOUBTFUL
 from derive.ir.passes import depending_on, normalise
 from derive.ir.primitives import Select
 from derive.ir.program import Call, Let, Program, Require, Statement, Status
+from derive.ir.reason import Why, about_joint
 from derive.ir.symbols import BOUND_OF, Flag, cosine, flag, names_in, real, sine
 from derive.kinematics.lost_digits.closure_steps import MET, Machine, given_name, meet_program, started, varying
 from derive.kinematics.lost_digits.starts import GOAL, LOST
 from derive.work import stage
 
-_EXACTLY = {1 + BOUNDARY / 2: sp.Integer(1), BOUNDARY / 2: sp.Integer(0)}
+_EXACTLY = {1 + BOUNDARY / 2: sp.Integer(1), BOUNDARY / 2: sp.Integer(0), CONVERGED: BOUNDARY}
 """A bound without what it allows for rounding."""
 
 
@@ -29,6 +34,7 @@ _EXACTLY = {1 + BOUNDARY / 2: sp.Integer(1), BOUNDARY / 2: sp.Integer(0)}
 def with_doubts(machine: Machine, statements: Sequence[Statement]) -> tuple[Statement, ...]:
     """The derivation with every refusal put off that lost digits of earlier steps may explain."""
     found: list[Statement] = []
+    statements = _with_lengths(machine, statements) if machine.has_steps else statements
     for place, s in enumerate(statements):
         may_refuse = machine.has_steps and isinstance(s, Require) and s.otherwise is Status.UNREACHABLE
         doubts = _doubts(machine, statements, place) if may_refuse else []
@@ -41,6 +47,30 @@ def with_doubts(machine: Machine, statements: Sequence[Statement]) -> tuple[Stat
         else:
             found.append(s)
     return tuple(found)
+
+
+def _with_lengths(machine: Machine, statements: Sequence[Statement]) -> list[Statement]:
+    """The statements, with a refusal behind each step whose two lengths may differ because digits are lost: a step
+    behind a refusal that is not final. Behind one two-root step alone both have the same digits.
+    """
+    turned = {sine(c.angle): c for c in machine.inverse.derivation.conditionings if c.missed is not None}
+    found: list[Statement] = []
+    is_doubtful = False
+    for place, s in enumerate(statements):
+        found.append(s)
+        is_doubtful = is_doubtful or (isinstance(s, Require) and bool(_doubts(machine, statements, place)))
+        if is_doubtful and isinstance(s, Let) and s.name in turned:
+            alike = _alike(turned[s.name])
+            found += [alike] if _doubts(machine, [*found, alike], len(found)) else []
+    return found
+
+
+def _alike(step: Conditioning) -> Require:
+    """The condition that both lengths of a step are alike, or so large that their squares have the digits."""
+    away = CONVERGED * step.scale
+    differ = sp.Abs(step.missed) - away * (step.value + away)
+    condition = sp.Or(sp.Gt(step.value, DOUBTFUL * step.scale), sp.Le(differ, 0))
+    return Require(condition, Status.UNREACHABLE, reason=about_joint(step.angle, Why.OUT_OF_REACH))
 
 
 def _doubts(machine: Machine, statements: Sequence[Statement], place: int) -> list[sp.Basic]:

@@ -8,7 +8,17 @@ import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism
 from derive.equations.axes import reference_value
-from derive.ir.constants import COST_OF_A_STALL, DOUBTFUL, FREE_ANGLE, LATTICE, PASSES, REFINED, SCANNED, STALLED
+from derive.ir.constants import (
+    COST_OF_A_STALL,
+    DOUBTFUL,
+    FREE_ANGLE,
+    LATTICE,
+    NEARLY_FREE,
+    PASSES,
+    REFINED,
+    SCANNED,
+    STALLED,
+)
 from derive.ir.primitives import Select, ToReal
 from derive.ir.program import Let, Program
 from derive.ir.symbols import POSITION, ROTATION_ENTRIES, called, count, flag, real
@@ -45,13 +55,14 @@ def next_attempt(following: sp.Symbol) -> tuple[Let, ...]:
     """Whether another start is taken, which one, and what is free there."""
     nearer = flag("is_nearer")
     far = Select(refines(following), BESIDE, _ZERO)
+    free = Select(sp.Gt(following, 0), Select(sp.Gt(following, SCANNED + 1), NEARLY_FREE, DOUBTFUL), FREE_ANGLE)
     cost = Select(sp.Gt(real("error"), STALLED * BEFORE), sp.Integer(COST_OF_A_STALL), _ONE)
     return (
         Let(ANOTHER, sp.Le(LEFT, 0)),
         Let(LEFT_NOW, LEFT - cost),
         Let(following, ATTEMPT + Select(ANOTHER, _ONE, _ZERO)),
         Let(AGAIN, sp.And(MIRRORS, sp.Gt(LEFT, PASSES // 2)), "what is nearly free is known now"),
-        Let(FREE, Select(sp.Or(AGAIN, sp.Gt(following, 0)), DOUBTFUL, FREE_ANGLE)),
+        Let(FREE, Select(AGAIN, DOUBTFUL, free)),
         Let(nearer, sp.And(is_scan(ATTEMPT), sp.Lt(LEFT_OVER, NEAREST))),
         Let(NEAREST_NOW, Select(nearer, LEFT_OVER, NEAREST)),
         Let(NEAREST_TURN_NOW, Select(nearer, TURN, NEAREST_TURN)),

@@ -11,11 +11,13 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
   const ac6_threeparallel_machine *k = machine;
   const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3, a3 = k->a3,
       bound_of_cos_q3 = k->bound_of_cos_q3, d1 = k->d1, d4 = k->d4, d5 = k->d5, d6 = k->d6,
-      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
-      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      machine_scale_times_rounding = k->machine_scale_times_rounding, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
+      mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
       offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
       product_in_lost_digits_38 = k->product_in_lost_digits_38,
+      product_in_within_48 = k->product_in_within_48,
       quotient_in_closed_cos_q3 = k->quotient_in_closed_cos_q3,
       quotient_in_closed_sin_q3 = k->quotient_in_closed_sin_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
@@ -52,7 +54,7 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     const double r22_from_q1 = r22*cos_q1 - r12*sin_q1;
     /* polar coordinates: the radius at angle q6 */
     const double radius_q6 = softkin_lane_root(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1);
-    missed += radius_q6 > 1e-11 ? 0.0 : 1.0;
+    missed += radius_q6 > 2e-12 ? 0.0 : 1.0;
     const double sign_wrist = sigma_wrist; /* wrist: +1 down, -1 up */
     const double q6_radius_of_q5 = radius_q6*sign_wrist;
     /* cosine and sine of q5 from the q6 radius and r22 equations */
@@ -85,18 +87,31 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     missed += !lost_digits_38 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_q3) <= bound_of_cos_q3 ? 0.0 : 1.0;
-    missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
-    const double axis_a1 = offset_a1 + softkin_lane_angle(sin_q1, cos_q1)*SOFTKIN_RADIAN;
-    const double arm_along_q2 = a2 + a3*cos_q3;
     const double sign_elbow = sigma_elbow; /* elbow: +1 up, -1 down */
     /* sine squared, times the squared scale */
     const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
     const double sin_q3 = softkin_lane_root(sine_square_q3)*quotient_in_closed_sin_q3*sign_elbow;
+    const double arm_along_q2 = a2 + a3*cos_q3;
     const double arm_across_q2 = a3*sin_q3;
-    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    const double direction_x_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
-    const double direction_y_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
-    const double angle_q2 = softkin_lane_angle(direction_y_q2, direction_x_q2);
+    const double size_in_within_48 = fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2
+        - reach*reach);
+    const bool within_48 = (reach > product_in_lost_digits_38)
+        || (size_in_within_48 - (machine_scale_times_rounding + reach)*product_in_within_48 <= 0.0);
+    const bool lost_digits_48 = (!within_48)
+        && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01) || (fabs(sin_q3) <= 0.01)
+        || (fabs(ahead_q1) <= product_in_lost_digits_38));
+    /* digits may be lost */
+    missed += !lost_digits_48 ? 0.0 : 1.0;
+    /* q2: out of reach */
+    missed += (reach > product_in_lost_digits_38)
+        || (size_in_within_48 - product_in_within_48*(product_in_within_48 + reach) <= 0.0) ? 0.0 : 1.0;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
+    const double across_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
+    missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += across_q2*across_q2 + along_q2*along_q2 > 0.0 ? 0.0 : 1.0;
+    const double axis_a1 = offset_a1 + softkin_lane_angle(sin_q1, cos_q1)*SOFTKIN_RADIAN;
+    const double angle_q2 = softkin_lane_angle(across_q2, along_q2);
     const double axis_a2 = offset_a2 + angle_q2*SOFTKIN_RADIAN;
     const double angle_q3 = softkin_lane_angle(sin_q3, cos_q3);
     const double axis_a3 = offset_a3 + angle_q3*SOFTKIN_RADIAN;
@@ -128,11 +143,13 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
   const ac6_threeparallel_machine *k = machine;
   const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3, a3 = k->a3,
       bound_of_cos_q3 = k->bound_of_cos_q3, d1 = k->d1, d4 = k->d4, d5 = k->d5, d6 = k->d6,
-      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
-      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      machine_scale_times_rounding = k->machine_scale_times_rounding, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
+      mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
       offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
       product_in_lost_digits_38 = k->product_in_lost_digits_38,
+      product_in_within_48 = k->product_in_within_48,
       quotient_in_closed_cos_q3 = k->quotient_in_closed_cos_q3,
       quotient_in_closed_sin_q3 = k->quotient_in_closed_sin_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
@@ -171,7 +188,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* polar coordinates: the radius at angle q6 */
     const double radius_q6_left = softkin_lane_root(r21_from_q1_left*r21_from_q1_left
         + r22_from_q1_left*r22_from_q1_left);
-    missed += radius_q6_left > 1e-11 ? 0.0 : 1.0;
+    missed += radius_q6_left > 2e-12 ? 0.0 : 1.0;
     /* cosine and sine of q5 from the q6 radius and r22 equations */
     const double cos_q5_left = r13*sin_q1_left - r23*cos_q1_left;
     const double r21_from_q1_left_by_radius_q6_left = r21_from_q1_left/radius_q6_left;
@@ -233,7 +250,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* polar coordinates: the radius at angle q6 */
     const double radius_q6_right = softkin_lane_root(r21_from_q1_right*r21_from_q1_right
         + r22_from_q1_right*r22_from_q1_right);
-    missed += radius_q6_right > 1e-11 ? 0.0 : 1.0;
+    missed += radius_q6_right > 2e-12 ? 0.0 : 1.0;
     /* cosine and sine of q5 from the q6 radius and r22 equations */
     const double cos_q5_right = r13*sin_q1_right - r23*cos_q1_right;
     const double r21_from_q1_right_by_radius_q6_right = r21_from_q1_right/radius_q6_right;
@@ -286,18 +303,146 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
     /* digits may be lost */
     missed += !lost_digits_38_right_up ? 0.0 : 1.0;
-    missed += reach_left_down > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += reach_left_up > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += reach_right_down > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += reach_right_up > machine_scale_times_free_angle ? 0.0 : 1.0;
-    /* q3: out of reach */
-    const double refusal_left_down = fabs(cos_q3_left_down) <= bound_of_cos_q3 ? 0 : 3;
-    const double axis_a1_left = offset_a1 + softkin_lane_angle(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
-    const double arm_along_q2_left_down = a2 + a3*cos_q3_left_down;
     /* sine squared, times the squared scale */
     const double sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down;
     const double sin_q3_left_up_down = softkin_lane_root(sine_square_q3_left_down)*quotient_in_closed_sin_q3;
+    const double arm_along_q2_left_down = a2 + a3*cos_q3_left_down;
     const double arm_across_q2_left_up_down = a3*sin_q3_left_up_down;
+    const double size_in_within_48_left_up_down = fabs(arm_across_q2_left_up_down*arm_across_q2_left_up_down
+        + arm_along_q2_left_down*arm_along_q2_left_down - reach_left_down*reach_left_down);
+    const bool within_48_left_up_down = (reach_left_down > product_in_lost_digits_38)
+        || (size_in_within_48_left_up_down
+        - (machine_scale_times_rounding + reach_left_down)*product_in_within_48 <= 0.0);
+    const bool lost_digits_48_left_up_down = (!within_48_left_up_down)
+        && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_down) <= 0.01)
+        || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
+    /* digits may be lost */
+    missed += !lost_digits_48_left_up_down ? 0.0 : 1.0;
+    /* sine squared, times the squared scale */
+    const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
+    const double sin_q3_left_up_up = softkin_lane_root(sine_square_q3_left_up)*quotient_in_closed_sin_q3;
+    const double arm_along_q2_left_up = a2 + a3*cos_q3_left_up;
+    const double arm_across_q2_left_up_up = a3*sin_q3_left_up_up;
+    const double size_in_within_48_left_up_up = fabs(arm_across_q2_left_up_up*arm_across_q2_left_up_up
+        + arm_along_q2_left_up*arm_along_q2_left_up - reach_left_up*reach_left_up);
+    const bool within_48_left_up_up = (reach_left_up > product_in_lost_digits_38)
+        || (size_in_within_48_left_up_up
+        - (machine_scale_times_rounding + reach_left_up)*product_in_within_48 <= 0.0);
+    const bool lost_digits_48_left_up_up = (!within_48_left_up_up)
+        && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_up) <= 0.01)
+        || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
+    /* digits may be lost */
+    missed += !lost_digits_48_left_up_up ? 0.0 : 1.0;
+    /* sine squared, times the squared scale */
+    const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
+    const double sin_q3_right_up_down = softkin_lane_root(sine_square_q3_right_down)
+        *quotient_in_closed_sin_q3;
+    const double arm_along_q2_right_down = a2 + a3*cos_q3_right_down;
+    const double arm_across_q2_right_up_down = a3*sin_q3_right_up_down;
+    const double size_in_within_48_right_up_down = fabs(arm_across_q2_right_up_down
+        *arm_across_q2_right_up_down + arm_along_q2_right_down*arm_along_q2_right_down
+        - reach_right_down*reach_right_down);
+    const bool within_48_right_up_down = (reach_right_down > product_in_lost_digits_38)
+        || (size_in_within_48_right_up_down
+        - (machine_scale_times_rounding + reach_right_down)*product_in_within_48 <= 0.0);
+    const bool lost_digits_48_right_up_down = (!within_48_right_up_down)
+        && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_down) <= 0.01)
+        || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
+    /* digits may be lost */
+    missed += !lost_digits_48_right_up_down ? 0.0 : 1.0;
+    /* sine squared, times the squared scale */
+    const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
+    const double sin_q3_right_up_up = softkin_lane_root(sine_square_q3_right_up)*quotient_in_closed_sin_q3;
+    const double arm_along_q2_right_up = a2 + a3*cos_q3_right_up;
+    const double arm_across_q2_right_up_up = a3*sin_q3_right_up_up;
+    const double size_in_within_48_right_up_up = fabs(arm_across_q2_right_up_up*arm_across_q2_right_up_up
+        + arm_along_q2_right_up*arm_along_q2_right_up - reach_right_up*reach_right_up);
+    const bool within_48_right_up_up = (reach_right_up > product_in_lost_digits_38)
+        || (size_in_within_48_right_up_up
+        - (machine_scale_times_rounding + reach_right_up)*product_in_within_48 <= 0.0);
+    const bool lost_digits_48_right_up_up = (!within_48_right_up_up)
+        && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_up) <= 0.01)
+        || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
+    /* digits may be lost */
+    missed += !lost_digits_48_right_up_up ? 0.0 : 1.0;
+    const double product_in_along_q2_left_up_down = arm_along_q2_left_down*wrist_x_from_q1_left_down;
+    const double product_in_along_q2_left_up_down_2 = arm_across_q2_left_up_down*wrist_z_from_q1_left_down;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_left_up_down = product_in_along_q2_left_up_down
+        + product_in_along_q2_left_up_down_2;
+    const double product_in_across_q2_left_up_down = arm_across_q2_left_up_down*wrist_x_from_q1_left_down;
+    const double product_in_across_q2_left_up_down_2 = arm_along_q2_left_down*wrist_z_from_q1_left_down;
+    const double across_q2_left_up_down = product_in_across_q2_left_up_down_2
+        - product_in_across_q2_left_up_down;
+    missed += reach_left_down > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += across_q2_left_up_down*across_q2_left_up_down
+        + along_q2_left_up_down*along_q2_left_up_down > 0.0 ? 0.0 : 1.0;
+    const double product_in_along_q2_left_up_up = arm_along_q2_left_up*wrist_x_from_q1_left_up;
+    const double product_in_along_q2_left_up_up_2 = arm_across_q2_left_up_up*wrist_z_from_q1_left_up;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_left_up_up = product_in_along_q2_left_up_up + product_in_along_q2_left_up_up_2;
+    const double product_in_across_q2_left_up_up = arm_across_q2_left_up_up*wrist_x_from_q1_left_up;
+    const double product_in_across_q2_left_up_up_2 = arm_along_q2_left_up*wrist_z_from_q1_left_up;
+    const double across_q2_left_up_up = product_in_across_q2_left_up_up_2 - product_in_across_q2_left_up_up;
+    missed += reach_left_up > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up > 0.0 ? 0.0
+        : 1.0;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_left_down_down = product_in_along_q2_left_up_down
+        - product_in_along_q2_left_up_down_2;
+    const double across_q2_left_down_down = product_in_across_q2_left_up_down
+        + product_in_across_q2_left_up_down_2;
+    missed += across_q2_left_down_down*across_q2_left_down_down
+        + along_q2_left_down_down*along_q2_left_down_down > 0.0 ? 0.0 : 1.0;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_left_down_up = product_in_along_q2_left_up_up - product_in_along_q2_left_up_up_2;
+    const double across_q2_left_down_up = product_in_across_q2_left_up_up + product_in_across_q2_left_up_up_2;
+    missed += across_q2_left_down_up*across_q2_left_down_up
+        + along_q2_left_down_up*along_q2_left_down_up > 0.0 ? 0.0 : 1.0;
+    const double product_in_along_q2_right_up_down = arm_along_q2_right_down*wrist_x_from_q1_right_down;
+    const double product_in_along_q2_right_up_down_2 = arm_across_q2_right_up_down*wrist_z_from_q1_right_down;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_right_up_down = product_in_along_q2_right_up_down
+        + product_in_along_q2_right_up_down_2;
+    const double product_in_across_q2_right_up_down = arm_across_q2_right_up_down*wrist_x_from_q1_right_down;
+    const double product_in_across_q2_right_up_down_2 = arm_along_q2_right_down*wrist_z_from_q1_right_down;
+    const double across_q2_right_up_down = product_in_across_q2_right_up_down_2
+        - product_in_across_q2_right_up_down;
+    missed += reach_right_down > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += across_q2_right_up_down*across_q2_right_up_down
+        + along_q2_right_up_down*along_q2_right_up_down > 0.0 ? 0.0 : 1.0;
+    const double product_in_along_q2_right_up_up = arm_along_q2_right_up*wrist_x_from_q1_right_up;
+    const double product_in_along_q2_right_up_up_2 = arm_across_q2_right_up_up*wrist_z_from_q1_right_up;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_right_up_up = product_in_along_q2_right_up_up + product_in_along_q2_right_up_up_2;
+    const double product_in_across_q2_right_up_up = arm_across_q2_right_up_up*wrist_x_from_q1_right_up;
+    const double product_in_across_q2_right_up_up_2 = arm_along_q2_right_up*wrist_z_from_q1_right_up;
+    const double across_q2_right_up_up = product_in_across_q2_right_up_up_2
+        - product_in_across_q2_right_up_up;
+    missed += reach_right_up > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up > 0.0
+        ? 0.0 : 1.0;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_right_down_down = product_in_along_q2_right_up_down
+        - product_in_along_q2_right_up_down_2;
+    const double across_q2_right_down_down = product_in_across_q2_right_up_down
+        + product_in_across_q2_right_up_down_2;
+    missed += across_q2_right_down_down*across_q2_right_down_down
+        + along_q2_right_down_down*along_q2_right_down_down > 0.0 ? 0.0 : 1.0;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_right_down_up = product_in_along_q2_right_up_up - product_in_along_q2_right_up_up_2;
+    const double across_q2_right_down_up = product_in_across_q2_right_up_up
+        + product_in_across_q2_right_up_up_2;
+    missed += across_q2_right_down_up*across_q2_right_down_up
+        + along_q2_right_down_up*along_q2_right_down_up > 0.0 ? 0.0 : 1.0;
+    /* q3: out of reach */
+    const double refusal_left_down = fabs(cos_q3_left_down) <= bound_of_cos_q3 ? 0 : 3;
+    /* q2: out of reach */
+    const double refusal_left_up_down = refusal_left_down > 0 ? refusal_left_down
+        : ((reach_left_down > product_in_lost_digits_38)
+        || (size_in_within_48_left_up_down
+        - product_in_within_48*(product_in_within_48 + reach_left_down) <= 0.0) ? 0 : 3);
+    const double axis_a1_left = offset_a1 + softkin_lane_angle(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
     const double angle_of_arm_along_q2_left_up_down = softkin_lane_angle(arm_across_q2_left_up_down,
         arm_along_q2_left_down);
     const double angle_of_wrist_x_from_q1_left_down = softkin_lane_angle(wrist_z_from_q1_left_down,
@@ -320,11 +465,11 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         + softkin_lane_angle(r22_from_q1_left_by_radius_q6_left, cos_q6_left_down)*SOFTKIN_RADIAN;
     /* q3: out of reach */
     const double refusal_left_up = fabs(cos_q3_left_up) <= bound_of_cos_q3 ? 0 : 3;
-    const double arm_along_q2_left_up = a2 + a3*cos_q3_left_up;
-    /* sine squared, times the squared scale */
-    const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
-    const double sin_q3_left_up_up = softkin_lane_root(sine_square_q3_left_up)*quotient_in_closed_sin_q3;
-    const double arm_across_q2_left_up_up = a3*sin_q3_left_up_up;
+    /* q2: out of reach */
+    const double refusal_left_up_up = refusal_left_up > 0 ? refusal_left_up
+        : ((reach_left_up > product_in_lost_digits_38)
+        || (size_in_within_48_left_up_up
+        - product_in_within_48*(product_in_within_48 + reach_left_up) <= 0.0) ? 0 : 3);
     const double angle_of_arm_along_q2_left_up_up = softkin_lane_angle(arm_across_q2_left_up_up,
         arm_along_q2_left_up);
     const double angle_of_wrist_x_from_q1_left_up = softkin_lane_angle(wrist_z_from_q1_left_up,
@@ -355,13 +500,12 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         + (angle_q3_left_up_up + angle_with_q4_left_up - angle_q2_left_down_up)*SOFTKIN_RADIAN;
     /* q3: out of reach */
     const double refusal_right_down = fabs(cos_q3_right_down) <= bound_of_cos_q3 ? 0 : 3;
+    /* q2: out of reach */
+    const double refusal_right_up_down = refusal_right_down > 0 ? refusal_right_down
+        : ((reach_right_down > product_in_lost_digits_38)
+        || (size_in_within_48_right_up_down
+        - product_in_within_48*(product_in_within_48 + reach_right_down) <= 0.0) ? 0 : 3);
     const double axis_a1_right = offset_a1 + softkin_lane_angle(sin_q1_right, cos_q1_right)*SOFTKIN_RADIAN;
-    const double arm_along_q2_right_down = a2 + a3*cos_q3_right_down;
-    /* sine squared, times the squared scale */
-    const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
-    const double sin_q3_right_up_down = softkin_lane_root(sine_square_q3_right_down)
-        *quotient_in_closed_sin_q3;
-    const double arm_across_q2_right_up_down = a3*sin_q3_right_up_down;
     const double angle_of_arm_along_q2_right_up_down = softkin_lane_angle(arm_across_q2_right_up_down,
         arm_along_q2_right_down);
     const double angle_of_wrist_x_from_q1_right_down = softkin_lane_angle(wrist_z_from_q1_right_down,
@@ -384,11 +528,11 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         + softkin_lane_angle(r22_from_q1_right_by_radius_q6_right, cos_q6_right_down)*SOFTKIN_RADIAN;
     /* q3: out of reach */
     const double refusal_right_up = fabs(cos_q3_right_up) <= bound_of_cos_q3 ? 0 : 3;
-    const double arm_along_q2_right_up = a2 + a3*cos_q3_right_up;
-    /* sine squared, times the squared scale */
-    const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
-    const double sin_q3_right_up_up = softkin_lane_root(sine_square_q3_right_up)*quotient_in_closed_sin_q3;
-    const double arm_across_q2_right_up_up = a3*sin_q3_right_up_up;
+    /* q2: out of reach */
+    const double refusal_right_up_up = refusal_right_up > 0 ? refusal_right_up
+        : ((reach_right_up > product_in_lost_digits_38)
+        || (size_in_within_48_right_up_up
+        - product_in_within_48*(product_in_within_48 + reach_right_up) <= 0.0) ? 0 : 3);
     const double angle_of_arm_along_q2_right_up_up = softkin_lane_angle(arm_across_q2_right_up_up,
         arm_along_q2_right_up);
     const double angle_of_wrist_x_from_q1_right_up = softkin_lane_angle(wrist_z_from_q1_right_up,
@@ -424,56 +568,56 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     near[3][lane] = single_a4 > 0.0 ? mid_a4 : ref_a4;
     near[4][lane] = single_a5 > 0.0 ? mid_a5 : ref_a5;
     near[5][lane] = single_a6 > 0.0 ? mid_a6 : ref_a6;
-    statuses[0][lane] = refusal_left_down;
+    statuses[0][lane] = refusal_left_up_down;
     axes[0][lane] = axis_a1_left;
     axes[1][lane] = axis_a2_left_up_down;
     axes[2][lane] = axis_a3_left_up_down;
     axes[3][lane] = axis_a4_left_up_down;
     axes[4][lane] = axis_a5_left_down;
     axes[5][lane] = axis_a6_left_down;
-    statuses[1][lane] = refusal_right_down;
+    statuses[1][lane] = refusal_right_up_down;
     axes[6][lane] = axis_a1_right;
     axes[7][lane] = axis_a2_right_up_down;
     axes[8][lane] = axis_a3_right_up_down;
     axes[9][lane] = axis_a4_right_up_down;
     axes[10][lane] = axis_a5_right_down;
     axes[11][lane] = axis_a6_right_down;
-    statuses[2][lane] = refusal_left_down;
+    statuses[2][lane] = refusal_left_up_down;
     axes[12][lane] = axis_a1_left;
     axes[13][lane] = axis_a2_left_down_down;
     axes[14][lane] = axis_a3_left_down_down;
     axes[15][lane] = axis_a4_left_down_down;
     axes[16][lane] = axis_a5_left_down;
     axes[17][lane] = axis_a6_left_down;
-    statuses[3][lane] = refusal_right_down;
+    statuses[3][lane] = refusal_right_up_down;
     axes[18][lane] = axis_a1_right;
     axes[19][lane] = axis_a2_right_down_down;
     axes[20][lane] = axis_a3_right_down_down;
     axes[21][lane] = axis_a4_right_down_down;
     axes[22][lane] = axis_a5_right_down;
     axes[23][lane] = axis_a6_right_down;
-    statuses[4][lane] = refusal_left_up;
+    statuses[4][lane] = refusal_left_up_up;
     axes[24][lane] = axis_a1_left;
     axes[25][lane] = axis_a2_left_up_up;
     axes[26][lane] = axis_a3_left_up_up;
     axes[27][lane] = axis_a4_left_up_up;
     axes[28][lane] = axis_a5_left_up;
     axes[29][lane] = axis_a6_left_up;
-    statuses[5][lane] = refusal_right_up;
+    statuses[5][lane] = refusal_right_up_up;
     axes[30][lane] = axis_a1_right;
     axes[31][lane] = axis_a2_right_up_up;
     axes[32][lane] = axis_a3_right_up_up;
     axes[33][lane] = axis_a4_right_up_up;
     axes[34][lane] = axis_a5_right_up;
     axes[35][lane] = axis_a6_right_up;
-    statuses[6][lane] = refusal_left_up;
+    statuses[6][lane] = refusal_left_up_up;
     axes[36][lane] = axis_a1_left;
     axes[37][lane] = axis_a2_left_down_up;
     axes[38][lane] = axis_a3_left_down_up;
     axes[39][lane] = axis_a4_left_down_up;
     axes[40][lane] = axis_a5_left_up;
     axes[41][lane] = axis_a6_left_up;
-    statuses[7][lane] = refusal_right_up;
+    statuses[7][lane] = refusal_right_up_up;
     axes[42][lane] = axis_a1_right;
     axes[43][lane] = axis_a2_right_down_up;
     axes[44][lane] = axis_a3_right_down_up;

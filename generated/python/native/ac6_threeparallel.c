@@ -218,14 +218,14 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       closed_r31_from_q1_before_q6, closed_r31_from_q1_before_q56, closed_wrist_x_from_q1,
       closed_r33_from_q1_before_q6, closed_wrist_z_from_q1, closed_reach, shrinking, closed_axis_a1,
       closed_reference_a2, closed_one_less_cos_q3, closed_one_plus_cos_q3, closed_cos_q3,
-      closed_arm_along_q2, closed_sine_square_q3, closed_sin_q3, closed_arm_across_q2, closed_direction_x_q2,
-      closed_direction_y_q2, closed_angle_q2, closed_axis_a2, closed_angle_q3, closed_axis_a3,
-      closed_angle_with_q4, closed_axis_a4, closed_axis_a5, closed_axis_a6, least_error_left_now,
-      shared_quotient;
+      closed_arm_along_q2, closed_sine_square_q3, closed_sin_q3, closed_arm_across_q2, closed_along_q2,
+      closed_across_q2, closed_direction_x_q2, closed_direction_y_q2, closed_angle_q2, closed_axis_a2,
+      closed_angle_q3, closed_axis_a3, closed_angle_with_q4, closed_axis_a4, closed_axis_a5, closed_axis_a6,
+      least_error_left_now, shared_quotient;
   int next_attempt, passes_left_now;
   bool beside_shoulder, beside_elbow, beside_wrist, another, pose_is_close, pose_is_met, mirrors,
       from_the_met_pose, is_nearer, no_start_is_left;
-  for (int pass = 0; pass < 282; pass += 1) {
+  for (int pass = 0; pass < 308; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -311,7 +311,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_wrist);
     from_the_met_pose = mirrors && (passes_left > 32); /* what is nearly free is known now */
-    free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 1e-11;
+    free_angle = from_the_met_pose ? 0.01 : (next_attempt > 0 ? (next_attempt > 62 ? 1e-5 : 0.01) : 2e-12);
     product_in_damping = 0.001*error;
     damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
     rate_1_1 = -k->one_by_machine_scale*y;
@@ -399,11 +399,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     error_left = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3
         + multiplier_4*multiplier_4 + multiplier_5*multiplier_5 + multiplier_6*multiplier_6)*damping
         + step_length*step_length;
-    is_nearer = (attempt > 1) && (attempt < 89) && (error_left < least_error_left);
+    is_nearer = (attempt > 1) && (attempt < 115) && (error_left < least_error_left);
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
     free_turn = next_attempt > 62 ? nearest_turn_now
-        + ((next_attempt > 62) && (next_attempt < 89) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
+        + ((next_attempt > 62) && (next_attempt < 115) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
     closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
         *SOFTKIN_DEGREE;
     free_angle_times_machine_scale = free_angle*k->machine_scale;
@@ -462,12 +462,17 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     closed_sine_square_q3 = closed_one_less_cos_q3*closed_one_plus_cos_q3;
     closed_sin_q3 = softkin_root(closed_sine_square_q3)*closed_sign_elbow*k->quotient_in_closed_sin_q3;
     closed_arm_across_q2 = k->a3*closed_sin_q3;
-    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    closed_direction_x_q2 = closed_reach > free_angle_times_machine_scale
-        ? closed_arm_across_q2*closed_wrist_z_from_q1 + closed_arm_along_q2*closed_wrist_x_from_q1
+    /* rotation by q2 that takes the arm to its target point */
+    closed_along_q2 = closed_arm_across_q2*closed_wrist_z_from_q1
+        + closed_arm_along_q2*closed_wrist_x_from_q1;
+    closed_across_q2 = closed_arm_along_q2*closed_wrist_z_from_q1
+        - closed_arm_across_q2*closed_wrist_x_from_q1;
+    /* at a singularity: the angle of the reference */
+    closed_direction_x_q2 = (closed_reach > free_angle_times_machine_scale)
+        && (closed_across_q2*closed_across_q2 + closed_along_q2*closed_along_q2 > 0.0) ? closed_along_q2
         : cos(closed_reference_a2);
-    closed_direction_y_q2 = closed_reach > free_angle_times_machine_scale
-        ? closed_arm_along_q2*closed_wrist_z_from_q1 - closed_arm_across_q2*closed_wrist_x_from_q1
+    closed_direction_y_q2 = (closed_reach > free_angle_times_machine_scale)
+        && (closed_across_q2*closed_across_q2 + closed_along_q2*closed_along_q2 > 0.0) ? closed_across_q2
         : sin(closed_reference_a2);
     closed_angle_q2 = softkin_angle_of(closed_direction_y_q2, closed_direction_x_q2);
     closed_axis_a2 = softkin_on_turn(k->offset_a2 + closed_angle_q2*SOFTKIN_RADIAN, closed_near_a2);
@@ -484,7 +489,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     least_error_left_now = is_nearer ? error_left : least_error_left;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 89))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 115))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -502,13 +507,13 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a6 = (another || from_the_met_pose ? closed_axis_a6
         : (mirrors ? (beside_wrist ? 2.0*closed_axis_a6 - tried_a6 : tried_a6) : tried_a6
         + shared_quotient*step_a6));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 89) ? 0 : 64) : passes_left_now);
-    attempt = (no_start_is_left ? 90 : next_attempt);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 115) ? 0 : 64) : passes_left_now);
+    attempt = (no_start_is_left ? 116 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
-    turn_beside = ((next_attempt > 62) && (next_attempt < 89) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
+    turn_beside = ((next_attempt > 62) && (next_attempt < 115) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
         : turn_beside);
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
@@ -664,7 +669,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* cosine and sine of q5 from the q6 radius and r22 equations */
   const double cos_q5 = r13*sin_q1 - r23*cos_q1;
   double cos_q6, sin_q6;
-  if (radius_q6 > 1e-11) {
+  if (radius_q6 > 2e-12) {
     /* polar coordinates: angle q6 from the r21 and r23 equations */
     const double along_q6 = -r21_from_q1*sign_wrist;
     cos_q6 = along_q6/radius_q6; /* at a singularity: the angle of the reference */
@@ -700,27 +705,40 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         (reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
         : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
   }
+  const double arm_along_q2 = k->a2 + k->a3*cos_q3;
+  const double sign_elbow = sigma_elbow; /* elbow: +1 up, -1 down */
+  /* sine squared, times the squared scale */
+  const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
+  const double sin_q3 = softkin_root(sine_square_q3)*k->quotient_in_closed_sin_q3*sign_elbow;
+  const double arm_across_q2 = k->a3*sin_q3;
+  const double size_in_within_48 = fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2
+      - reach*reach);
+  const bool within_48 = (reach > k->product_in_lost_digits_38)
+      || (size_in_within_48 - (k->machine_scale_times_rounding + reach)*k->product_in_within_48 <= 0.0);
+  const bool lost_digits_48 = (!within_48)
+      && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01) || (fabs(sin_q3) <= 0.01)
+      || (fabs(ahead_q1) <= k->product_in_lost_digits_38));
+  /* q2: out of reach */
+  if (!(lost_digits_48 || (reach > k->product_in_lost_digits_38)
+      || (size_in_within_48 - k->product_in_within_48*(k->product_in_within_48 + reach) <= 0.0))) {
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
+  }
   /* A1: without a commanded turn, the value nearest to this */
   const double open_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
   const double near_a1 = turn_a1 != 0 ? 360.0*(turn_a1 > 0 ? turn_a1 - 1 : turn_a1) : open_a1;
   /* A1: whole turns added */
   const double axis_a1 = softkin_on_turn(k->offset_a1 + softkin_angle_of(sin_q1, cos_q1)*SOFTKIN_RADIAN,
       near_a1);
-  const double sign_elbow = sigma_elbow; /* elbow: +1 up, -1 down */
-  /* sine squared, times the squared scale */
-  const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
-  const double sin_q3 = softkin_root(sine_square_q3)*k->quotient_in_closed_sin_q3*sign_elbow;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
+  const double across_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
   double direction_x_q2, direction_y_q2;
-  if (reach > k->machine_scale_times_free_angle) {
-    const double arm_along_q2 = k->a2 + k->a3*cos_q3;
-    const double arm_across_q2 = k->a3*sin_q3;
-    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    direction_x_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
-    direction_y_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
+  if (reach > k->machine_scale_times_free_angle && across_q2*across_q2 + along_q2*along_q2 > 0.0) {
+    direction_x_q2 = along_q2; /* at a singularity: the angle of the reference */
+    direction_y_q2 = across_q2;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    direction_x_q2 = cos(reference_a2);
+    direction_x_q2 = cos(reference_a2); /* at a singularity: the angle of the reference */
     direction_y_q2 = sin(reference_a2);
   }
   const double angle_q2 = softkin_angle_of(direction_y_q2, direction_x_q2);
@@ -756,7 +774,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       near_a6);
   /* if digits were lost, steps on the closure meet the pose */
   double results[7] = {0.0};
-  if (lost_digits_38) {
+  if (lost_digits_38 || lost_digits_48) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, sigma_elbow, sigma_shoulder,
         sigma_wrist, turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6, r11, r12, r13, r21, r22, r23, r31,
         r32, r33, x, y, z, axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6};
@@ -773,6 +791,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
         : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
+  }
+  /* q2: out of reach */
+  if (!(met || (reach > k->product_in_lost_digits_38)
+      || (size_in_within_48 - k->product_in_within_48*(k->product_in_within_48 + reach) <= 0.0))) {
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
   axes[1] = (met ? found_a2 : axis_a2);
@@ -1135,7 +1158,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* cosine and sine of q5 from the q6 radius and r22 equations */
   const double cos_q5_left = r13*sin_q1_left - r23*cos_q1_left;
   double cos_q6_left_down, sin_q6_left_down, cos_q6_left_up, sin_q6_left_up;
-  if (radius_q6_left > 1e-11) {
+  if (radius_q6_left > 2e-12) {
     const double r21_from_q1_left_by_radius_q6_left = r21_from_q1_left/radius_q6_left;
     /* at a singularity: the angle of the reference */
     cos_q6_left_down = -r21_from_q1_left_by_radius_q6_left;
@@ -1182,7 +1205,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       + softkin_angle_of(sin_q6_left_down, cos_q6_left_down)*SOFTKIN_RADIAN;
   double r31_from_q1_before_q56_left_up, r33_from_q1_before_q6_left_up, angle_with_q4_left_up,
       axis_a6_left_up;
-  if (radius_q6_left > 1e-11) {
+  if (radius_q6_left > 2e-12) {
     r31_from_q1_before_q56_left_up = -r31_from_q1_before_q56_left_down;
     r33_from_q1_before_q6_left_up = -r33_from_q1_before_q6_left_down;
     angle_with_q4_left_up = 180.0*SOFTKIN_DEGREE + angle_with_q4_left_down;
@@ -1224,7 +1247,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* cosine and sine of q5 from the q6 radius and r22 equations */
   const double cos_q5_right = r13*sin_q1_right - r23*cos_q1_right;
   double cos_q6_right_down, sin_q6_right_down, cos_q6_right_up, sin_q6_right_up;
-  if (radius_q6_right > 1e-11) {
+  if (radius_q6_right > 2e-12) {
     const double r21_from_q1_right_by_radius_q6_right = r21_from_q1_right/radius_q6_right;
     /* at a singularity: the angle of the reference */
     cos_q6_right_down = -r21_from_q1_right_by_radius_q6_right;
@@ -1269,7 +1292,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       + softkin_angle_of(sin_q6_right_down, cos_q6_right_down)*SOFTKIN_RADIAN;
   double r31_from_q1_before_q56_right_up, r33_from_q1_before_q6_right_up, angle_with_q4_right_up,
       axis_a6_right_up;
-  if (radius_q6_right > 1e-11) {
+  if (radius_q6_right > 2e-12) {
     r31_from_q1_before_q56_right_up = -r31_from_q1_before_q56_right_down;
     r33_from_q1_before_q6_right_up = -r33_from_q1_before_q6_right_down;
     angle_with_q4_right_up = 180.0*SOFTKIN_DEGREE + angle_with_q4_right_down;
@@ -1304,27 +1327,96 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(!lost_digits_38_right_up)) {
     return false;
   }
-  /* q3: out of reach */
-  const int refusal_left_down = fabs(cos_q3_left_down) <= k->bound_of_cos_q3 ? 0 : 3;
-  const double axis_a1_left = k->offset_a1 + softkin_angle_of(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
   /* sine squared, times the squared scale */
   const double sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down;
   const double sin_q3_left_up_down = softkin_root(sine_square_q3_left_down)*k->quotient_in_closed_sin_q3;
-  double angle_q2_left_up_down, angle_q2_left_down_down;
-  if (reach_left_down > k->machine_scale_times_free_angle) {
-    const double arm_along_q2_left_down = k->a2 + k->a3*cos_q3_left_down;
-    const double arm_across_q2_left_up_down = k->a3*sin_q3_left_up_down;
-    const double angle_of_arm_along_q2_left_up_down = softkin_angle_of(arm_across_q2_left_up_down,
-        arm_along_q2_left_down);
-    const double angle_of_wrist_x_from_q1_left_down = softkin_angle_of(wrist_z_from_q1_left_down,
-        wrist_x_from_q1_left_down);
-    angle_q2_left_up_down = angle_of_wrist_x_from_q1_left_down - angle_of_arm_along_q2_left_up_down;
-    angle_q2_left_down_down = angle_of_arm_along_q2_left_up_down + angle_of_wrist_x_from_q1_left_down;
-  } else {
-    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    angle_q2_left_up_down = reference_a2;
-    angle_q2_left_down_down = reference_a2;
+  const double arm_along_q2_left_down = k->a2 + k->a3*cos_q3_left_down;
+  const double arm_across_q2_left_up_down = k->a3*sin_q3_left_up_down;
+  const double size_in_within_48_left_up_down = fabs(arm_across_q2_left_up_down*arm_across_q2_left_up_down
+      + arm_along_q2_left_down*arm_along_q2_left_down - reach_left_down*reach_left_down);
+  const bool within_48_left_up_down = (reach_left_down > k->product_in_lost_digits_38)
+      || (size_in_within_48_left_up_down
+      - (k->machine_scale_times_rounding + reach_left_down)*k->product_in_within_48 <= 0.0);
+  const bool lost_digits_48_left_up_down = (!within_48_left_up_down)
+      && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_down) <= 0.01)
+      || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
+  if (!(!lost_digits_48_left_up_down)) {
+    return false;
   }
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
+  const double sin_q3_left_up_up = softkin_root(sine_square_q3_left_up)*k->quotient_in_closed_sin_q3;
+  const double arm_along_q2_left_up = k->a2 + k->a3*cos_q3_left_up;
+  const double arm_across_q2_left_up_up = k->a3*sin_q3_left_up_up;
+  const double size_in_within_48_left_up_up = fabs(arm_across_q2_left_up_up*arm_across_q2_left_up_up
+      + arm_along_q2_left_up*arm_along_q2_left_up - reach_left_up*reach_left_up);
+  const bool within_48_left_up_up = (reach_left_up > k->product_in_lost_digits_38)
+      || (size_in_within_48_left_up_up
+      - (k->machine_scale_times_rounding + reach_left_up)*k->product_in_within_48 <= 0.0);
+  const bool lost_digits_48_left_up_up = (!within_48_left_up_up)
+      && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_up) <= 0.01)
+      || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
+  if (!(!lost_digits_48_left_up_up)) {
+    return false;
+  }
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
+  const double sin_q3_right_up_down = softkin_root(sine_square_q3_right_down)*k->quotient_in_closed_sin_q3;
+  const double arm_along_q2_right_down = k->a2 + k->a3*cos_q3_right_down;
+  const double arm_across_q2_right_up_down = k->a3*sin_q3_right_up_down;
+  const double size_in_within_48_right_up_down = fabs(arm_across_q2_right_up_down*arm_across_q2_right_up_down
+      + arm_along_q2_right_down*arm_along_q2_right_down - reach_right_down*reach_right_down);
+  const bool within_48_right_up_down = (reach_right_down > k->product_in_lost_digits_38)
+      || (size_in_within_48_right_up_down
+      - (k->machine_scale_times_rounding + reach_right_down)*k->product_in_within_48 <= 0.0);
+  const bool lost_digits_48_right_up_down = (!within_48_right_up_down)
+      && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_down) <= 0.01)
+      || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
+  if (!(!lost_digits_48_right_up_down)) {
+    return false;
+  }
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
+  const double sin_q3_right_up_up = softkin_root(sine_square_q3_right_up)*k->quotient_in_closed_sin_q3;
+  const double arm_along_q2_right_up = k->a2 + k->a3*cos_q3_right_up;
+  const double arm_across_q2_right_up_up = k->a3*sin_q3_right_up_up;
+  const double size_in_within_48_right_up_up = fabs(arm_across_q2_right_up_up*arm_across_q2_right_up_up
+      + arm_along_q2_right_up*arm_along_q2_right_up - reach_right_up*reach_right_up);
+  const bool within_48_right_up_up = (reach_right_up > k->product_in_lost_digits_38)
+      || (size_in_within_48_right_up_up
+      - (k->machine_scale_times_rounding + reach_right_up)*k->product_in_within_48 <= 0.0);
+  const bool lost_digits_48_right_up_up = (!within_48_right_up_up)
+      && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_up) <= 0.01)
+      || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
+  if (!(!lost_digits_48_right_up_up)) {
+    return false;
+  }
+  int refusal_left_up_down;
+  if (fabs(cos_q3_left_down) <= k->bound_of_cos_q3) {
+    /* q2: out of reach */
+    refusal_left_up_down = (reach_left_down > k->product_in_lost_digits_38)
+        || (size_in_within_48_left_up_down
+        - k->product_in_within_48*(k->product_in_within_48 + reach_left_down) <= 0.0) ? 0 : 3;
+  } else {
+    refusal_left_up_down = 3; /* q2: out of reach */
+  }
+  const double axis_a1_left = k->offset_a1 + softkin_angle_of(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
+  const double angle_of_arm_along_q2_left_up_down = softkin_angle_of(arm_across_q2_left_up_down,
+      arm_along_q2_left_down);
+  const double angle_of_wrist_x_from_q1_left_down = softkin_angle_of(wrist_z_from_q1_left_down,
+      wrist_x_from_q1_left_down);
+  const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+  const double product_in_along_q2_left_up_down = arm_along_q2_left_down*wrist_x_from_q1_left_down;
+  const double product_in_along_q2_left_up_down_2 = arm_across_q2_left_up_down*wrist_z_from_q1_left_down;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_left_up_down = product_in_along_q2_left_up_down + product_in_along_q2_left_up_down_2;
+  const double product_in_across_q2_left_up_down = arm_across_q2_left_up_down*wrist_x_from_q1_left_down;
+  const double product_in_across_q2_left_up_down_2 = arm_along_q2_left_down*wrist_z_from_q1_left_down;
+  const double across_q2_left_up_down = product_in_across_q2_left_up_down_2
+      - product_in_across_q2_left_up_down;
+  const double angle_q2_left_up_down = (reach_left_down > k->machine_scale_times_free_angle)
+      && (across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0)
+      ? angle_of_wrist_x_from_q1_left_down - angle_of_arm_along_q2_left_up_down : reference_a2;
   const double axis_a2_left_up_down = k->offset_a2 + angle_q2_left_up_down*SOFTKIN_RADIAN;
   const double angle_q3_left_up_down = softkin_angle_of(sin_q3_left_up_down, cos_q3_left_down);
   const double quotient_in_axis_a3_left_up_down = angle_q3_left_up_down*SOFTKIN_RADIAN;
@@ -1334,26 +1426,29 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       + (angle_with_q4_left_down - angle_q2_left_up_down - angle_q3_left_up_down)*SOFTKIN_RADIAN;
   const double quotient_in_axis_a5_left_down = softkin_angle_of(radius_q6_left, cos_q5_left)*SOFTKIN_RADIAN;
   const double axis_a5_left_down = k->offset_a5 + quotient_in_axis_a5_left_down;
-  /* q3: out of reach */
-  const int refusal_left_up = fabs(cos_q3_left_up) <= k->bound_of_cos_q3 ? 0 : 3;
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
-  const double sin_q3_left_up_up = softkin_root(sine_square_q3_left_up)*k->quotient_in_closed_sin_q3;
-  double angle_q2_left_up_up, angle_q2_left_down_up;
-  if (reach_left_up > k->machine_scale_times_free_angle) {
-    const double arm_along_q2_left_up = k->a2 + k->a3*cos_q3_left_up;
-    const double arm_across_q2_left_up_up = k->a3*sin_q3_left_up_up;
-    const double angle_of_arm_along_q2_left_up_up = softkin_angle_of(arm_across_q2_left_up_up,
-        arm_along_q2_left_up);
-    const double angle_of_wrist_x_from_q1_left_up = softkin_angle_of(wrist_z_from_q1_left_up,
-        wrist_x_from_q1_left_up);
-    angle_q2_left_up_up = angle_of_wrist_x_from_q1_left_up - angle_of_arm_along_q2_left_up_up;
-    angle_q2_left_down_up = angle_of_arm_along_q2_left_up_up + angle_of_wrist_x_from_q1_left_up;
+  int refusal_left_up_up;
+  if (fabs(cos_q3_left_up) <= k->bound_of_cos_q3) {
+    /* q2: out of reach */
+    refusal_left_up_up = (reach_left_up > k->product_in_lost_digits_38)
+        || (size_in_within_48_left_up_up
+        - k->product_in_within_48*(k->product_in_within_48 + reach_left_up) <= 0.0) ? 0 : 3;
   } else {
-    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    angle_q2_left_up_up = reference_a2;
-    angle_q2_left_down_up = reference_a2;
+    refusal_left_up_up = 3; /* q2: out of reach */
   }
+  const double angle_of_arm_along_q2_left_up_up = softkin_angle_of(arm_across_q2_left_up_up,
+      arm_along_q2_left_up);
+  const double angle_of_wrist_x_from_q1_left_up = softkin_angle_of(wrist_z_from_q1_left_up,
+      wrist_x_from_q1_left_up);
+  const double product_in_along_q2_left_up_up = arm_along_q2_left_up*wrist_x_from_q1_left_up;
+  const double product_in_along_q2_left_up_up_2 = arm_across_q2_left_up_up*wrist_z_from_q1_left_up;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_left_up_up = product_in_along_q2_left_up_up + product_in_along_q2_left_up_up_2;
+  const double product_in_across_q2_left_up_up = arm_across_q2_left_up_up*wrist_x_from_q1_left_up;
+  const double product_in_across_q2_left_up_up_2 = arm_along_q2_left_up*wrist_z_from_q1_left_up;
+  const double across_q2_left_up_up = product_in_across_q2_left_up_up_2 - product_in_across_q2_left_up_up;
+  const double angle_q2_left_up_up = (reach_left_up > k->machine_scale_times_free_angle)
+      && (across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up > 0.0)
+      ? angle_of_wrist_x_from_q1_left_up - angle_of_arm_along_q2_left_up_up : reference_a2;
   const double axis_a2_left_up_up = k->offset_a2 + angle_q2_left_up_up*SOFTKIN_RADIAN;
   const double angle_q3_left_up_up = softkin_angle_of(sin_q3_left_up_up, cos_q3_left_up);
   const double quotient_in_axis_a3_left_up_up = angle_q3_left_up_up*SOFTKIN_RADIAN;
@@ -1362,37 +1457,58 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a4_left_up_up = k->offset_a4
       + (angle_with_q4_left_up - angle_q2_left_up_up - angle_q3_left_up_up)*SOFTKIN_RADIAN;
   const double axis_a5_left_up = k->offset_a5 - quotient_in_axis_a5_left_down;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_left_down_down = product_in_along_q2_left_up_down
+      - product_in_along_q2_left_up_down_2;
+  const double across_q2_left_down_down = product_in_across_q2_left_up_down
+      + product_in_across_q2_left_up_down_2;
+  const double angle_q2_left_down_down = (reach_left_down > k->machine_scale_times_free_angle)
+      && (across_q2_left_down_down*across_q2_left_down_down
+      + along_q2_left_down_down*along_q2_left_down_down > 0.0) ? angle_of_arm_along_q2_left_up_down
+      + angle_of_wrist_x_from_q1_left_down : reference_a2;
   const double axis_a2_left_down_down = k->offset_a2 + angle_q2_left_down_down*SOFTKIN_RADIAN;
   const double axis_a3_left_down_down = k->offset_a3 - quotient_in_axis_a3_left_up_down;
   /* q4 from the sum q234 of angles about parallel axes */
   const double axis_a4_left_down_down = k->offset_a4
       + (angle_q3_left_up_down + angle_with_q4_left_down - angle_q2_left_down_down)*SOFTKIN_RADIAN;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_left_down_up = product_in_along_q2_left_up_up - product_in_along_q2_left_up_up_2;
+  const double across_q2_left_down_up = product_in_across_q2_left_up_up + product_in_across_q2_left_up_up_2;
+  const double angle_q2_left_down_up = (reach_left_up > k->machine_scale_times_free_angle)
+      && (across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up > 0.0)
+      ? angle_of_arm_along_q2_left_up_up + angle_of_wrist_x_from_q1_left_up : reference_a2;
   const double axis_a2_left_down_up = k->offset_a2 + angle_q2_left_down_up*SOFTKIN_RADIAN;
   const double axis_a3_left_down_up = k->offset_a3 - quotient_in_axis_a3_left_up_up;
   /* q4 from the sum q234 of angles about parallel axes */
   const double axis_a4_left_down_up = k->offset_a4
       + (angle_q3_left_up_up + angle_with_q4_left_up - angle_q2_left_down_up)*SOFTKIN_RADIAN;
-  /* q3: out of reach */
-  const int refusal_right_down = fabs(cos_q3_right_down) <= k->bound_of_cos_q3 ? 0 : 3;
-  const double axis_a1_right = k->offset_a1 + softkin_angle_of(sin_q1_right, cos_q1_right)*SOFTKIN_RADIAN;
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
-  const double sin_q3_right_up_down = softkin_root(sine_square_q3_right_down)*k->quotient_in_closed_sin_q3;
-  double angle_q2_right_up_down, angle_q2_right_down_down;
-  if (reach_right_down > k->machine_scale_times_free_angle) {
-    const double arm_along_q2_right_down = k->a2 + k->a3*cos_q3_right_down;
-    const double arm_across_q2_right_up_down = k->a3*sin_q3_right_up_down;
-    const double angle_of_arm_along_q2_right_up_down = softkin_angle_of(arm_across_q2_right_up_down,
-        arm_along_q2_right_down);
-    const double angle_of_wrist_x_from_q1_right_down = softkin_angle_of(wrist_z_from_q1_right_down,
-        wrist_x_from_q1_right_down);
-    angle_q2_right_up_down = angle_of_wrist_x_from_q1_right_down - angle_of_arm_along_q2_right_up_down;
-    angle_q2_right_down_down = angle_of_arm_along_q2_right_up_down + angle_of_wrist_x_from_q1_right_down;
+  int refusal_right_up_down;
+  if (fabs(cos_q3_right_down) <= k->bound_of_cos_q3) {
+    /* q2: out of reach */
+    refusal_right_up_down = (reach_right_down > k->product_in_lost_digits_38)
+        || (size_in_within_48_right_up_down
+        - k->product_in_within_48*(k->product_in_within_48 + reach_right_down) <= 0.0) ? 0 : 3;
   } else {
-    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    angle_q2_right_up_down = reference_a2;
-    angle_q2_right_down_down = reference_a2;
+    refusal_right_up_down = 3; /* q2: out of reach */
   }
+  const double axis_a1_right = k->offset_a1 + softkin_angle_of(sin_q1_right, cos_q1_right)*SOFTKIN_RADIAN;
+  const double angle_of_arm_along_q2_right_up_down = softkin_angle_of(arm_across_q2_right_up_down,
+      arm_along_q2_right_down);
+  const double angle_of_wrist_x_from_q1_right_down = softkin_angle_of(wrist_z_from_q1_right_down,
+      wrist_x_from_q1_right_down);
+  const double product_in_along_q2_right_up_down = arm_along_q2_right_down*wrist_x_from_q1_right_down;
+  const double product_in_along_q2_right_up_down_2 = arm_across_q2_right_up_down*wrist_z_from_q1_right_down;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_right_up_down = product_in_along_q2_right_up_down
+      + product_in_along_q2_right_up_down_2;
+  const double product_in_across_q2_right_up_down = arm_across_q2_right_up_down*wrist_x_from_q1_right_down;
+  const double product_in_across_q2_right_up_down_2 = arm_along_q2_right_down*wrist_z_from_q1_right_down;
+  const double across_q2_right_up_down = product_in_across_q2_right_up_down_2
+      - product_in_across_q2_right_up_down;
+  const double angle_q2_right_up_down = (reach_right_down > k->machine_scale_times_free_angle)
+      && (across_q2_right_up_down*across_q2_right_up_down
+      + along_q2_right_up_down*along_q2_right_up_down > 0.0) ? angle_of_wrist_x_from_q1_right_down
+      - angle_of_arm_along_q2_right_up_down : reference_a2;
   const double axis_a2_right_up_down = k->offset_a2 + angle_q2_right_up_down*SOFTKIN_RADIAN;
   const double angle_q3_right_up_down = softkin_angle_of(sin_q3_right_up_down, cos_q3_right_down);
   const double quotient_in_axis_a3_right_up_down = angle_q3_right_up_down*SOFTKIN_RADIAN;
@@ -1403,26 +1519,29 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double quotient_in_axis_a5_right_down = softkin_angle_of(radius_q6_right, cos_q5_right)
       *SOFTKIN_RADIAN;
   const double axis_a5_right_down = k->offset_a5 + quotient_in_axis_a5_right_down;
-  /* q3: out of reach */
-  const int refusal_right_up = fabs(cos_q3_right_up) <= k->bound_of_cos_q3 ? 0 : 3;
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
-  const double sin_q3_right_up_up = softkin_root(sine_square_q3_right_up)*k->quotient_in_closed_sin_q3;
-  double angle_q2_right_up_up, angle_q2_right_down_up;
-  if (reach_right_up > k->machine_scale_times_free_angle) {
-    const double arm_along_q2_right_up = k->a2 + k->a3*cos_q3_right_up;
-    const double arm_across_q2_right_up_up = k->a3*sin_q3_right_up_up;
-    const double angle_of_arm_along_q2_right_up_up = softkin_angle_of(arm_across_q2_right_up_up,
-        arm_along_q2_right_up);
-    const double angle_of_wrist_x_from_q1_right_up = softkin_angle_of(wrist_z_from_q1_right_up,
-        wrist_x_from_q1_right_up);
-    angle_q2_right_up_up = angle_of_wrist_x_from_q1_right_up - angle_of_arm_along_q2_right_up_up;
-    angle_q2_right_down_up = angle_of_arm_along_q2_right_up_up + angle_of_wrist_x_from_q1_right_up;
+  int refusal_right_up_up;
+  if (fabs(cos_q3_right_up) <= k->bound_of_cos_q3) {
+    /* q2: out of reach */
+    refusal_right_up_up = (reach_right_up > k->product_in_lost_digits_38)
+        || (size_in_within_48_right_up_up
+        - k->product_in_within_48*(k->product_in_within_48 + reach_right_up) <= 0.0) ? 0 : 3;
   } else {
-    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    angle_q2_right_up_up = reference_a2;
-    angle_q2_right_down_up = reference_a2;
+    refusal_right_up_up = 3; /* q2: out of reach */
   }
+  const double angle_of_arm_along_q2_right_up_up = softkin_angle_of(arm_across_q2_right_up_up,
+      arm_along_q2_right_up);
+  const double angle_of_wrist_x_from_q1_right_up = softkin_angle_of(wrist_z_from_q1_right_up,
+      wrist_x_from_q1_right_up);
+  const double product_in_along_q2_right_up_up = arm_along_q2_right_up*wrist_x_from_q1_right_up;
+  const double product_in_along_q2_right_up_up_2 = arm_across_q2_right_up_up*wrist_z_from_q1_right_up;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_right_up_up = product_in_along_q2_right_up_up + product_in_along_q2_right_up_up_2;
+  const double product_in_across_q2_right_up_up = arm_across_q2_right_up_up*wrist_x_from_q1_right_up;
+  const double product_in_across_q2_right_up_up_2 = arm_along_q2_right_up*wrist_z_from_q1_right_up;
+  const double across_q2_right_up_up = product_in_across_q2_right_up_up_2 - product_in_across_q2_right_up_up;
+  const double angle_q2_right_up_up = (reach_right_up > k->machine_scale_times_free_angle)
+      && (across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up > 0.0)
+      ? angle_of_wrist_x_from_q1_right_up - angle_of_arm_along_q2_right_up_up : reference_a2;
   const double axis_a2_right_up_up = k->offset_a2 + angle_q2_right_up_up*SOFTKIN_RADIAN;
   const double angle_q3_right_up_up = softkin_angle_of(sin_q3_right_up_up, cos_q3_right_up);
   const double quotient_in_axis_a3_right_up_up = angle_q3_right_up_up*SOFTKIN_RADIAN;
@@ -1431,11 +1550,28 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a4_right_up_up = k->offset_a4
       + (angle_with_q4_right_up - angle_q2_right_up_up - angle_q3_right_up_up)*SOFTKIN_RADIAN;
   const double axis_a5_right_up = k->offset_a5 - quotient_in_axis_a5_right_down;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_right_down_down = product_in_along_q2_right_up_down
+      - product_in_along_q2_right_up_down_2;
+  const double across_q2_right_down_down = product_in_across_q2_right_up_down
+      + product_in_across_q2_right_up_down_2;
+  const double angle_q2_right_down_down = (reach_right_down > k->machine_scale_times_free_angle)
+      && (across_q2_right_down_down*across_q2_right_down_down
+      + along_q2_right_down_down*along_q2_right_down_down > 0.0) ? angle_of_arm_along_q2_right_up_down
+      + angle_of_wrist_x_from_q1_right_down : reference_a2;
   const double axis_a2_right_down_down = k->offset_a2 + angle_q2_right_down_down*SOFTKIN_RADIAN;
   const double axis_a3_right_down_down = k->offset_a3 - quotient_in_axis_a3_right_up_down;
   /* q4 from the sum q234 of angles about parallel axes */
   const double axis_a4_right_down_down = k->offset_a4
       + (angle_q3_right_up_down + angle_with_q4_right_down - angle_q2_right_down_down)*SOFTKIN_RADIAN;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_right_down_up = product_in_along_q2_right_up_up - product_in_along_q2_right_up_up_2;
+  const double across_q2_right_down_up = product_in_across_q2_right_up_up
+      + product_in_across_q2_right_up_up_2;
+  const double angle_q2_right_down_up = (reach_right_up > k->machine_scale_times_free_angle)
+      && (across_q2_right_down_up*across_q2_right_down_up
+      + along_q2_right_down_up*along_q2_right_down_up > 0.0) ? angle_of_arm_along_q2_right_up_up
+      + angle_of_wrist_x_from_q1_right_up : reference_a2;
   const double axis_a2_right_down_up = k->offset_a2 + angle_q2_right_down_up*SOFTKIN_RADIAN;
   const double axis_a3_right_down_up = k->offset_a3 - quotient_in_axis_a3_right_up_up;
   /* q4 from the sum q234 of angles about parallel axes */
@@ -1447,56 +1583,56 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double near_a4 = k->single_a4 ? k->mid_a4 : ref_a4;
   const double near_a5 = k->single_a5 ? k->mid_a5 : ref_a5;
   const double near_a6 = k->single_a6 ? k->mid_a6 : ref_a6;
-  statuses[0] = (softkin_status)(refusal_left_down);
+  statuses[0] = (softkin_status)(refusal_left_up_down);
   axes[0] = softkin_on_turn(axis_a1_left, near_a1);
   axes[1] = softkin_on_turn(axis_a2_left_up_down, near_a2);
   axes[2] = softkin_on_turn(axis_a3_left_up_down, near_a3);
   axes[3] = softkin_on_turn(axis_a4_left_up_down, near_a4);
   axes[4] = softkin_on_turn(axis_a5_left_down, near_a5);
   axes[5] = softkin_on_turn(axis_a6_left_down, near_a6);
-  statuses[1] = (softkin_status)(refusal_right_down);
+  statuses[1] = (softkin_status)(refusal_right_up_down);
   axes[6] = softkin_on_turn(axis_a1_right, near_a1);
   axes[7] = softkin_on_turn(axis_a2_right_up_down, near_a2);
   axes[8] = softkin_on_turn(axis_a3_right_up_down, near_a3);
   axes[9] = softkin_on_turn(axis_a4_right_up_down, near_a4);
   axes[10] = softkin_on_turn(axis_a5_right_down, near_a5);
   axes[11] = softkin_on_turn(axis_a6_right_down, near_a6);
-  statuses[2] = (softkin_status)(refusal_left_down);
+  statuses[2] = (softkin_status)(refusal_left_up_down);
   axes[12] = softkin_on_turn(axis_a1_left, near_a1);
   axes[13] = softkin_on_turn(axis_a2_left_down_down, near_a2);
   axes[14] = softkin_on_turn(axis_a3_left_down_down, near_a3);
   axes[15] = softkin_on_turn(axis_a4_left_down_down, near_a4);
   axes[16] = softkin_on_turn(axis_a5_left_down, near_a5);
   axes[17] = softkin_on_turn(axis_a6_left_down, near_a6);
-  statuses[3] = (softkin_status)(refusal_right_down);
+  statuses[3] = (softkin_status)(refusal_right_up_down);
   axes[18] = softkin_on_turn(axis_a1_right, near_a1);
   axes[19] = softkin_on_turn(axis_a2_right_down_down, near_a2);
   axes[20] = softkin_on_turn(axis_a3_right_down_down, near_a3);
   axes[21] = softkin_on_turn(axis_a4_right_down_down, near_a4);
   axes[22] = softkin_on_turn(axis_a5_right_down, near_a5);
   axes[23] = softkin_on_turn(axis_a6_right_down, near_a6);
-  statuses[4] = (softkin_status)(refusal_left_up);
+  statuses[4] = (softkin_status)(refusal_left_up_up);
   axes[24] = softkin_on_turn(axis_a1_left, near_a1);
   axes[25] = softkin_on_turn(axis_a2_left_up_up, near_a2);
   axes[26] = softkin_on_turn(axis_a3_left_up_up, near_a3);
   axes[27] = softkin_on_turn(axis_a4_left_up_up, near_a4);
   axes[28] = softkin_on_turn(axis_a5_left_up, near_a5);
   axes[29] = softkin_on_turn(axis_a6_left_up, near_a6);
-  statuses[5] = (softkin_status)(refusal_right_up);
+  statuses[5] = (softkin_status)(refusal_right_up_up);
   axes[30] = softkin_on_turn(axis_a1_right, near_a1);
   axes[31] = softkin_on_turn(axis_a2_right_up_up, near_a2);
   axes[32] = softkin_on_turn(axis_a3_right_up_up, near_a3);
   axes[33] = softkin_on_turn(axis_a4_right_up_up, near_a4);
   axes[34] = softkin_on_turn(axis_a5_right_up, near_a5);
   axes[35] = softkin_on_turn(axis_a6_right_up, near_a6);
-  statuses[6] = (softkin_status)(refusal_left_up);
+  statuses[6] = (softkin_status)(refusal_left_up_up);
   axes[36] = softkin_on_turn(axis_a1_left, near_a1);
   axes[37] = softkin_on_turn(axis_a2_left_down_up, near_a2);
   axes[38] = softkin_on_turn(axis_a3_left_down_up, near_a3);
   axes[39] = softkin_on_turn(axis_a4_left_down_up, near_a4);
   axes[40] = softkin_on_turn(axis_a5_left_up, near_a5);
   axes[41] = softkin_on_turn(axis_a6_left_up, near_a6);
-  statuses[7] = (softkin_status)(refusal_right_up);
+  statuses[7] = (softkin_status)(refusal_right_up_up);
   axes[42] = softkin_on_turn(axis_a1_right, near_a1);
   axes[43] = softkin_on_turn(axis_a2_right_down_up, near_a2);
   axes[44] = softkin_on_turn(axis_a3_right_down_up, near_a3);
@@ -1545,8 +1681,10 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
   /* largest cosine within reach: 1, and the rounding of squared lengths */
   const double bound_of_cos_q3 = 1.0000000000005 + 5e-16*machine_scale*machine_scale/(p->a2*p->a3);
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double product_in_lost_digits_38 = 0.01*machine_scale;
+  const double machine_scale_times_rounding = 1e-12*machine_scale;
+  const double product_in_within_48 = 1e-11*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double a2_plus_a3 = p->a2 + p->a3;
   const double a2_minus_a3 = p->a2 - p->a3;
@@ -1593,6 +1731,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.bound_of_cos_q3 = bound_of_cos_q3;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.product_in_lost_digits_38 = product_in_lost_digits_38;
+  made.machine_scale_times_rounding = machine_scale_times_rounding;
+  made.product_in_within_48 = product_in_within_48;
   made.one_by_machine_scale = one_by_machine_scale;
   made.a2_plus_a3 = a2_plus_a3;
   made.a2_minus_a3 = a2_minus_a3;

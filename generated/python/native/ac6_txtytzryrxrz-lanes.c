@@ -24,7 +24,7 @@ void ac6_txtytzryrxrz_regular(const void *machine, const softkin_lanes *given,
     double missed = misses[lane];
     /* polar coordinates: the radius at angle a4 */
     const double radius_a4 = softkin_lane_root(r13*r13 + r33*r33);
-    missed += radius_a4 > 1e-11 ? 0.0 : 1.0;
+    missed += radius_a4 > 2e-12 ? 0.0 : 1.0;
     /* wrist centre: the last joints do not move this point */
     const double wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13;
     const double axis_a1 = offset_a1 + wrist_x;
@@ -76,7 +76,7 @@ void ac6_txtytzryrxrz_regular_all(const void *machine, const softkin_lanes *give
     double missed = misses[lane];
     /* polar coordinates: the radius at angle a4 */
     const double radius_a4 = softkin_lane_root(r13*r13 + r33*r33);
-    missed += radius_a4 > 1e-11 ? 0.0 : 1.0;
+    missed += radius_a4 > 2e-12 ? 0.0 : 1.0;
     missed += radius_a4 > 0.1 ? 0.0 : 1.0;
     /* wrist centre: the last joints do not move this point */
     const double wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13;

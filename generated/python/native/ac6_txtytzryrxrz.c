@@ -186,7 +186,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double radius_a4 = sqrt(r13*r13 + r33*r33); /* polar coordinates: the radius at angle a4 */
   const double sign_wrist = sigma_wrist; /* wrist: +1 upright, -1 flipped */
   double direction_x_a4, direction_y_a4;
-  if (radius_a4 > 1e-11) {
+  if (radius_a4 > 2e-12) {
     /* polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
      * reference */
     direction_x_a4 = r33*sign_wrist;
@@ -443,7 +443,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double radius_a4 = sqrt(r13*r13 + r33*r33); /* polar coordinates: the radius at angle a4 */
   double direction_x_a4_upright, direction_y_a4_upright, scaled_r11_from_a4_upright, direction_y_a6_upright,
       direction_x_a4_flipped, direction_y_a4_flipped, scaled_r11_from_a4_flipped, direction_y_a6_flipped;
-  if (radius_a4 > 1e-11) {
+  if (radius_a4 > 2e-12) {
     /* polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
      * reference */
     direction_x_a4_upright = r33;
@@ -482,7 +482,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a6_upright = k->offset_a6
       + softkin_angle_of(direction_y_a6_upright, scaled_r11_from_a4_upright)*SOFTKIN_RADIAN;
   double axis_a4_flipped, axis_a6_flipped;
-  if (radius_a4 > 1e-11) {
+  if (radius_a4 > 2e-12) {
     axis_a4_flipped = 180.0 + axis_a4_upright;
     axis_a6_flipped = 180.0 + axis_a6_upright;
   } else {

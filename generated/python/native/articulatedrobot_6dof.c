@@ -200,24 +200,24 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3;
   const double closed_divisor_of_cos_q3 = closed_sum_q3 > 0.0 ? closed_sum_q3 : 1.0;
+  const double closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3)
+      /closed_divisor_of_cos_q3;
   /* sine squared, times the squared scale */
   const double closed_sine_square_q3 = closed_one_less_cos_q3*closed_one_plus_cos_q3;
   const double closed_sin_swing_q3 = -2.0*softkin_root(closed_sine_square_q3)*closed_sign_elbow
       /closed_divisor_of_cos_q3;
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double closed_cos_q3 = k->a3_by_effective_q3*closed_cos_swing_q3
+      - closed_sin_swing_q3*k->d4_by_effective_q3;
+  const double closed_sin_q3 = k->a3_by_effective_q3*closed_sin_swing_q3
+      + closed_cos_swing_q3*k->d4_by_effective_q3;
   const double closed_arm_along_q2 = -closed_sin_swing_q3*k->effective_q3;
-  const double closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3)
-      /closed_divisor_of_cos_q3;
   const double closed_arm_across_q2 = k->a2 + closed_cos_swing_q3*k->effective_q3;
   /* rotation by q2 that takes the arm to its target point */
   const double closed_along_q2 = closed_arm_across_q2*closed_wrist_z_from_q1
       + closed_arm_along_q2*closed_wrist_x_from_q1;
   const double closed_across_q2 = closed_arm_along_q2*closed_wrist_z_from_q1
       - closed_arm_across_q2*closed_wrist_x_from_q1;
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double closed_cos_q3 = k->a3_by_effective_q3*closed_cos_swing_q3
-      - closed_sin_swing_q3*k->d4_by_effective_q3;
-  const double closed_sin_q3 = k->a3_by_effective_q3*closed_sin_swing_q3
-      + closed_cos_swing_q3*k->d4_by_effective_q3;
   const double closed_axis_a3 = softkin_on_turn(k->offset_a3
       + softkin_angle_of(closed_sin_q3, closed_cos_q3)*SOFTKIN_RADIAN, closed_near_a3);
   const double sum_in_closed_length_q2 = closed_across_q2*closed_across_q2 + closed_along_q2*closed_along_q2;
@@ -263,7 +263,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int next_attempt, passes_left_now;
   bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, mirrors,
       from_the_met_pose, is_nearer, no_start_is_left;
-  for (int pass = 0; pass < 282; pass += 1) {
+  for (int pass = 0; pass < 308; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -354,7 +354,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
     from_the_met_pose = mirrors && (passes_left > 32); /* what is nearly free is known now */
-    free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 1e-11;
+    free_angle = from_the_met_pose ? 0.01 : (next_attempt > 0 ? (next_attempt > 62 ? 1e-5 : 0.01) : 2e-12);
     product_in_damping = 0.001*error;
     damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
     rate_1_1 = -k->one_by_machine_scale*y;
@@ -451,11 +451,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     error_left = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3
         + multiplier_4*multiplier_4 + multiplier_5*multiplier_5 + multiplier_6*multiplier_6)*damping
         + step_length*step_length;
-    is_nearer = (attempt > 1) && (attempt < 89) && (error_left < least_error_left);
+    is_nearer = (attempt > 1) && (attempt < 115) && (error_left < least_error_left);
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
     free_turn = next_attempt > 62 ? nearest_turn_now
-        + ((next_attempt > 62) && (next_attempt < 89) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
+        + ((next_attempt > 62) && (next_attempt < 115) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
     closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
         *SOFTKIN_DEGREE;
     free_angle_times_machine_scale = free_angle*k->machine_scale;
@@ -474,10 +474,10 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     closed_length_q2 = (closed_reach > free_angle_times_machine_scale) && (sum_in_closed_length_q2 > 0.0)
         ? softkin_root(sum_in_closed_length_q2) : 1.0;
     /* at a singularity: the angle of the reference */
-    closed_cos_q2 = closed_reach > free_angle_times_machine_scale ? closed_along_q2/closed_length_q2
-        : cos(closed_reference_a2);
-    closed_sin_q2 = closed_reach > free_angle_times_machine_scale ? closed_across_q2/closed_length_q2
-        : sin(closed_reference_a2);
+    closed_cos_q2 = (closed_reach > free_angle_times_machine_scale) && (sum_in_closed_length_q2 > 0.0)
+        ? closed_along_q2/closed_length_q2 : cos(closed_reference_a2);
+    closed_sin_q2 = (closed_reach > free_angle_times_machine_scale) && (sum_in_closed_length_q2 > 0.0)
+        ? closed_across_q2/closed_length_q2 : sin(closed_reference_a2);
     closed_sin_q23 = closed_cos_q2*closed_sin_q3 + closed_cos_q3*closed_sin_q2;
     closed_cos_q23 = closed_cos_q2*closed_cos_q3 - closed_sin_q2*closed_sin_q3;
     closed_r33_from_q123 = closed_cos_q23*goal_r33 - closed_r13_from_q1*closed_sin_q23;
@@ -522,7 +522,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     least_error_left_now = is_nearer ? error_left : least_error_left;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 89))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 115))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -540,13 +540,13 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
     tried_a6 = (another || from_the_met_pose ? closed_axis_a6
         : (mirrors ? tried_a6 : tried_a6 + shared_quotient*step_a6));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 89) ? 0 : 64) : passes_left_now);
-    attempt = (no_start_is_left ? 90 : next_attempt);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 115) ? 0 : 64) : passes_left_now);
+    attempt = (no_start_is_left ? 116 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
-    turn_beside = ((next_attempt > 62) && (next_attempt < 89) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
+    turn_beside = ((next_attempt > 62) && (next_attempt < 115) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
         : turn_beside);
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
@@ -710,6 +710,28 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         (reach - k->a2_plus_effective_q3 > fabs(k->a2_minus_effective_q3) - reach ? reach
         - k->a2_plus_effective_q3 : fabs(k->a2_minus_effective_q3) - reach), 0);
   }
+  const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
+  /* sine squared, times the squared scale */
+  const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
+  const double sin_swing_q3 = -2.0*softkin_root(sine_square_q3)*sign_elbow/divisor_of_cos_q3;
+  const double arm_along_q2 = -k->effective_q3*sin_swing_q3;
+  const double arm_across_q2 = k->a2 + k->effective_q3*cos_swing_q3;
+  const double size_in_within_35 = fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2
+      - reach*reach);
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_q3 = k->a3_by_effective_q3*cos_swing_q3 - k->d4_by_effective_q3*sin_swing_q3;
+  const double sin_q3 = k->a3_by_effective_q3*sin_swing_q3 + k->d4_by_effective_q3*cos_swing_q3;
+  const bool within_35 = (reach > k->product_in_lost_digits_23)
+      || (size_in_within_35 - (k->machine_scale_times_rounding + reach)*k->product_in_within_35 <= 0.0);
+  const bool lost_digits_35 = (!within_35)
+      && ((fabs(ahead_q1) <= k->product_in_lost_digits_23)
+      || (fabs(k->a2_times_a3_times_2*sin_q3
+      - k->a2_times_d4_times_2*cos_q3) <= k->product_in_lost_digits_35));
+  /* q2: out of reach */
+  if (!(lost_digits_35 || (reach > k->product_in_lost_digits_23)
+      || (size_in_within_35 - k->product_in_within_35*(k->product_in_within_35 + reach) <= 0.0))) {
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
+  }
   double cos_q1, sin_q1;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
@@ -727,20 +749,13 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* A1: whole turns added */
   const double axis_a1 = softkin_on_turn(k->offset_a1 + softkin_angle_of(sin_q1, cos_q1)*SOFTKIN_RADIAN,
       near_a1);
-  const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
-  /* sine squared, times the squared scale */
-  const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
-  const double sin_swing_q3 = -2.0*softkin_root(sine_square_q3)*sign_elbow/divisor_of_cos_q3;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
+  const double across_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
+  const double across_q2_squared_plus_along_q2_squared = across_q2*across_q2 + along_q2*along_q2;
   double cos_q2, sin_q2;
-  if (reach > k->machine_scale_times_free_angle) {
-    const double arm_along_q2 = -k->effective_q3*sin_swing_q3;
-    const double arm_across_q2 = k->a2 + k->effective_q3*cos_swing_q3;
-    /* rotation by q2 that takes the arm to its target point */
-    const double along_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
-    const double across_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
-    const double across_q2_squared_plus_along_q2_squared = across_q2*across_q2 + along_q2*along_q2;
-    const double length_q2 = across_q2_squared_plus_along_q2_squared > 0.0
-        ? softkin_root(across_q2_squared_plus_along_q2_squared) : 1.0;
+  if (across_q2_squared_plus_along_q2_squared > 0.0 && reach > k->machine_scale_times_free_angle) {
+    const double length_q2 = softkin_root(across_q2_squared_plus_along_q2_squared);
     cos_q2 = along_q2/length_q2; /* at a singularity: the angle of the reference */
     sin_q2 = across_q2/length_q2;
   } else {
@@ -754,9 +769,6 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* A2: whole turns added */
   const double axis_a2 = softkin_on_turn(k->offset_a2 + softkin_angle_of(sin_q2, cos_q2)*SOFTKIN_RADIAN,
       near_a2);
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3 = k->a3_by_effective_q3*cos_swing_q3 - k->d4_by_effective_q3*sin_swing_q3;
-  const double sin_q3 = k->a3_by_effective_q3*sin_swing_q3 + k->d4_by_effective_q3*cos_swing_q3;
   /* A3: without a commanded turn, the value nearest to this */
   const double open_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
   const double near_a3 = turn_a3 != 0 ? 360.0*(turn_a3 > 0 ? turn_a3 - 1 : turn_a3) : open_a3;
@@ -772,7 +784,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double radius_q4 = sqrt(r23_from_q1*r23_from_q1 + r33_from_q123*r33_from_q123);
   const double sign_hand = sigma_hand; /* hand: +1 down, -1 up */
   double direction_x_q4, direction_y_q4;
-  if (radius_q4 > 1e-11) {
+  if (radius_q4 > 2e-12) {
     /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
      * reference */
     direction_x_q4 = -r33_from_q123*sign_hand;
@@ -815,7 +827,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       + softkin_angle_of(direction_y_q6, direction_x_q6)*SOFTKIN_RADIAN, near_a6);
   /* if digits were lost, steps on the closure meet the pose */
   double results[7] = {0.0};
-  if (lost_digits_23) {
+  if (lost_digits_23 || lost_digits_35) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, sigma_arm, sigma_elbow,
         sigma_hand, turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6, r11, r12, r13, r21, r22, r23, r31,
         r32, r33, x, y, z, axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6};
@@ -832,6 +844,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->a2_plus_effective_q3 > fabs(k->a2_minus_effective_q3) - reach ? reach
         - k->a2_plus_effective_q3 : fabs(k->a2_minus_effective_q3) - reach), 0);
+  }
+  /* q2: out of reach */
+  if (!(met || (reach > k->product_in_lost_digits_23)
+      || (size_in_within_35 - k->product_in_within_35*(k->product_in_within_35 + reach) <= 0.0))) {
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
   axes[1] = (met ? found_a2 : axis_a2);
@@ -1159,9 +1176,11 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       r31 = frame->rotation[2][0], r32 = frame->rotation[2][1], r33 = frame->rotation[2][2],
       ref_a1 = reference[0], ref_a2 = reference[1], ref_a3 = reference[2], ref_a4 = reference[3],
       ref_a5 = reference[4], ref_a6 = reference[5];
-  const double angle_in_angle_q3_front_down = softkin_angle_of(k->d4/k->effective_q3, k->a3/k->effective_q3);
+  const double product_in_lost_digits_35_front_down = 0.02*k->a2*k->effective_q3;
   const double a2_plus_effective_q3_2 = k->a2 + k->effective_q3;
   const double a2_minus_effective_q3_2 = k->a2 - k->effective_q3;
+  const double d4_by_effective_q3_2 = k->d4/k->effective_q3;
+  const double a3_by_effective_q3_2 = k->a3/k->effective_q3;
   const double wrist_x = x - k->d6*r13; /* wrist centre: the last joints do not move this point */
   const double wrist_y = y - k->d6*r23;
   /* distance of the point from the axis of q1 */
@@ -1219,8 +1238,83 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(!lost_digits_23_back)) {
     return false;
   }
-  /* q3: out of reach */
-  const int refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
+  const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
+  const double product_in_cos_q3_front_down = d4_by_effective_q3_2*sin_swing_q3_front_up;
+  const double product_in_cos_q3_front_down_2 = a3_by_effective_q3_2*cos_swing_q3_front;
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_q3_front_down = product_in_cos_q3_front_down + product_in_cos_q3_front_down_2;
+  const double product_in_sin_q3_front_down = d4_by_effective_q3_2*cos_swing_q3_front;
+  const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2*sin_swing_q3_front_up;
+  const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
+  const double arm_along_q2_front_down = k->effective_q3*sin_swing_q3_front_up;
+  const double arm_across_q2_front = k->a2 + k->effective_q3*cos_swing_q3_front;
+  const double size_in_within_35_front_down = fabs(arm_across_q2_front*arm_across_q2_front
+      + arm_along_q2_front_down*arm_along_q2_front_down - reach_front*reach_front);
+  const bool within_35_front_down = (reach_front > k->product_in_lost_digits_23)
+      || (size_in_within_35_front_down
+      - (k->machine_scale_times_rounding + reach_front)*k->product_in_within_35 <= 0.0);
+  const bool lost_digits_35_front_down = (!within_35_front_down)
+      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
+      || (fabs(k->a2_times_a3_times_2*sin_q3_front_down
+      - k->a2_times_d4_times_2*cos_q3_front_down) <= product_in_lost_digits_35_front_down));
+  if (!(!lost_digits_35_front_down)) {
+    return false;
+  }
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
+  const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
+  const bool lost_digits_35_front_up = (!within_35_front_down)
+      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
+      || (fabs(k->a2_times_a3_times_2*sin_q3_front_up
+      - k->a2_times_d4_times_2*cos_q3_front_up) <= product_in_lost_digits_35_front_down));
+  if (!(!lost_digits_35_front_up)) {
+    return false;
+  }
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
+  const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
+  const double product_in_cos_q3_back_down = d4_by_effective_q3_2*sin_swing_q3_back_up;
+  const double product_in_cos_q3_back_down_2 = a3_by_effective_q3_2*cos_swing_q3_back;
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_q3_back_down = product_in_cos_q3_back_down + product_in_cos_q3_back_down_2;
+  const double product_in_sin_q3_back_down = d4_by_effective_q3_2*cos_swing_q3_back;
+  const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2*sin_swing_q3_back_up;
+  const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
+  const double arm_along_q2_back_down = k->effective_q3*sin_swing_q3_back_up;
+  const double arm_across_q2_back = k->a2 + k->effective_q3*cos_swing_q3_back;
+  const double size_in_within_35_back_down = fabs(arm_across_q2_back*arm_across_q2_back
+      + arm_along_q2_back_down*arm_along_q2_back_down - reach_back*reach_back);
+  const bool within_35_back_down = (reach_back > k->product_in_lost_digits_23)
+      || (size_in_within_35_back_down
+      - (k->machine_scale_times_rounding + reach_back)*k->product_in_within_35 <= 0.0);
+  const bool lost_digits_35_back_down = (!within_35_back_down)
+      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
+      || (fabs(k->a2_times_a3_times_2*sin_q3_back_down
+      - k->a2_times_d4_times_2*cos_q3_back_down) <= product_in_lost_digits_35_front_down));
+  if (!(!lost_digits_35_back_down)) {
+    return false;
+  }
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
+  const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
+  const bool lost_digits_35_back_up = (!within_35_back_down)
+      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
+      || (fabs(k->a2_times_a3_times_2*sin_q3_back_up
+      - k->a2_times_d4_times_2*cos_q3_back_up) <= product_in_lost_digits_35_front_down));
+  if (!(!lost_digits_35_back_up)) {
+    return false;
+  }
+  int refusal_front_down;
+  if (fabs(cos_swing_q3_front) <= 1.0000000000005) {
+    /* q2: out of reach */
+    refusal_front_down = (reach_front > k->product_in_lost_digits_23)
+        || (size_in_within_35_front_down
+        - k->product_in_within_35*(k->product_in_within_35 + reach_front) <= 0.0) ? 0 : 3;
+  } else {
+    refusal_front_down = 3; /* q2: out of reach */
+  }
   double cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     const double d3_times_wrist_y = k->d3*wrist_y;
@@ -1243,31 +1337,35 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     sin_q1_back = sin_q1_front;
   }
   const double axis_a1_front = k->offset_a1 + softkin_angle_of(sin_q1_front, cos_q1_front)*SOFTKIN_RADIAN;
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
-  const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
-  double angle_q2_front_down, angle_q2_front_up;
-  if (reach_front > k->machine_scale_times_free_angle) {
-    const double arm_along_q2_front_down = k->effective_q3*sin_swing_q3_front_up;
-    const double arm_across_q2_front = k->a2 + k->effective_q3*cos_swing_q3_front;
-    const double angle_of_arm_across_q2_front_down = softkin_angle_of(arm_along_q2_front_down,
-        arm_across_q2_front);
-    const double angle_of_wrist_z_from_q1_front = softkin_angle_of(wrist_x_from_q1_front, wrist_z_from_q1);
-    angle_q2_front_down = angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
-    angle_q2_front_up = -angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
+  const double product_in_along_q2_front_down = arm_along_q2_front_down*wrist_x_from_q1_front;
+  const double product_in_along_q2_front_down_2 = arm_across_q2_front*wrist_z_from_q1;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_front_down = product_in_along_q2_front_down + product_in_along_q2_front_down_2;
+  const double product_in_across_q2_front_down = arm_across_q2_front*wrist_x_from_q1_front;
+  const double product_in_across_q2_front_down_2 = arm_along_q2_front_down*wrist_z_from_q1;
+  const double across_q2_front_down = product_in_across_q2_front_down_2 - product_in_across_q2_front_down;
+  const double sum_in_sin_q2_front_down = across_q2_front_down*across_q2_front_down
+      + along_q2_front_down*along_q2_front_down;
+  double cos_q2_front_down, sin_q2_front_down;
+  if (reach_front > k->machine_scale_times_free_angle && sum_in_sin_q2_front_down > 0.0) {
+    const double length_q2_front_down = softkin_root(sum_in_sin_q2_front_down);
+    /* at a singularity: the angle of the reference */
+    cos_q2_front_down = along_q2_front_down/length_q2_front_down;
+    sin_q2_front_down = across_q2_front_down/length_q2_front_down;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    angle_q2_front_down = reference_a2;
-    angle_q2_front_up = reference_a2;
+    const double cos_of_reference_a2 = cos(reference_a2);
+    const double sin_of_reference_a2 = sin(reference_a2);
+    cos_q2_front_down = cos_of_reference_a2; /* at a singularity: the angle of the reference */
+    sin_q2_front_down = sin_of_reference_a2;
   }
-  const double axis_a2_front_down = k->offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
-  const double angle_of_swing_q3_front_down = -softkin_angle_of(sin_swing_q3_front_up, cos_swing_q3_front);
-  const double angle_q3_front_down = angle_in_angle_q3_front_down + angle_of_swing_q3_front_down;
-  const double axis_a3_front_down = k->offset_a3 + angle_q3_front_down*SOFTKIN_RADIAN;
+  const double axis_a2_front_down = k->offset_a2
+      + softkin_angle_of(sin_q2_front_down, cos_q2_front_down)*SOFTKIN_RADIAN;
+  const double axis_a3_front_down = k->offset_a3
+      + softkin_angle_of(sin_q3_front_down, cos_q3_front_down)*SOFTKIN_RADIAN;
   const double r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front;
-  const double angle_q23_front_down = angle_q2_front_down + angle_q3_front_down;
-  const double sin_q23_front_down = sin(angle_q23_front_down);
-  const double cos_q23_front_down = cos(angle_q23_front_down);
+  const double sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down;
+  const double cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down;
   const double r33_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down;
   const double r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front;
   const double r23_from_q1_front_squared = r23_from_q1_front*r23_from_q1_front;
@@ -1302,7 +1400,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double sin_of_reference_a4 = sin(reference_a4);
     const double r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front;
     const double r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front;
-    if (radius_q4_front_down > 1e-11) {
+    if (radius_q4_front_down > 2e-12) {
       /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_down_down = -r33_from_q123_front_down;
@@ -1328,7 +1426,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double r31_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down;
     direction_y_q6_front_down_down = -direction_x_q4_front_down_down*r21_from_q1_front
         - direction_y_q4_front_down_down*r31_from_q123_front_down;
-    if (radius_q4_front_down > 1e-11) {
+    if (radius_q4_front_down > 2e-12) {
       /* cosine and sine of q6 from the r22 and r23 equations */
       direction_x_q6_front_down_up = -direction_x_q6_front_down_down;
       direction_y_q6_front_down_up = -direction_y_q6_front_down_down;
@@ -1349,7 +1447,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a6_front_down_down = k->offset_a6
       + softkin_angle_of(direction_y_q6_front_down_down, direction_x_q6_front_down_down)*SOFTKIN_RADIAN;
   double axis_a4_front_down_up, axis_a6_front_down_up;
-  if (radius_q4_front_down > 1e-11) {
+  if (radius_q4_front_down > 2e-12) {
     axis_a4_front_down_up = 180.0 + axis_a4_front_down_down;
     axis_a6_front_down_up = 180.0 + axis_a6_front_down_down;
   } else {
@@ -1359,12 +1457,30 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         + softkin_angle_of(direction_y_q6_front_down_up, direction_x_q6_front_down_up)*SOFTKIN_RADIAN;
   }
   const double axis_a5_front_down_up = k->offset_a5 - quotient_in_axis_a5_front_down_down;
-  const double axis_a2_front_up = k->offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
-  const double angle_q3_front_up = angle_in_angle_q3_front_down - angle_of_swing_q3_front_down;
-  const double axis_a3_front_up = k->offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
-  const double angle_q23_front_up = angle_q2_front_up + angle_q3_front_up;
-  const double sin_q23_front_up = sin(angle_q23_front_up);
-  const double cos_q23_front_up = cos(angle_q23_front_up);
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_front_up = product_in_along_q2_front_down_2 - product_in_along_q2_front_down;
+  const double across_q2_front_up = -product_in_across_q2_front_down - product_in_across_q2_front_down_2;
+  const double sum_in_sin_q2_front_up = across_q2_front_up*across_q2_front_up
+      + along_q2_front_up*along_q2_front_up;
+  double cos_q2_front_up, sin_q2_front_up;
+  if (reach_front > k->machine_scale_times_free_angle && sum_in_sin_q2_front_up > 0.0) {
+    const double length_q2_front_up = softkin_root(sum_in_sin_q2_front_up);
+    /* at a singularity: the angle of the reference */
+    cos_q2_front_up = along_q2_front_up/length_q2_front_up;
+    sin_q2_front_up = across_q2_front_up/length_q2_front_up;
+  } else {
+    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    const double cos_of_reference_a2 = cos(reference_a2);
+    const double sin_of_reference_a2 = sin(reference_a2);
+    cos_q2_front_up = cos_of_reference_a2; /* at a singularity: the angle of the reference */
+    sin_q2_front_up = sin_of_reference_a2;
+  }
+  const double axis_a2_front_up = k->offset_a2
+      + softkin_angle_of(sin_q2_front_up, cos_q2_front_up)*SOFTKIN_RADIAN;
+  const double axis_a3_front_up = k->offset_a3
+      + softkin_angle_of(sin_q3_front_up, cos_q3_front_up)*SOFTKIN_RADIAN;
+  const double sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up;
+  const double cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up;
   const double r33_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up;
   /* polar coordinates: the radius at angle q4 */
   const double radius_q4_front_up = softkin_root(r23_from_q1_front_squared
@@ -1395,7 +1511,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double sin_of_reference_a4 = sin(reference_a4);
     const double r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front;
     const double r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front;
-    if (radius_q4_front_up > 1e-11) {
+    if (radius_q4_front_up > 2e-12) {
       /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_front_up_down = -r33_from_q123_front_up;
@@ -1421,7 +1537,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double r31_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up;
     direction_y_q6_front_up_down = -direction_x_q4_front_up_down*r21_from_q1_front
         - direction_y_q4_front_up_down*r31_from_q123_front_up;
-    if (radius_q4_front_up > 1e-11) {
+    if (radius_q4_front_up > 2e-12) {
       /* cosine and sine of q6 from the r22 and r23 equations */
       direction_x_q6_front_up_up = -direction_x_q6_front_up_down;
       direction_y_q6_front_up_up = -direction_y_q6_front_up_down;
@@ -1442,7 +1558,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a6_front_up_down = k->offset_a6
       + softkin_angle_of(direction_y_q6_front_up_down, direction_x_q6_front_up_down)*SOFTKIN_RADIAN;
   double axis_a4_front_up_up, axis_a6_front_up_up;
-  if (radius_q4_front_up > 1e-11) {
+  if (radius_q4_front_up > 2e-12) {
     axis_a4_front_up_up = 180.0 + axis_a4_front_up_down;
     axis_a6_front_up_up = 180.0 + axis_a6_front_up_down;
   } else {
@@ -1452,33 +1568,45 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         + softkin_angle_of(direction_y_q6_front_up_up, direction_x_q6_front_up_up)*SOFTKIN_RADIAN;
   }
   const double axis_a5_front_up_up = k->offset_a5 - quotient_in_axis_a5_front_up_down;
-  const int refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3; /* q3: out of reach */
+  int refusal_back_down;
+  if (fabs(cos_swing_q3_back) <= 1.0000000000005) {
+    /* q2: out of reach */
+    refusal_back_down = (reach_back > k->product_in_lost_digits_23)
+        || (size_in_within_35_back_down
+        - k->product_in_within_35*(k->product_in_within_35 + reach_back) <= 0.0) ? 0 : 3;
+  } else {
+    refusal_back_down = 3; /* q2: out of reach */
+  }
   const double axis_a1_back = k->offset_a1 + softkin_angle_of(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
-  const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
-  double angle_q2_back_down, angle_q2_back_up;
-  if (reach_back > k->machine_scale_times_free_angle) {
-    const double arm_along_q2_back_down = k->effective_q3*sin_swing_q3_back_up;
-    const double arm_across_q2_back = k->a2 + k->effective_q3*cos_swing_q3_back;
-    const double angle_of_arm_across_q2_back_down = softkin_angle_of(arm_along_q2_back_down,
-        arm_across_q2_back);
-    const double angle_of_wrist_z_from_q1_back = softkin_angle_of(wrist_x_from_q1_back, wrist_z_from_q1);
-    angle_q2_back_down = angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
-    angle_q2_back_up = -angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
+  const double product_in_along_q2_back_down = arm_along_q2_back_down*wrist_x_from_q1_back;
+  const double arm_across_q2_back_times_wrist_z_from_q1 = arm_across_q2_back*wrist_z_from_q1;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_back_down = arm_across_q2_back_times_wrist_z_from_q1 + product_in_along_q2_back_down;
+  const double product_in_across_q2_back_down = arm_across_q2_back*wrist_x_from_q1_back;
+  const double product_in_across_q2_back_down_2 = arm_along_q2_back_down*wrist_z_from_q1;
+  const double across_q2_back_down = product_in_across_q2_back_down_2 - product_in_across_q2_back_down;
+  const double sum_in_sin_q2_back_down = across_q2_back_down*across_q2_back_down
+      + along_q2_back_down*along_q2_back_down;
+  double cos_q2_back_down, sin_q2_back_down;
+  if (reach_back > k->machine_scale_times_free_angle && sum_in_sin_q2_back_down > 0.0) {
+    const double length_q2_back_down = softkin_root(sum_in_sin_q2_back_down);
+    /* at a singularity: the angle of the reference */
+    cos_q2_back_down = along_q2_back_down/length_q2_back_down;
+    sin_q2_back_down = across_q2_back_down/length_q2_back_down;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    angle_q2_back_down = reference_a2;
-    angle_q2_back_up = reference_a2;
+    const double cos_of_reference_a2 = cos(reference_a2);
+    const double sin_of_reference_a2 = sin(reference_a2);
+    cos_q2_back_down = cos_of_reference_a2; /* at a singularity: the angle of the reference */
+    sin_q2_back_down = sin_of_reference_a2;
   }
-  const double axis_a2_back_down = k->offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
-  const double angle_of_swing_q3_back_down = -softkin_angle_of(sin_swing_q3_back_up, cos_swing_q3_back);
-  const double angle_q3_back_down = angle_in_angle_q3_front_down + angle_of_swing_q3_back_down;
-  const double axis_a3_back_down = k->offset_a3 + angle_q3_back_down*SOFTKIN_RADIAN;
+  const double axis_a2_back_down = k->offset_a2
+      + softkin_angle_of(sin_q2_back_down, cos_q2_back_down)*SOFTKIN_RADIAN;
+  const double axis_a3_back_down = k->offset_a3
+      + softkin_angle_of(sin_q3_back_down, cos_q3_back_down)*SOFTKIN_RADIAN;
   const double r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back;
-  const double angle_q23_back_down = angle_q2_back_down + angle_q3_back_down;
-  const double sin_q23_back_down = sin(angle_q23_back_down);
-  const double cos_q23_back_down = cos(angle_q23_back_down);
+  const double sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down;
+  const double cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down;
   const double r33_from_q123_back_down = r33*cos_q23_back_down - r13_from_q1_back*sin_q23_back_down;
   const double r23_from_q1_back = r23*cos_q1_back - r13*sin_q1_back;
   const double r23_from_q1_back_squared = r23_from_q1_back*r23_from_q1_back;
@@ -1513,7 +1641,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double sin_of_reference_a4 = sin(reference_a4);
     const double r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back;
     const double r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back;
-    if (radius_q4_back_down > 1e-11) {
+    if (radius_q4_back_down > 2e-12) {
       /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_down_down = -r33_from_q123_back_down;
@@ -1539,7 +1667,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double r31_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down;
     direction_y_q6_back_down_down = -direction_x_q4_back_down_down*r21_from_q1_back
         - direction_y_q4_back_down_down*r31_from_q123_back_down;
-    if (radius_q4_back_down > 1e-11) {
+    if (radius_q4_back_down > 2e-12) {
       /* cosine and sine of q6 from the r22 and r23 equations */
       direction_x_q6_back_down_up = -direction_x_q6_back_down_down;
       direction_y_q6_back_down_up = -direction_y_q6_back_down_down;
@@ -1560,7 +1688,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a6_back_down_down = k->offset_a6
       + softkin_angle_of(direction_y_q6_back_down_down, direction_x_q6_back_down_down)*SOFTKIN_RADIAN;
   double axis_a4_back_down_up, axis_a6_back_down_up;
-  if (radius_q4_back_down > 1e-11) {
+  if (radius_q4_back_down > 2e-12) {
     axis_a4_back_down_up = 180.0 + axis_a4_back_down_down;
     axis_a6_back_down_up = 180.0 + axis_a6_back_down_down;
   } else {
@@ -1570,12 +1698,30 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         + softkin_angle_of(direction_y_q6_back_down_up, direction_x_q6_back_down_up)*SOFTKIN_RADIAN;
   }
   const double axis_a5_back_down_up = k->offset_a5 - quotient_in_axis_a5_back_down_down;
-  const double axis_a2_back_up = k->offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
-  const double angle_q3_back_up = angle_in_angle_q3_front_down - angle_of_swing_q3_back_down;
-  const double axis_a3_back_up = k->offset_a3 + angle_q3_back_up*SOFTKIN_RADIAN;
-  const double angle_q23_back_up = angle_q2_back_up + angle_q3_back_up;
-  const double sin_q23_back_up = sin(angle_q23_back_up);
-  const double cos_q23_back_up = cos(angle_q23_back_up);
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_back_up = arm_across_q2_back_times_wrist_z_from_q1 - product_in_along_q2_back_down;
+  const double across_q2_back_up = -product_in_across_q2_back_down - product_in_across_q2_back_down_2;
+  const double sum_in_sin_q2_back_up = across_q2_back_up*across_q2_back_up
+      + along_q2_back_up*along_q2_back_up;
+  double cos_q2_back_up, sin_q2_back_up;
+  if (reach_back > k->machine_scale_times_free_angle && sum_in_sin_q2_back_up > 0.0) {
+    const double length_q2_back_up = softkin_root(sum_in_sin_q2_back_up);
+    /* at a singularity: the angle of the reference */
+    cos_q2_back_up = along_q2_back_up/length_q2_back_up;
+    sin_q2_back_up = across_q2_back_up/length_q2_back_up;
+  } else {
+    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    const double cos_of_reference_a2 = cos(reference_a2);
+    const double sin_of_reference_a2 = sin(reference_a2);
+    cos_q2_back_up = cos_of_reference_a2; /* at a singularity: the angle of the reference */
+    sin_q2_back_up = sin_of_reference_a2;
+  }
+  const double axis_a2_back_up = k->offset_a2
+      + softkin_angle_of(sin_q2_back_up, cos_q2_back_up)*SOFTKIN_RADIAN;
+  const double axis_a3_back_up = k->offset_a3
+      + softkin_angle_of(sin_q3_back_up, cos_q3_back_up)*SOFTKIN_RADIAN;
+  const double sin_q23_back_up = cos_q2_back_up*sin_q3_back_up + cos_q3_back_up*sin_q2_back_up;
+  const double cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up;
   const double r33_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up;
   /* polar coordinates: the radius at angle q4 */
   const double radius_q4_back_up = softkin_root(r23_from_q1_back_squared
@@ -1605,7 +1751,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double sin_of_reference_a4 = sin(reference_a4);
     const double r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back;
     const double r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back;
-    if (radius_q4_back_up > 1e-11) {
+    if (radius_q4_back_up > 2e-12) {
       /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_back_up_down = -r33_from_q123_back_up;
@@ -1631,7 +1777,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     const double r31_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up;
     direction_y_q6_back_up_down = -direction_x_q4_back_up_down*r21_from_q1_back
         - direction_y_q4_back_up_down*r31_from_q123_back_up;
-    if (radius_q4_back_up > 1e-11) {
+    if (radius_q4_back_up > 2e-12) {
       /* cosine and sine of q6 from the r22 and r23 equations */
       direction_x_q6_back_up_up = -direction_x_q6_back_up_down;
       direction_y_q6_back_up_up = -direction_y_q6_back_up_down;
@@ -1652,7 +1798,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a6_back_up_down = k->offset_a6
       + softkin_angle_of(direction_y_q6_back_up_down, direction_x_q6_back_up_down)*SOFTKIN_RADIAN;
   double axis_a4_back_up_up, axis_a6_back_up_up;
-  if (radius_q4_back_up > 1e-11) {
+  if (radius_q4_back_up > 2e-12) {
     axis_a4_back_up_up = 180.0 + axis_a4_back_up_down;
     axis_a6_back_up_up = 180.0 + axis_a6_back_up_down;
   } else {
@@ -1668,56 +1814,56 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double near_a4 = k->single_a4 ? k->mid_a4 : ref_a4;
   const double near_a5 = k->single_a5 ? k->mid_a5 : ref_a5;
   const double near_a6 = k->single_a6 ? k->mid_a6 : ref_a6;
-  statuses[0] = (softkin_status)(refusal_front);
+  statuses[0] = (softkin_status)(refusal_front_down);
   axes[0] = softkin_on_turn(axis_a1_front, near_a1);
   axes[1] = softkin_on_turn(axis_a2_front_down, near_a2);
   axes[2] = softkin_on_turn(axis_a3_front_down, near_a3);
   axes[3] = softkin_on_turn(axis_a4_front_down_down, near_a4);
   axes[4] = softkin_on_turn(axis_a5_front_down_down, near_a5);
   axes[5] = softkin_on_turn(axis_a6_front_down_down, near_a6);
-  statuses[1] = (softkin_status)(refusal_back);
+  statuses[1] = (softkin_status)(refusal_back_down);
   axes[6] = softkin_on_turn(axis_a1_back, near_a1);
   axes[7] = softkin_on_turn(axis_a2_back_down, near_a2);
   axes[8] = softkin_on_turn(axis_a3_back_down, near_a3);
   axes[9] = softkin_on_turn(axis_a4_back_down_down, near_a4);
   axes[10] = softkin_on_turn(axis_a5_back_down_down, near_a5);
   axes[11] = softkin_on_turn(axis_a6_back_down_down, near_a6);
-  statuses[2] = (softkin_status)(refusal_front);
+  statuses[2] = (softkin_status)(refusal_front_down);
   axes[12] = softkin_on_turn(axis_a1_front, near_a1);
   axes[13] = softkin_on_turn(axis_a2_front_up, near_a2);
   axes[14] = softkin_on_turn(axis_a3_front_up, near_a3);
   axes[15] = softkin_on_turn(axis_a4_front_up_down, near_a4);
   axes[16] = softkin_on_turn(axis_a5_front_up_down, near_a5);
   axes[17] = softkin_on_turn(axis_a6_front_up_down, near_a6);
-  statuses[3] = (softkin_status)(refusal_back);
+  statuses[3] = (softkin_status)(refusal_back_down);
   axes[18] = softkin_on_turn(axis_a1_back, near_a1);
   axes[19] = softkin_on_turn(axis_a2_back_up, near_a2);
   axes[20] = softkin_on_turn(axis_a3_back_up, near_a3);
   axes[21] = softkin_on_turn(axis_a4_back_up_down, near_a4);
   axes[22] = softkin_on_turn(axis_a5_back_up_down, near_a5);
   axes[23] = softkin_on_turn(axis_a6_back_up_down, near_a6);
-  statuses[4] = (softkin_status)(refusal_front);
+  statuses[4] = (softkin_status)(refusal_front_down);
   axes[24] = softkin_on_turn(axis_a1_front, near_a1);
   axes[25] = softkin_on_turn(axis_a2_front_down, near_a2);
   axes[26] = softkin_on_turn(axis_a3_front_down, near_a3);
   axes[27] = softkin_on_turn(axis_a4_front_down_up, near_a4);
   axes[28] = softkin_on_turn(axis_a5_front_down_up, near_a5);
   axes[29] = softkin_on_turn(axis_a6_front_down_up, near_a6);
-  statuses[5] = (softkin_status)(refusal_back);
+  statuses[5] = (softkin_status)(refusal_back_down);
   axes[30] = softkin_on_turn(axis_a1_back, near_a1);
   axes[31] = softkin_on_turn(axis_a2_back_down, near_a2);
   axes[32] = softkin_on_turn(axis_a3_back_down, near_a3);
   axes[33] = softkin_on_turn(axis_a4_back_down_up, near_a4);
   axes[34] = softkin_on_turn(axis_a5_back_down_up, near_a5);
   axes[35] = softkin_on_turn(axis_a6_back_down_up, near_a6);
-  statuses[6] = (softkin_status)(refusal_front);
+  statuses[6] = (softkin_status)(refusal_front_down);
   axes[36] = softkin_on_turn(axis_a1_front, near_a1);
   axes[37] = softkin_on_turn(axis_a2_front_up, near_a2);
   axes[38] = softkin_on_turn(axis_a3_front_up, near_a3);
   axes[39] = softkin_on_turn(axis_a4_front_up_up, near_a4);
   axes[40] = softkin_on_turn(axis_a5_front_up_up, near_a5);
   axes[41] = softkin_on_turn(axis_a6_front_up_up, near_a6);
-  statuses[7] = (softkin_status)(refusal_back);
+  statuses[7] = (softkin_status)(refusal_back_down);
   axes[42] = softkin_on_turn(axis_a1_back, near_a1);
   axes[43] = softkin_on_turn(axis_a2_back_up, near_a2);
   axes[44] = softkin_on_turn(axis_a3_back_up, near_a3);
@@ -1769,12 +1915,17 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
   const double product_in_lost_digits_23 = 0.01*machine_scale;
   const double a2_minus_effective_q3 = p->a2 - effective_q3;
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_rounding = 1e-12*machine_scale;
+  const double product_in_lost_digits_35 = 0.02*p->a2*effective_q3;
+  const double product_in_within_35 = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double one_by_effective_q3 = 1.0/effective_q3;
   const double a2_plus_effective_q3 = p->a2 + effective_q3;
   const double d4_by_effective_q3 = p->d4/effective_q3;
   const double a3_by_effective_q3 = p->a3/effective_q3;
+  const double a2_times_a3_times_2 = 2.0*p->a2*p->a3;
+  const double a2_times_d4_times_2 = 2.0*p->a2*p->d4;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1817,12 +1968,17 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.rounding_q1 = rounding_q1;
   made.product_in_lost_digits_23 = product_in_lost_digits_23;
   made.a2_minus_effective_q3 = a2_minus_effective_q3;
+  made.machine_scale_times_rounding = machine_scale_times_rounding;
+  made.product_in_lost_digits_35 = product_in_lost_digits_35;
+  made.product_in_within_35 = product_in_within_35;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;
   made.one_by_effective_q3 = one_by_effective_q3;
   made.a2_plus_effective_q3 = a2_plus_effective_q3;
   made.d4_by_effective_q3 = d4_by_effective_q3;
   made.a3_by_effective_q3 = a3_by_effective_q3;
+  made.a2_times_a3_times_2 = a2_times_a3_times_2;
+  made.a2_times_d4_times_2 = a2_times_d4_times_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(articulatedrobot_6dof_machine *)machine = made;
   return SOFTKIN_OK;

@@ -19,7 +19,7 @@ void caxis_regular(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     const double axis_c = offset_c + softkin_lane_angle(heading_across, heading_along)*SOFTKIN_RADIAN;
     near[0][lane] = single_c > 0.0 ? mid_c : ref_c;
     axes[0][lane] = axis_c;

@@ -35,7 +35,7 @@ void delta_c_regular(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     const double span_1_x = x - base_radius_minus_plate_radius; /* rod 1: known part of its vector */
     /* effective length of the arm that a1 turns */
     const double effective_a1 = softkin_lane_root(span_1_x*span_1_x + z*z);
@@ -196,7 +196,7 @@ void delta_c_regular_all(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     const double span_1_x = x - base_radius_minus_plate_radius; /* rod 1: known part of its vector */
     /* effective length of the arm that a1 turns */
     const double effective_a1 = softkin_lane_root(span_1_x*span_1_x + z*z);

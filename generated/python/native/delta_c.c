@@ -228,7 +228,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "the tool points exactly the opposite way", "", 0.0, 0);
   }
   const double span_1_x = x - k->base_radius_minus_plate_radius; /* rod 1: known part of its vector */
@@ -744,7 +744,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
    * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 8);
   }
   const double span_1_x = x - k->base_radius_minus_plate_radius; /* rod 1: known part of its vector */
@@ -1074,12 +1074,12 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* assembly mode of this machine: the sign of the determinant of its rods */
   const double assembly_sign = (p->tcp_above != 0.0) ? 1.0 : -1.0;
   const double root_of_3 = sqrt(3.0);
-  const double product_in_normal_divisor = 1e-22*p->rod_length*p->rod_length*p->rod_length*p->rod_length;
+  const double product_in_normal_divisor = 4e-24*p->rod_length*p->rod_length*p->rod_length*p->rod_length;
   const double rod_length_squared = p->rod_length*p->rod_length;
   const double rod_length_squared_times_rounding = 1e-12*p->rod_length*p->rod_length;
   const double arm_length_times_shortest_link = 1e-9*p->arm_length;
   const double product_in_divisor_a2 = 5e-10*p->arm_length;
-  const double product_in_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale;
+  const double product_in_determinant_divisor = 2e-12*machine_scale*machine_scale*machine_scale;
   const double arm_length_times_root_of_3_times_half = 0.5*p->arm_length*root_of_3;
   const double sum_in_pivot_2_y = 0.5*p->base_radius*root_of_3 - 0.5*p->plate_radius*root_of_3;
   const double base_radius_minus_plate_radius = p->base_radius - p->plate_radius;

@@ -1102,13 +1102,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double cos_azimuth_1_times_tcp_radius_1 = p->tcp_radius_1*cos_azimuth_1;
   const double cos_azimuth_2_times_tcp_radius_2 = p->tcp_radius_2*cos_azimuth_2;
   const double cos_azimuth_3_times_tcp_radius_3 = p->tcp_radius_3*cos_azimuth_3;
-  const double product_in_normal_divisor = 1e-22*p->outer_arm_1*p->outer_arm_1*p->outer_arm_1*p->outer_arm_1;
+  const double product_in_normal_divisor = 4e-24*p->outer_arm_1*p->outer_arm_1*p->outer_arm_1*p->outer_arm_1;
   const double outer_arm_1_squared = p->outer_arm_1*p->outer_arm_1;
   const double outer_arm_1_squared_times_rounding = 1e-12*p->outer_arm_1*p->outer_arm_1;
   const double inner_arm_1_times_shortest_link = 1e-9*p->inner_arm_1;
   const double inner_arm_2_times_shortest_link = 1e-9*p->inner_arm_2;
   const double inner_arm_3_times_shortest_link = 1e-9*p->inner_arm_3;
-  const double product_in_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale;
+  const double product_in_determinant_divisor = 2e-12*machine_scale*machine_scale*machine_scale;
   const double inner_arm_1_times_sin_azimuth_1 = p->inner_arm_1*sin_azimuth_1;
   const double sum_in_pivot_1_y = p->base_radius_1*sin_azimuth_1 - sin_azimuth_1_times_tcp_radius_1;
   const double inner_arm_2_times_sin_azimuth_2 = p->inner_arm_2*sin_azimuth_2;

@@ -34,7 +34,7 @@ void dualscara_regular(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     const double span_1_x = half_base_distance + x; /* rod 1: known part of its vector */
     const double y_squared = y*y;
     /* effective length of the arm that a1 turns */
@@ -137,7 +137,7 @@ void dualscara_regular_all(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     const double span_1_x = half_base_distance + x; /* rod 1: known part of its vector */
     const double y_squared = y*y;
     /* effective length of the arm that a1 turns */

@@ -199,7 +199,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "the tool points exactly the opposite way", "", 0.0, 0);
   }
   const double span_1_x = k->half_base_distance + x; /* rod 1: known part of its vector */
@@ -549,7 +549,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
    * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 4);
   }
   const double span_1_x = k->half_base_distance + x; /* rod 1: known part of its vector */
@@ -721,7 +721,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* assembly mode of this machine: the sign of the determinant of its rods */
   const double assembly_sign = (p->tcp_back != 0.0) ? -1.0 : 1.0;
   const double half_base_distance = 0.5*p->base_distance;
-  const double product_in_normal_divisor = 1e-22*p->rod_length_1*p->rod_length_1;
+  const double product_in_normal_divisor = 4e-24*p->rod_length_1*p->rod_length_1;
   const double rod_length_1_squared_times_rounding = 1e-12*p->rod_length_1*p->rod_length_1;
   const double rod_length_1_plus_rod_length_2 = p->rod_length_1 + p->rod_length_2;
   const double rod_length_1_minus_rod_length_2 = p->rod_length_1 - p->rod_length_2;
@@ -730,7 +730,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double arm_length_1_minus_rod_length_1 = p->arm_length_1 - p->rod_length_1;
   const double arm_length_2_times_shortest_link = 1e-9*p->arm_length_2;
   const double arm_length_2_minus_rod_length_2 = p->arm_length_2 - p->rod_length_2;
-  const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
+  const double machine_scale_squared_times_free_angle = 2e-12*machine_scale*machine_scale;
   const double one_by_rod_length_1 = 1.0/p->rod_length_1;
   const double one_by_rod_length_2 = 1.0/p->rod_length_2;
   const double arm_length_1_plus_rod_length_1 = p->arm_length_1 + p->rod_length_1;

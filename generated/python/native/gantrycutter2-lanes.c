@@ -22,7 +22,7 @@ void gantrycutter2_regular(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     /* z: a planar machine has none */
     missed += fabs(z) <= machine_scale_times_plane ? 0.0 : 1.0;
     const double axis_x = offset_x + x;

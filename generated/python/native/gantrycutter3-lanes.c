@@ -22,7 +22,7 @@ void gantrycutter3_regular(const void *machine, const softkin_lanes *given,
     const double heading_along = r11 + r22;
     const double heading_across = r21 - r12;
     /* the tool points exactly the opposite way */
-    missed += (fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11) ? 0.0 : 1.0;
+    missed += (fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12) ? 0.0 : 1.0;
     const double axis_x = offset_x + x;
     const double axis_y = offset_y + y;
     const double axis_z = offset_z + z;

@@ -127,7 +127,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "the tool points exactly the opposite way", "", 0.0, 0);
   }
   const double axis_x = k->offset_x + x;

@@ -21,7 +21,7 @@ void headhead_cb_regular(const void *machine, const softkin_lanes *given,
     double missed = misses[lane];
     /* polar coordinates: the radius at angle c */
     const double radius_c = softkin_lane_root(r13*r13 + r23*r23);
-    missed += radius_c > 1e-11 ? 0.0 : 1.0;
+    missed += radius_c > 2e-12 ? 0.0 : 1.0;
     const double sign_tilt = sigma_tilt; /* tilt: +1 positive, -1 negative */
     /* polar coordinates: angle c from the r13 and r23 equations */
     const double along_c = r13*sign_tilt;
@@ -68,7 +68,7 @@ void headhead_cb_regular_all(const void *machine, const softkin_lanes *given,
     double missed = misses[lane];
     /* polar coordinates: the radius at angle c */
     const double radius_c = softkin_lane_root(r13*r13 + r23*r23);
-    missed += radius_c > 1e-11 ? 0.0 : 1.0;
+    missed += radius_c > 2e-12 ? 0.0 : 1.0;
     const double r13_by_radius_c = r13/radius_c;
     const double radius_c_times_pivot_length = pivot_length*radius_c;
     const double fork_offset_plus_head_offset_times_r33 = fork_offset + head_offset*r33;

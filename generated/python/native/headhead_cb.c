@@ -159,7 +159,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double radius_c = sqrt(r13*r13 + r23*r23); /* polar coordinates: the radius at angle c */
   const double sign_tilt = sigma_tilt; /* tilt: +1 positive, -1 negative */
   double cos_c, sin_c;
-  if (radius_c > 1e-11) {
+  if (radius_c > 2e-12) {
     /* polar coordinates: angle c from the r13 and r23 equations */
     const double along_c = r13*sign_tilt;
     cos_c = along_c/radius_c; /* at a singularity: the angle of the reference */
@@ -356,7 +356,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       ref_c = reference[3], ref_b = reference[4];
   const double radius_c = sqrt(r13*r13 + r23*r23); /* polar coordinates: the radius at angle c */
   double cos_c_positive, sin_c_positive, cos_c_negative, sin_c_negative;
-  if (radius_c > 1e-11) {
+  if (radius_c > 2e-12) {
     cos_c_positive = r13/radius_c; /* at a singularity: the angle of the reference */
     sin_c_positive = r23/radius_c;
     cos_c_negative = -cos_c_positive; /* at a singularity: the angle of the reference */
@@ -396,7 +396,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* joint_z from the z equation, which is linear in it */
   const double joint_z_negative = z_plus_pivot_length_times_r33 - radius_c_times_head_offset;
   const double axis_z_negative = joint_z_negative + k->offset_z;
-  const double axis_c_negative = radius_c > 1e-11 ? 180.0 + axis_c_positive : k->offset_c
+  const double axis_c_negative = radius_c > 2e-12 ? 180.0 + axis_c_positive : k->offset_c
       + softkin_angle_of(sin_c_negative, cos_c_negative)*SOFTKIN_RADIAN;
   const double axis_b_negative = k->offset_b - quotient_in_axis_b_positive;
   const double near_c = k->single_c ? k->mid_c : ref_c;

@@ -20,7 +20,7 @@ void headtable_bc_regular(const void *machine, const softkin_lanes *given,
     double missed = misses[lane];
     /* polar coordinates: the radius at angle c */
     const double radius_c = softkin_lane_root(r13*r13 + r23*r23);
-    missed += radius_c > 1e-11 ? 0.0 : 1.0;
+    missed += radius_c > 2e-12 ? 0.0 : 1.0;
     const double sign_tilt = sigma_tilt; /* tilt: +1 positive, -1 negative */
     /* polar coordinates: angle c from the r13 and r23 equations */
     const double along_c = r13*sign_tilt;
@@ -65,7 +65,7 @@ void headtable_bc_regular_all(const void *machine, const softkin_lanes *given,
     double missed = misses[lane];
     /* polar coordinates: the radius at angle c */
     const double radius_c = softkin_lane_root(r13*r13 + r23*r23);
-    missed += radius_c > 1e-11 ? 0.0 : 1.0;
+    missed += radius_c > 2e-12 ? 0.0 : 1.0;
     const double r13_by_radius_c = r13/radius_c;
     const double r23_by_radius_c = r23/radius_c;
     const double sin_c_positive = -r23_by_radius_c;

@@ -156,7 +156,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double radius_c = sqrt(r13*r13 + r23*r23); /* polar coordinates: the radius at angle c */
   const double sign_tilt = sigma_tilt; /* tilt: +1 positive, -1 negative */
   double cos_c, sin_c;
-  if (radius_c > 1e-11) {
+  if (radius_c > 2e-12) {
     /* polar coordinates: angle c from the r13 and r23 equations */
     const double along_c = r13*sign_tilt;
     cos_c = along_c/radius_c; /* at a singularity: the angle of the reference */
@@ -352,7 +352,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       ref_b = reference[3], ref_c = reference[4];
   const double radius_c = sqrt(r13*r13 + r23*r23); /* polar coordinates: the radius at angle c */
   double cos_c_positive, sin_c_positive, cos_c_negative, sin_c_negative;
-  if (radius_c > 1e-11) {
+  if (radius_c > 2e-12) {
     cos_c_positive = r13/radius_c; /* at a singularity: the angle of the reference */
     const double r23_by_radius_c = r23/radius_c;
     sin_c_positive = -r23_by_radius_c;
@@ -389,7 +389,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       + (-y - sum_in_joint_x_negative*sin_c_negative)*sin_c_negative;
   const double axis_x_negative = joint_x_negative + k->offset_x;
   double joint_y_negative, axis_c_negative;
-  if (radius_c > 1e-11) {
+  if (radius_c > 2e-12) {
     joint_y_negative = -joint_y_positive;
     axis_c_negative = 180.0 + axis_c_positive;
   } else {

@@ -520,7 +520,7 @@ static softkin_status find_platform(const void *machine, const double *given, do
     swing_z = system[5][6];
     spin_x = k->one_by_platform_radius*swing_x;
     spin_y = k->one_by_platform_radius*swing_y;
-    cos_pitch_divisor = fabs(cos_pitch) > 1e-11 ? cos_pitch : 1.0;
+    cos_pitch_divisor = fabs(cos_pitch) > 2e-12 ? cos_pitch : 1.0;
     roll_rate = (spin_x*cos_yaw + spin_y*sin_yaw)/cos_pitch_divisor;
     pitch_rate = spin_y*cos_yaw - spin_x*sin_yaw;
     spin_z = k->one_by_platform_radius*swing_z;
@@ -1066,7 +1066,7 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
       along_6_x = results[43], along_6_y = results[44], along_6_z = results[45], moment_6_x = results[46],
       moment_6_y = results[47], moment_6_z = results[48];
   /* nothing controls the plate */
-  if (!(fabs(determinant) > 1e-11)) {
+  if (!(fabs(determinant) > 2e-12)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "nothing controls the plate", "", 0.0, 0);
   }
   /* twist of the platform per velocity of each axis */

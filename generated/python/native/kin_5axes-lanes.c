@@ -23,7 +23,7 @@ void kin_5axes_regular(const void *machine, const softkin_lanes *given,
     const double r23_of_a = one_by_tool_side*r23;
     /* polar coordinates: the radius at angle a */
     const double radius_a = softkin_lane_root(r13_of_a*r13_of_a + r23_of_a*r23_of_a);
-    missed += radius_a > 1e-11 ? 0.0 : 1.0;
+    missed += radius_a > 2e-12 ? 0.0 : 1.0;
     /* wrist centre: the last joints do not move this point */
     const double wrist_x = x - r13*tool_length_times_tool_side;
     const double axis_x = offset_x + wrist_x;
@@ -70,7 +70,7 @@ void kin_5axes_regular_all(const void *machine, const softkin_lanes *given,
     const double r23_of_a = one_by_tool_side_2*r23;
     /* polar coordinates: the radius at angle a */
     const double radius_a = softkin_lane_root(r13_of_a*r13_of_a + r23_of_a*r23_of_a);
-    missed += radius_a > 1e-11 ? 0.0 : 1.0;
+    missed += radius_a > 2e-12 ? 0.0 : 1.0;
     /* wrist centre: the last joints do not move this point */
     const double wrist_x = x - r13*tool_length_times_tool_side_2;
     const double axis_x = offset_x + wrist_x;

@@ -165,7 +165,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a);
   const double sign_roll = sigma_roll; /* roll: +1 positive, -1 negative */
   double direction_x_a, direction_y_a;
-  if (radius_a > 1e-11) {
+  if (radius_a > 2e-12) {
     /* polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_a = r13_of_a*sign_roll;
@@ -367,7 +367,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* polar coordinates: the radius at angle a */
   const double radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a);
   double direction_x_a_positive, direction_y_a_positive, direction_x_a_negative, direction_y_a_negative;
-  if (radius_a > 1e-11) {
+  if (radius_a > 2e-12) {
     /* polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
     direction_x_a_positive = r13_of_a;
@@ -391,7 +391,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       + softkin_angle_of(direction_y_a_positive, direction_x_a_positive)*SOFTKIN_RADIAN;
   const double quotient_in_axis_b_positive = softkin_angle_of(radius_a, r33)*SOFTKIN_RADIAN;
   const double axis_b_positive = k->offset_b + quotient_in_axis_b_positive;
-  const double axis_a_negative = radius_a > 1e-11 ? 180.0 + axis_a_positive : k->offset_a
+  const double axis_a_negative = radius_a > 2e-12 ? 180.0 + axis_a_positive : k->offset_a
       + softkin_angle_of(direction_y_a_negative, direction_x_a_negative)*SOFTKIN_RADIAN;
   const double axis_b_negative = k->offset_b - quotient_in_axis_b_positive;
   const double near_a = k->single_a ? k->mid_a : ref_a;

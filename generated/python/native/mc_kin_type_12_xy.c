@@ -849,7 +849,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* assembly mode of this machine: the sign of the determinant of its rods */
   const double assembly_sign = !(p->swap_xy != 0.0) ? ((p->e_right != 0.0) ? -1.0 : 1.0)
       : ((p->e_right != 0.0) ? 1.0 : -1.0);
-  const double product_in_normal_divisor = 1e-22*p->link_length_2*p->link_length_2;
+  const double product_in_normal_divisor = 4e-24*p->link_length_2*p->link_length_2;
   const double link_length_2_squared_times_rounding = 1e-12*p->link_length_2*p->link_length_2;
   const double link_length_2_plus_radius_2 = p->link_length_2 + radius_2;
   const double link_length_2_minus_radius_2 = p->link_length_2 - radius_2;
@@ -860,7 +860,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double link_length_5_times_shortest_link = 1e-9*p->link_length_5;
   const double link_length_4_minus_link_length_5 = p->link_length_4 - p->link_length_5;
   const double link_length_3_by_link_length_2 = p->link_length_3/p->link_length_2;
-  const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
+  const double machine_scale_squared_times_free_angle = 2e-12*machine_scale*machine_scale;
   const double link_length_2_by_link_length_3 = p->link_length_2/p->link_length_3;
   const double one_by_link_length_2 = 1.0/p->link_length_2;
   const double product_in_branch_w = p->link_length_1*(p->link_length_2 + p->link_length_3);

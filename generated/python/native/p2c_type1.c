@@ -585,13 +585,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale = p->displacement + p->inner_arm + p->outer_arm + p->tcp_displacement;
   /* assembly mode of this machine: the sign of the determinant of its rods */
   const double assembly_sign = (p->tcp_above != 0.0) ? 1.0 : -1.0;
-  const double product_in_normal_divisor = 1e-22*p->outer_arm*p->outer_arm;
+  const double product_in_normal_divisor = 4e-24*p->outer_arm*p->outer_arm;
   const double twice_outer_arm = 2.0*p->outer_arm;
   const double outer_arm_squared_times_rounding = 1e-12*p->outer_arm*p->outer_arm;
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double inner_arm_times_shortest_link = 1e-9*p->inner_arm;
   const double inner_arm_minus_outer_arm = p->inner_arm - p->outer_arm;
-  const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
+  const double machine_scale_squared_times_free_angle = 2e-12*machine_scale*machine_scale;
   const double displacement_minus_tcp_displacement = p->displacement - p->tcp_displacement;
   const double one_by_outer_arm = 1.0/p->outer_arm;
   const double inner_arm_plus_outer_arm = p->inner_arm + p->outer_arm;

@@ -434,13 +434,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* assembly mode of this machine: the sign of the determinant of its rods */
   const double assembly_sign = (p->tcp_above != 0.0) ? 1.0 : -1.0;
   const double centre_1_to_2_y_squared = centre_1_to_2_y*centre_1_to_2_y;
-  const double product_in_normal_divisor = 1e-22*p->arm_length_1*p->arm_length_1;
+  const double product_in_normal_divisor = 4e-24*p->arm_length_1*p->arm_length_1;
   const double arm_length_1_squared_times_rounding = 1e-12*p->arm_length_1*p->arm_length_1;
   const double arm_length_1_minus_arm_length_2 = p->arm_length_1 - p->arm_length_2;
   const double product_in_foot_fraction = arm_length_1_minus_arm_length_2*machine_scale;
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double arm_length_2_squared_times_rounding = 1e-12*p->arm_length_2*p->arm_length_2;
-  const double machine_scale_squared_times_free_angle = 1e-11*machine_scale*machine_scale;
+  const double machine_scale_squared_times_free_angle = 2e-12*machine_scale*machine_scale;
   const double one_by_arm_length_1 = 1.0/p->arm_length_1;
   const double one_by_arm_length_2 = 1.0/p->arm_length_2;
   const double quotient_in_type2_arms_aligned = assembly_sign/(p->arm_length_1*p->arm_length_2);

@@ -264,7 +264,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double arm_length_squared_times_rounding = 1e-12*p->arm_length*p->arm_length;
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double shared_product = 2.5e-13*p->arm_length*p->arm_length;
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double assembly_sign_by_arm_length = assembly_sign/p->arm_length;
   const double one_by_arm_length = 1.0/p->arm_length;
   made.lowest_a1 = window_of_a1.lowest;

@@ -293,7 +293,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double start_across = k->start_r21 - k->start_r12;
   const double start_length = sqrt(start_across*start_across + start_along*start_along);
   /* the tool points exactly the opposite way */
-  if (!(start_length > 1e-11)) {
+  if (!(start_length > 2e-12)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "the tool points exactly the opposite way", "", 0.0, 0);
   }
   const double start_cos_heading = start_along/start_length;
@@ -370,7 +370,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "the tool points exactly the opposite way", "", 0.0, 0);
   }
   /* z: a planar machine has none */
@@ -643,7 +643,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double start_across = k->start_r21 - k->start_r12;
   const double start_length = sqrt(start_across*start_across + start_along*start_along);
   /* the tool points exactly the opposite way */
-  if (!(start_length > 1e-11)) {
+  if (!(start_length > 2e-12)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "the tool points exactly the opposite way", "", 0.0, 0);
   }
   const double start_cos_heading = start_along/start_length;
@@ -704,7 +704,7 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double start_across = k->start_r21 - k->start_r12;
   const double start_length = sqrt(start_across*start_across + start_along*start_along);
   /* the tool points exactly the opposite way */
-  if (!(start_length > 1e-11)) {
+  if (!(start_length > 2e-12)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "the tool points exactly the opposite way", "", 0.0, 0);
   }
   const double start_cos_heading = start_along/start_length;
@@ -721,7 +721,7 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
       moment_1_z = results[7], along_2_x = results[8], along_2_y = results[9], moment_2_z = results[10],
       along_3_x = results[11], along_3_y = results[12], moment_3_z = results[13];
   /* nothing controls the plate */
-  if (!(fabs(determinant) > 1e-11)) {
+  if (!(fabs(determinant) > 2e-12)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "nothing controls the plate", "", 0.0, 0);
   }
   const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);

@@ -260,7 +260,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
     return SOFTKIN_NOT_INITIALIZED;
   }
   const double machine_scale = 1.0; /* characteristic length of the machine */
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   made.lowest_c = window_of_c.lowest;
   made.highest_c = window_of_c.highest;

@@ -144,6 +144,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   const double closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3)
       /closed_divisor_of_cos_q3;
   const double closed_arm_across_q2 = k->a2 + closed_cos_swing_q3*k->effective_q3_2;
+  /* rotation by q2 that takes the arm to its target point */
+  const double closed_along_q2 = closed_arm_across_q2*closed_wrist_z_from_q1
+      + closed_arm_along_q2*closed_wrist_x_from_q1;
+  const double closed_across_q2 = closed_arm_along_q2*closed_wrist_z_from_q1
+      - closed_arm_across_q2*closed_wrist_x_from_q1;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double closed_cos_q3 = k->a3_by_effective_q3_2*closed_cos_swing_q3
       - closed_sin_swing_q3*k->d4_by_effective_q3_2;
@@ -175,7 +180,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int next_attempt, passes_left_now;
   bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, mirrors, from_the_met_pose,
       no_start_is_left, is_nearer;
-  for (int pass = 0; pass < 282; pass += 1) {
+  for (int pass = 0; pass < 308; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -218,7 +223,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_arm || beside_elbow);
     from_the_met_pose = mirrors && (passes_left > 32); /* what is nearly free is known now */
-    free_angle = from_the_met_pose || (next_attempt > 0) ? 0.01 : 1e-11;
+    free_angle = from_the_met_pose ? 0.01 : (next_attempt > 0 ? (next_attempt > 62 ? 1e-5 : 0.01) : 2e-12);
     free_angle_times_machine_scale = free_angle*k->machine_scale;
     no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
         && (closed_reach > free_angle_times_machine_scale);
@@ -256,11 +261,11 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     /* error that a step leaves: what it does not reach, and its curvature */
     error_left = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3)
         *damping + step_length*step_length;
-    is_nearer = (attempt > 1) && (attempt < 89) && (error_left < least_error_left);
+    is_nearer = (attempt > 1) && (attempt < 115) && (error_left < least_error_left);
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
     free_turn = next_attempt > 62 ? nearest_turn_now
-        + ((next_attempt > 62) && (next_attempt < 89) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
+        + ((next_attempt > 62) && (next_attempt < 115) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
     closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
         *SOFTKIN_DEGREE;
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
@@ -274,19 +279,19 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         + softkin_angle_of(closed_sin_q1, closed_cos_q1)*SOFTKIN_RADIAN, closed_near_a1);
     closed_reference_a2 = ((from_the_met_pose ? tried_a2 : 17.0*free_turn + given_ref_a2) - k->offset_a2)
         *SOFTKIN_DEGREE;
-    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    closed_direction_x_q2 = closed_reach > free_angle_times_machine_scale
-        ? closed_arm_across_q2*closed_wrist_z_from_q1 + closed_arm_along_q2*closed_wrist_x_from_q1
+    /* at a singularity: the angle of the reference */
+    closed_direction_x_q2 = (closed_reach > free_angle_times_machine_scale)
+        && (closed_across_q2*closed_across_q2 + closed_along_q2*closed_along_q2 > 0.0) ? closed_along_q2
         : cos(closed_reference_a2);
-    closed_direction_y_q2 = closed_reach > free_angle_times_machine_scale
-        ? closed_arm_along_q2*closed_wrist_z_from_q1 - closed_arm_across_q2*closed_wrist_x_from_q1
+    closed_direction_y_q2 = (closed_reach > free_angle_times_machine_scale)
+        && (closed_across_q2*closed_across_q2 + closed_along_q2*closed_along_q2 > 0.0) ? closed_across_q2
         : sin(closed_reference_a2);
     closed_axis_a2 = softkin_on_turn(k->offset_a2
         + softkin_angle_of(closed_direction_y_q2, closed_direction_x_q2)*SOFTKIN_RADIAN, closed_near_a2);
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     least_error_left_now = is_nearer ? error_left : least_error_left;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 89))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 115))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -297,13 +302,13 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a3 = (another || from_the_met_pose ? closed_axis_a3
         : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
         + shared_quotient*step_a3));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 89) ? 0 : 64) : passes_left_now);
-    attempt = (no_start_is_left ? 90 : next_attempt);
+    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 115) ? 0 : 64) : passes_left_now);
+    attempt = (no_start_is_left ? 116 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
-    turn_beside = ((next_attempt > 62) && (next_attempt < 89) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
+    turn_beside = ((next_attempt > 62) && (next_attempt < 115) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
         : turn_beside);
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
@@ -413,6 +418,28 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         (reach - k->a2_plus_effective_q3_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
         - k->a2_plus_effective_q3_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
   }
+  const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
+  /* sine squared, times the squared scale */
+  const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
+  const double sin_swing_q3 = -2.0*softkin_root(sine_square_q3)*sign_elbow/divisor_of_cos_q3;
+  const double arm_along_q2 = -k->effective_q3_2*sin_swing_q3;
+  const double arm_across_q2 = k->a2 + k->effective_q3_2*cos_swing_q3;
+  const double size_in_within_31 = fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2
+      - reach*reach);
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_q3 = k->a3_by_effective_q3_2*cos_swing_q3 - k->d4_by_effective_q3_2*sin_swing_q3;
+  const double sin_q3 = k->a3_by_effective_q3_2*sin_swing_q3 + k->d4_by_effective_q3_2*cos_swing_q3;
+  const bool within_31 = (reach > k->product_in_lost_digits_19)
+      || (size_in_within_31 - (k->machine_scale_times_rounding + reach)*k->product_in_within_31 <= 0.0);
+  const bool lost_digits_31 = (!within_31)
+      && ((fabs(ahead_q1) <= k->product_in_lost_digits_19)
+      || (fabs(k->a2_times_a3_times_2*sin_q3
+      - k->a2_times_d4_times_2*cos_q3) <= k->product_in_lost_digits_31));
+  /* q2: out of reach */
+  if (!(lost_digits_31 || (reach > k->product_in_lost_digits_19)
+      || (size_in_within_31 - k->product_in_within_31*(k->product_in_within_31 + reach) <= 0.0))) {
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
+  }
   double cos_q1, sin_q1;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
@@ -430,21 +457,16 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* A1: whole turns added */
   const double axis_a1 = softkin_on_turn(k->offset_a1 + softkin_angle_of(sin_q1, cos_q1)*SOFTKIN_RADIAN,
       near_a1);
-  const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
-  /* sine squared, times the squared scale */
-  const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
-  const double sin_swing_q3 = -2.0*softkin_root(sine_square_q3)*sign_elbow/divisor_of_cos_q3;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
+  const double across_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
   double direction_x_q2, direction_y_q2;
-  if (reach > k->machine_scale_times_free_angle) {
-    const double arm_along_q2 = -k->effective_q3_2*sin_swing_q3;
-    const double arm_across_q2 = k->a2 + k->effective_q3_2*cos_swing_q3;
-    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    direction_x_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
-    direction_y_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
+  if (reach > k->machine_scale_times_free_angle && across_q2*across_q2 + along_q2*along_q2 > 0.0) {
+    direction_x_q2 = along_q2; /* at a singularity: the angle of the reference */
+    direction_y_q2 = across_q2;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    /* rotation by q2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    direction_x_q2 = cos(reference_a2);
+    direction_x_q2 = cos(reference_a2); /* at a singularity: the angle of the reference */
     direction_y_q2 = sin(reference_a2);
   }
   /* A2: without a commanded turn, the value nearest to this */
@@ -453,9 +475,6 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* A2: whole turns added */
   const double axis_a2 = softkin_on_turn(k->offset_a2
       + softkin_angle_of(direction_y_q2, direction_x_q2)*SOFTKIN_RADIAN, near_a2);
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3 = k->a3_by_effective_q3_2*cos_swing_q3 - k->d4_by_effective_q3_2*sin_swing_q3;
-  const double sin_q3 = k->a3_by_effective_q3_2*sin_swing_q3 + k->d4_by_effective_q3_2*cos_swing_q3;
   /* A3: without a commanded turn, the value nearest to this */
   const double open_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
   const double near_a3 = turn_a3 != 0 ? 360.0*(turn_a3 > 0 ? turn_a3 - 1 : turn_a3) : open_a3;
@@ -464,7 +483,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       near_a3);
   /* if digits were lost, steps on the closure meet the pose */
   double results[4] = {0.0};
-  if (lost_digits_19) {
+  if (lost_digits_19 || lost_digits_31) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, sigma_arm, sigma_elbow, turn_a1, turn_a2, turn_a3, x,
         y, z, axis_a1, axis_a2, axis_a3};
     const softkin_status status = find_meet_pose(k, arguments, results, why);
@@ -479,6 +498,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->a2_plus_effective_q3_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
         - k->a2_plus_effective_q3_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
+  }
+  /* q2: out of reach */
+  if (!(met || (reach > k->product_in_lost_digits_19)
+      || (size_in_within_31 - k->product_in_within_31*(k->product_in_within_31 + reach) <= 0.0))) {
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
   axes[1] = (met ? found_a2 : axis_a2);
@@ -653,10 +677,11 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const pos_rrr_machine *k = machine;
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2], ref_a1 = reference[0],
       ref_a2 = reference[1], ref_a3 = reference[2];
-  const double angle_in_angle_q3_front_down = softkin_angle_of(k->d4/k->effective_q3_2,
-      k->a3/k->effective_q3_2);
+  const double product_in_lost_digits_31_front_down = 0.02*k->a2*k->effective_q3_2;
   const double a2_plus_effective_q3_2_2 = k->a2 + k->effective_q3_2;
   const double a2_minus_effective_q3_2_2 = k->a2 - k->effective_q3_2;
+  const double d4_by_effective_q3_2_2 = k->d4/k->effective_q3_2;
+  const double a3_by_effective_q3_2_2 = k->a3/k->effective_q3_2;
   const double distance_q1 = sqrt(x*x + y*y); /* distance of the point from the axis of q1 */
   /* Pythagoras: square of the distance ahead of the axis */
   const double ahead_squared_q1 = (distance_q1 - k->d3)*(k->d3 + distance_q1);
@@ -710,8 +735,83 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(!lost_digits_19_back)) {
     return false;
   }
-  /* q3: out of reach */
-  const int refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
+  const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
+  const double product_in_cos_q3_front_down = d4_by_effective_q3_2_2*sin_swing_q3_front_up;
+  const double product_in_cos_q3_front_down_2 = a3_by_effective_q3_2_2*cos_swing_q3_front;
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_q3_front_down = product_in_cos_q3_front_down + product_in_cos_q3_front_down_2;
+  const double product_in_sin_q3_front_down = d4_by_effective_q3_2_2*cos_swing_q3_front;
+  const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2_2*sin_swing_q3_front_up;
+  const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
+  const double arm_along_q2_front_down = k->effective_q3_2*sin_swing_q3_front_up;
+  const double arm_across_q2_front = k->a2 + k->effective_q3_2*cos_swing_q3_front;
+  const double size_in_within_31_front_down = fabs(arm_across_q2_front*arm_across_q2_front
+      + arm_along_q2_front_down*arm_along_q2_front_down - reach_front*reach_front);
+  const bool within_31_front_down = (reach_front > k->product_in_lost_digits_19)
+      || (size_in_within_31_front_down
+      - (k->machine_scale_times_rounding + reach_front)*k->product_in_within_31 <= 0.0);
+  const bool lost_digits_31_front_down = (!within_31_front_down)
+      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_19)
+      || (fabs(k->a2_times_a3_times_2*sin_q3_front_down
+      - k->a2_times_d4_times_2*cos_q3_front_down) <= product_in_lost_digits_31_front_down));
+  if (!(!lost_digits_31_front_down)) {
+    return false;
+  }
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
+  const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
+  const bool lost_digits_31_front_up = (!within_31_front_down)
+      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_19)
+      || (fabs(k->a2_times_a3_times_2*sin_q3_front_up
+      - k->a2_times_d4_times_2*cos_q3_front_up) <= product_in_lost_digits_31_front_down));
+  if (!(!lost_digits_31_front_up)) {
+    return false;
+  }
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
+  const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
+  const double product_in_cos_q3_back_down = d4_by_effective_q3_2_2*sin_swing_q3_back_up;
+  const double product_in_cos_q3_back_down_2 = a3_by_effective_q3_2_2*cos_swing_q3_back;
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_q3_back_down = product_in_cos_q3_back_down + product_in_cos_q3_back_down_2;
+  const double product_in_sin_q3_back_down = d4_by_effective_q3_2_2*cos_swing_q3_back;
+  const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2_2*sin_swing_q3_back_up;
+  const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
+  const double arm_along_q2_back_down = k->effective_q3_2*sin_swing_q3_back_up;
+  const double arm_across_q2_back = k->a2 + k->effective_q3_2*cos_swing_q3_back;
+  const double size_in_within_31_back_down = fabs(arm_across_q2_back*arm_across_q2_back
+      + arm_along_q2_back_down*arm_along_q2_back_down - reach_back*reach_back);
+  const bool within_31_back_down = (reach_back > k->product_in_lost_digits_19)
+      || (size_in_within_31_back_down
+      - (k->machine_scale_times_rounding + reach_back)*k->product_in_within_31 <= 0.0);
+  const bool lost_digits_31_back_down = (!within_31_back_down)
+      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_19)
+      || (fabs(k->a2_times_a3_times_2*sin_q3_back_down
+      - k->a2_times_d4_times_2*cos_q3_back_down) <= product_in_lost_digits_31_front_down));
+  if (!(!lost_digits_31_back_down)) {
+    return false;
+  }
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
+  const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
+  const bool lost_digits_31_back_up = (!within_31_back_down)
+      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_19)
+      || (fabs(k->a2_times_a3_times_2*sin_q3_back_up
+      - k->a2_times_d4_times_2*cos_q3_back_up) <= product_in_lost_digits_31_front_down));
+  if (!(!lost_digits_31_back_up)) {
+    return false;
+  }
+  int refusal_front_down;
+  if (fabs(cos_swing_q3_front) <= 1.0000000000005) {
+    /* q2: out of reach */
+    refusal_front_down = (reach_front > k->product_in_lost_digits_19)
+        || (size_in_within_31_front_down
+        - k->product_in_within_31*(k->product_in_within_31 + reach_front) <= 0.0) ? 0 : 3;
+  } else {
+    refusal_front_down = 3; /* q2: out of reach */
+  }
   double cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     const double d3_times_y = k->d3*y;
@@ -734,72 +834,83 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     sin_q1_back = sin_q1_front;
   }
   const double axis_a1_front = k->offset_a1 + softkin_angle_of(sin_q1_front, cos_q1_front)*SOFTKIN_RADIAN;
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
-  const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
-  double angle_q2_front_down, angle_q2_front_up;
-  if (reach_front > k->machine_scale_times_free_angle) {
-    const double arm_along_q2_front_down = k->effective_q3_2*sin_swing_q3_front_up;
-    const double arm_across_q2_front = k->a2 + k->effective_q3_2*cos_swing_q3_front;
-    const double angle_of_arm_across_q2_front_down = softkin_angle_of(arm_along_q2_front_down,
-        arm_across_q2_front);
-    const double angle_of_wrist_z_from_q1_front = softkin_angle_of(wrist_x_from_q1_front, wrist_z_from_q1);
-    angle_q2_front_down = angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
-    angle_q2_front_up = -angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
-  } else {
-    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    angle_q2_front_down = reference_a2;
-    angle_q2_front_up = reference_a2;
-  }
+  const double angle_of_arm_across_q2_front_down = softkin_angle_of(arm_along_q2_front_down,
+      arm_across_q2_front);
+  const double angle_of_wrist_z_from_q1_front = softkin_angle_of(wrist_x_from_q1_front, wrist_z_from_q1);
+  const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+  const double product_in_along_q2_front_down = arm_along_q2_front_down*wrist_x_from_q1_front;
+  const double product_in_along_q2_front_down_2 = arm_across_q2_front*wrist_z_from_q1;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_front_down = product_in_along_q2_front_down + product_in_along_q2_front_down_2;
+  const double product_in_across_q2_front_down = arm_across_q2_front*wrist_x_from_q1_front;
+  const double product_in_across_q2_front_down_2 = arm_along_q2_front_down*wrist_z_from_q1;
+  const double across_q2_front_down = product_in_across_q2_front_down_2 - product_in_across_q2_front_down;
+  const double angle_q2_front_down = (reach_front > k->machine_scale_times_free_angle)
+      && (across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0)
+      ? angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front : reference_a2;
   const double axis_a2_front_down = k->offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
-  const double angle_of_swing_q3_front_down = -softkin_angle_of(sin_swing_q3_front_up, cos_swing_q3_front);
-  const double angle_q3_front_down = angle_in_angle_q3_front_down + angle_of_swing_q3_front_down;
-  const double axis_a3_front_down = k->offset_a3 + angle_q3_front_down*SOFTKIN_RADIAN;
+  const double axis_a3_front_down = k->offset_a3
+      + softkin_angle_of(sin_q3_front_down, cos_q3_front_down)*SOFTKIN_RADIAN;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_front_up = product_in_along_q2_front_down_2 - product_in_along_q2_front_down;
+  const double across_q2_front_up = -product_in_across_q2_front_down - product_in_across_q2_front_down_2;
+  const double angle_q2_front_up = (reach_front > k->machine_scale_times_free_angle)
+      && (across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0)
+      ? -angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front : reference_a2;
   const double axis_a2_front_up = k->offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
-  const double angle_q3_front_up = angle_in_angle_q3_front_down - angle_of_swing_q3_front_down;
-  const double axis_a3_front_up = k->offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
-  const int refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3; /* q3: out of reach */
-  const double axis_a1_back = k->offset_a1 + softkin_angle_of(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
-  const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
-  double angle_q2_back_down, angle_q2_back_up;
-  if (reach_back > k->machine_scale_times_free_angle) {
-    const double arm_along_q2_back_down = k->effective_q3_2*sin_swing_q3_back_up;
-    const double arm_across_q2_back = k->a2 + k->effective_q3_2*cos_swing_q3_back;
-    const double angle_of_arm_across_q2_back_down = softkin_angle_of(arm_along_q2_back_down,
-        arm_across_q2_back);
-    const double angle_of_wrist_z_from_q1_back = softkin_angle_of(wrist_x_from_q1_back, wrist_z_from_q1);
-    angle_q2_back_down = angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
-    angle_q2_back_up = -angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
+  const double axis_a3_front_up = k->offset_a3
+      + softkin_angle_of(sin_q3_front_up, cos_q3_front_up)*SOFTKIN_RADIAN;
+  int refusal_back_down;
+  if (fabs(cos_swing_q3_back) <= 1.0000000000005) {
+    /* q2: out of reach */
+    refusal_back_down = (reach_back > k->product_in_lost_digits_19)
+        || (size_in_within_31_back_down
+        - k->product_in_within_31*(k->product_in_within_31 + reach_back) <= 0.0) ? 0 : 3;
   } else {
-    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    angle_q2_back_down = reference_a2;
-    angle_q2_back_up = reference_a2;
+    refusal_back_down = 3; /* q2: out of reach */
   }
+  const double axis_a1_back = k->offset_a1 + softkin_angle_of(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
+  const double angle_of_arm_across_q2_back_down = softkin_angle_of(arm_along_q2_back_down,
+      arm_across_q2_back);
+  const double angle_of_wrist_z_from_q1_back = softkin_angle_of(wrist_x_from_q1_back, wrist_z_from_q1);
+  const double product_in_along_q2_back_down = arm_along_q2_back_down*wrist_x_from_q1_back;
+  const double arm_across_q2_back_times_wrist_z_from_q1 = arm_across_q2_back*wrist_z_from_q1;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_back_down = arm_across_q2_back_times_wrist_z_from_q1 + product_in_along_q2_back_down;
+  const double product_in_across_q2_back_down = arm_across_q2_back*wrist_x_from_q1_back;
+  const double product_in_across_q2_back_down_2 = arm_along_q2_back_down*wrist_z_from_q1;
+  const double across_q2_back_down = product_in_across_q2_back_down_2 - product_in_across_q2_back_down;
+  const double angle_q2_back_down = (reach_back > k->machine_scale_times_free_angle)
+      && (across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0)
+      ? angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back : reference_a2;
   const double axis_a2_back_down = k->offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
-  const double angle_of_swing_q3_back_down = -softkin_angle_of(sin_swing_q3_back_up, cos_swing_q3_back);
-  const double angle_q3_back_down = angle_in_angle_q3_front_down + angle_of_swing_q3_back_down;
-  const double axis_a3_back_down = k->offset_a3 + angle_q3_back_down*SOFTKIN_RADIAN;
+  const double axis_a3_back_down = k->offset_a3
+      + softkin_angle_of(sin_q3_back_down, cos_q3_back_down)*SOFTKIN_RADIAN;
+  /* rotation by q2 that takes the arm to its target point */
+  const double along_q2_back_up = arm_across_q2_back_times_wrist_z_from_q1 - product_in_along_q2_back_down;
+  const double across_q2_back_up = -product_in_across_q2_back_down - product_in_across_q2_back_down_2;
+  const double angle_q2_back_up = (reach_back > k->machine_scale_times_free_angle)
+      && (across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0)
+      ? -angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back : reference_a2;
   const double axis_a2_back_up = k->offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
-  const double angle_q3_back_up = angle_in_angle_q3_front_down - angle_of_swing_q3_back_down;
-  const double axis_a3_back_up = k->offset_a3 + angle_q3_back_up*SOFTKIN_RADIAN;
+  const double axis_a3_back_up = k->offset_a3
+      + softkin_angle_of(sin_q3_back_up, cos_q3_back_up)*SOFTKIN_RADIAN;
   const double near_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
   const double near_a2 = k->single_a2 ? k->mid_a2 : ref_a2;
   const double near_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
-  statuses[0] = (softkin_status)(refusal_front);
+  statuses[0] = (softkin_status)(refusal_front_down);
   axes[0] = softkin_on_turn(axis_a1_front, near_a1);
   axes[1] = softkin_on_turn(axis_a2_front_down, near_a2);
   axes[2] = softkin_on_turn(axis_a3_front_down, near_a3);
-  statuses[1] = (softkin_status)(refusal_back);
+  statuses[1] = (softkin_status)(refusal_back_down);
   axes[3] = softkin_on_turn(axis_a1_back, near_a1);
   axes[4] = softkin_on_turn(axis_a2_back_down, near_a2);
   axes[5] = softkin_on_turn(axis_a3_back_down, near_a3);
-  statuses[2] = (softkin_status)(refusal_front);
+  statuses[2] = (softkin_status)(refusal_front_down);
   axes[6] = softkin_on_turn(axis_a1_front, near_a1);
   axes[7] = softkin_on_turn(axis_a2_front_up, near_a2);
   axes[8] = softkin_on_turn(axis_a3_front_up, near_a3);
-  statuses[3] = (softkin_status)(refusal_back);
+  statuses[3] = (softkin_status)(refusal_back_down);
   axes[9] = softkin_on_turn(axis_a1_back, near_a1);
   axes[10] = softkin_on_turn(axis_a2_back_up, near_a2);
   axes[11] = softkin_on_turn(axis_a3_back_up, near_a3);
@@ -833,12 +944,17 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
   const double product_in_lost_digits_19 = 0.01*machine_scale;
   const double a2_minus_effective_q3_2 = p->a2 - effective_q3_2;
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_rounding = 1e-12*machine_scale;
+  const double product_in_lost_digits_31 = 0.02*p->a2*effective_q3_2;
+  const double product_in_within_31 = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double one_by_effective_q3_2 = 1.0/effective_q3_2;
   const double a2_plus_effective_q3_2 = p->a2 + effective_q3_2;
   const double d4_by_effective_q3_2 = p->d4/effective_q3_2;
   const double a3_by_effective_q3_2 = p->a3/effective_q3_2;
+  const double a2_times_a3_times_2 = 2.0*p->a2*p->a3;
+  const double a2_times_d4_times_2 = 2.0*p->a2*p->d4;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -865,12 +981,17 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.rounding_q1 = rounding_q1;
   made.product_in_lost_digits_19 = product_in_lost_digits_19;
   made.a2_minus_effective_q3_2 = a2_minus_effective_q3_2;
+  made.machine_scale_times_rounding = machine_scale_times_rounding;
+  made.product_in_lost_digits_31 = product_in_lost_digits_31;
+  made.product_in_within_31 = product_in_within_31;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;
   made.one_by_effective_q3_2 = one_by_effective_q3_2;
   made.a2_plus_effective_q3_2 = a2_plus_effective_q3_2;
   made.d4_by_effective_q3_2 = d4_by_effective_q3_2;
   made.a3_by_effective_q3_2 = a3_by_effective_q3_2;
+  made.a2_times_a3_times_2 = a2_times_a3_times_2;
+  made.a2_times_d4_times_2 = a2_times_d4_times_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(pos_rrr_machine *)machine = made;
   return SOFTKIN_OK;

@@ -146,7 +146,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
   /* the tool points exactly the opposite way */
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "the tool points exactly the opposite way", "", 0.0, 0);
   }
   const double heading_length = sqrt(heading_across*heading_across + heading_along*heading_along);
@@ -173,21 +173,22 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         0);
   }
   const double axis_a1 = k->offset_a1 + z;
+  const double arm_along_a2 = k->link_length_1 + k->link_length_2*cos_a3;
   const double sign_elbow = sigma_elbow; /* elbow: +1 right, -1 left */
   /* sine squared, times the squared scale */
   const double sine_square_a3 = one_less_cos_a3*one_plus_cos_a3;
   const double sin_a3 = softkin_root(sine_square_a3)*k->half_by_link_length_1_by_link_length_2*sign_elbow;
+  const double arm_across_a2 = k->link_length_2*sin_a3;
+  /* rotation by a2 that takes the arm to its target point */
+  const double along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x;
+  const double across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x;
   double direction_x_a2, direction_y_a2;
-  if (reach > k->machine_scale_times_free_angle) {
-    const double arm_along_a2 = k->link_length_1 + k->link_length_2*cos_a3;
-    const double arm_across_a2 = k->link_length_2*sin_a3;
-    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x;
-    direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x;
+  if (reach > k->machine_scale_times_free_angle && across_a2*across_a2 + along_a2*along_a2 > 0.0) {
+    direction_x_a2 = along_a2; /* at a singularity: the angle of the reference */
+    direction_y_a2 = across_a2;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
-    direction_x_a2 = cos(reference_a2);
+    direction_x_a2 = cos(reference_a2); /* at a singularity: the angle of the reference */
     direction_y_a2 = sin(reference_a2);
   }
   const double angle_a2 = softkin_angle_of(direction_y_a2, direction_x_a2);
@@ -369,7 +370,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
    * kept */
   const double heading_along = r11 + r22;
   const double heading_across = r21 - r12;
-  if (!((fabs(heading_across) > 1e-11) || (fabs(heading_along) > 1e-11))) {
+  if (!((fabs(heading_across) > 2e-12) || (fabs(heading_along) > 2e-12))) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 2);
   }
   const double heading_length = sqrt(heading_across*heading_across + heading_along*heading_along);
@@ -392,21 +393,24 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 2);
   }
   const double axis_a1 = k->offset_a1 + z;
+  const double arm_along_a2 = k->link_length_1 + k->link_length_2*cos_a3;
   /* sine squared, times the squared scale */
   const double sine_square_a3 = one_less_cos_a3*one_plus_cos_a3;
   const double sin_a3_right = softkin_root(sine_square_a3)*k->half_by_link_length_1_by_link_length_2;
-  double angle_a2_right, angle_a2_left;
-  if (reach > k->machine_scale_times_free_angle) {
-    const double arm_along_a2 = k->link_length_1 + k->link_length_2*cos_a3;
-    const double arm_across_a2_right = k->link_length_2*sin_a3_right;
-    const double angle_of_arm_along_a2_right = softkin_angle_of(arm_across_a2_right, arm_along_a2);
-    const double angle_of_wrist_x = softkin_angle_of(wrist_y, wrist_x);
-    angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2_right;
-    angle_a2_left = angle_of_arm_along_a2_right + angle_of_wrist_x;
-  } else {
-    angle_a2_right = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    angle_a2_left = angle_a2_right;
-  }
+  const double arm_across_a2_right = k->link_length_2*sin_a3_right;
+  const double angle_of_arm_along_a2_right = softkin_angle_of(arm_across_a2_right, arm_along_a2);
+  const double angle_of_wrist_x = softkin_angle_of(wrist_y, wrist_x);
+  const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+  const double arm_along_a2_times_wrist_x = arm_along_a2*wrist_x;
+  const double arm_across_a2_right_times_wrist_y = arm_across_a2_right*wrist_y;
+  /* rotation by a2 that takes the arm to its target point */
+  const double along_a2_right = arm_across_a2_right_times_wrist_y + arm_along_a2_times_wrist_x;
+  const double arm_along_a2_times_wrist_y = arm_along_a2*wrist_y;
+  const double arm_across_a2_right_times_wrist_x = arm_across_a2_right*wrist_x;
+  const double across_a2_right = arm_along_a2_times_wrist_y - arm_across_a2_right_times_wrist_x;
+  const double angle_a2_right = (reach > k->machine_scale_times_free_angle)
+      && (across_a2_right*across_a2_right + along_a2_right*along_a2_right > 0.0) ? angle_of_wrist_x
+      - angle_of_arm_along_a2_right : reference_a2;
   const double axis_a2_right = k->offset_a2 + angle_a2_right*SOFTKIN_RADIAN;
   const double angle_a3_right = softkin_angle_of(sin_a3_right, cos_a3);
   const double quotient_in_axis_a3_right = angle_a3_right*SOFTKIN_RADIAN;
@@ -415,6 +419,12 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* a4 from the sum a234 of angles about parallel axes */
   const double axis_a4_right = k->offset_a4
       + (angle_heading - angle_a2_right - angle_a3_right)*SOFTKIN_RADIAN;
+  /* rotation by a2 that takes the arm to its target point */
+  const double along_a2_left = arm_along_a2_times_wrist_x - arm_across_a2_right_times_wrist_y;
+  const double across_a2_left = arm_across_a2_right_times_wrist_x + arm_along_a2_times_wrist_y;
+  const double angle_a2_left = (reach > k->machine_scale_times_free_angle)
+      && (across_a2_left*across_a2_left + along_a2_left*along_a2_left > 0.0) ? angle_of_arm_along_a2_right
+      + angle_of_wrist_x : reference_a2;
   const double axis_a2_left = k->offset_a2 + angle_a2_left*SOFTKIN_RADIAN;
   const double axis_a3_left = k->offset_a3 - quotient_in_axis_a3_right;
   /* a4 from the sum a234 of angles about parallel axes */
@@ -465,7 +475,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double bound_of_cos_a3 = 1.0000000000005
       + 5e-16*machine_scale*machine_scale/(p->link_length_1*p->link_length_2);
   const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
-  const double machine_scale_times_free_angle = 1e-11*machine_scale;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
   const double quotient_in_cos_a3 = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);

@@ -5,7 +5,6 @@
 
 #define READY UINT32_C(0x50F7C1C5)
 #define MOST_TURNS 1e18 /* with more turns than this there is no nearest angle */
-#define COINCIDENT SOFTKIN_FREE_ANGLE /* branches meet where their margin is at most this in size */
 #define SAME 2e-3 /* axes (degrees, lengths) that differ by less are one solution of a searched branch */
 #define PI 3.14159265358979323846
 
@@ -117,7 +116,7 @@ double softkin_solve(double *system, int rows, int columns) {
 /* ---- turns, branches, limits ---- */
 
 int8_t softkin_branch_byte(double margin) {
-  return fabs(margin) <= COINCIDENT ? 3 : margin > 0.0 ? 1 : 2;
+  return fabs(margin) <= SOFTKIN_COINCIDENT ? 3 : margin > 0.0 ? 1 : 2;
 }
 
 int8_t softkin_turn_of(double value) {
@@ -526,7 +525,7 @@ static bool sort_in(void *context, const double *joints) {
     bool fits = true;
     for (int i = 0; i < branches; i += 1) {
       const bool is_second = (slot >> i & 1) != 0;
-      fits = fits && (fabs(margins[i]) < COINCIDENT || (margins[i] > 0.0) != is_second);
+      fits = fits && (fabs(margins[i]) < SOFTKIN_COINCIDENT || (margins[i] > 0.0) != is_second);
     }
     if (fits) {
       keep(in, axes, slot);

@@ -160,7 +160,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double radius_c = sqrt(r13*r13 + r23*r23); /* polar coordinates: the radius at angle c */
   const double sign_tilt = sigma_tilt; /* tilt: +1 positive, -1 negative */
   double cos_c, sin_c;
-  if (radius_c > 1e-11) {
+  if (radius_c > 2e-12) {
     /* polar coordinates: angle c from the r23 and r13 equations */
     const double along_c = r23*sign_tilt;
     cos_c = along_c/radius_c; /* at a singularity: the angle of the reference */
@@ -359,7 +359,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       ref_a = reference[3], ref_c = reference[4];
   const double radius_c = sqrt(r13*r13 + r23*r23); /* polar coordinates: the radius at angle c */
   double cos_c_positive, sin_c_positive, cos_c_negative, sin_c_negative;
-  if (radius_c > 1e-11) {
+  if (radius_c > 2e-12) {
     cos_c_positive = r23/radius_c; /* at a singularity: the angle of the reference */
     sin_c_positive = r13/radius_c;
     cos_c_negative = -cos_c_positive; /* at a singularity: the angle of the reference */
@@ -389,7 +389,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_c_positive = k->offset_c
       + softkin_angle_of(sin_c_positive, cos_c_positive)*SOFTKIN_RADIAN;
   double x_from_c_negative, y_from_c_negative, axis_c_negative;
-  if (radius_c > 1e-11) {
+  if (radius_c > 2e-12) {
     x_from_c_negative = -x_from_c_positive;
     y_from_c_negative = -y_from_c_positive;
     axis_c_negative = 180.0 + axis_c_positive;

@@ -790,10 +790,10 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double assembly_sign = (p->tcp_below != 0.0) ? -1.0 : 1.0;
   const double sin_max_angle_ball_joint = sin(SOFTKIN_DEGREE*p->max_angle_ball_joint);
   const double root_of_3 = sqrt(3.0);
-  const double product_in_normal_divisor = 1e-22*p->arm_length*p->arm_length*p->arm_length*p->arm_length;
+  const double product_in_normal_divisor = 4e-24*p->arm_length*p->arm_length*p->arm_length*p->arm_length;
   const double arm_length_squared = p->arm_length*p->arm_length;
   const double arm_length_squared_times_rounding = 1e-12*p->arm_length*p->arm_length;
-  const double product_in_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale;
+  const double product_in_determinant_divisor = 2e-12*machine_scale*machine_scale*machine_scale;
   const double product_in_pivot_2_y = 0.5*root_of_3*sin_rail_angle;
   const double sum_in_pivot_2_y = 0.5*p->inner_radius*root_of_3 - 0.5*p->outer_radius*root_of_3;
   const double inner_radius_minus_outer_radius = p->inner_radius - p->outer_radius;

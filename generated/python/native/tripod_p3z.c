@@ -685,14 +685,14 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
       - (p->rail_x_3 - p->rail_x_1)*(p->rail_y_2 - p->rail_y_1) > 0.0 ? ((p->tcp_above != 0.0) ? 1.0 : -1.0)
       : ((p->tcp_above != 0.0) ? -1.0 : 1.0);
   const double normal_z_squared = normal_z*normal_z;
-  const double product_in_normal_divisor = 1e-22*p->arm_length*p->arm_length*p->arm_length*p->arm_length;
+  const double product_in_normal_divisor = 4e-24*p->arm_length*p->arm_length*p->arm_length*p->arm_length;
   const double centre_1_to_3_y_times_normal_z = centre_1_to_3_y*normal_z;
   const double centre_1_to_2_y_times_normal_z = centre_1_to_2_y*normal_z;
   const double centre_1_to_3_x_times_normal_z = centre_1_to_3_x*normal_z;
   const double centre_1_to_2_x_times_normal_z = centre_1_to_2_x*normal_z;
   const double arm_length_squared = p->arm_length*p->arm_length;
   const double arm_length_squared_times_rounding = 1e-12*p->arm_length*p->arm_length;
-  const double product_in_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale;
+  const double product_in_determinant_divisor = 2e-12*machine_scale*machine_scale*machine_scale;
   const double sum_in_projection_2 = 0.5*centre_1_to_2_x*centre_1_to_2_x
       + 0.5*centre_1_to_2_y*centre_1_to_2_y;
   const double sum_in_projection_3 = 0.5*centre_1_to_3_x*centre_1_to_3_x

@@ -1041,7 +1041,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double assembly_sign = (p->tcp_above != 0.0) ? 1.0 : -1.0;
   const double sin_max_angle_ball_joint = sin(SOFTKIN_DEGREE*p->max_angle_ball_joint);
   const double root_of_3 = sqrt(3.0);
-  const double product_in_normal_divisor = 1e-22*p->arm_length_2*p->arm_length_2*p->arm_length_2
+  const double product_in_normal_divisor = 4e-24*p->arm_length_2*p->arm_length_2*p->arm_length_2
       *p->arm_length_2;
   const double arm_length_2_squared = p->arm_length_2*p->arm_length_2;
   const double arm_length_2_squared_times_rounding = 1e-12*p->arm_length_2*p->arm_length_2;
@@ -1049,7 +1049,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double arm_1_radius_minus_fixed_length_1 = p->arm_1_radius - fixed_length_1;
   const double product_in_scaled_cosine_a1 = 2.0*arm_1_radius_minus_fixed_length_1*p->arm_length_1;
   const double product_in_divisor_a2 = 5e-10*p->arm_length_1;
-  const double product_in_determinant_divisor = 1e-11*machine_scale*machine_scale*machine_scale;
+  const double product_in_determinant_divisor = 2e-12*machine_scale*machine_scale*machine_scale;
   const double arm_length_1_times_root_of_3_times_half = 0.5*p->arm_length_1*root_of_3;
   const double sum_in_pivot_2_y = 0.5*fixed_length_1*root_of_3 - 0.5*p->arm_1_radius*root_of_3;
   const double half_arm_length_1 = 0.5*p->arm_length_1;

@@ -21,7 +21,7 @@ void wrist2_regular(const void *machine, const softkin_lanes *given,
     const double r23_of_a = one_by_tool_side*r23;
     /* polar coordinates: the radius at angle a */
     const double radius_a = softkin_lane_root(r13_of_a*r13_of_a + r23_of_a*r23_of_a);
-    missed += radius_a > 1e-11 ? 0.0 : 1.0;
+    missed += radius_a > 2e-12 ? 0.0 : 1.0;
     const double sign_roll = sigma_roll; /* roll: +1 positive, -1 negative */
     /* polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
      * reference */
@@ -54,7 +54,7 @@ void wrist2_regular_all(const void *machine, const softkin_lanes *given,
     const double r23_of_a = one_by_tool_side_2*r23;
     /* polar coordinates: the radius at angle a */
     const double radius_a = softkin_lane_root(r13_of_a*r13_of_a + r23_of_a*r23_of_a);
-    missed += radius_a > 1e-11 ? 0.0 : 1.0;
+    missed += radius_a > 2e-12 ? 0.0 : 1.0;
     const double axis_a_positive = offset_a + softkin_lane_angle(r23_of_a, r13_of_a)*SOFTKIN_RADIAN;
     const double quotient_in_axis_b_positive = softkin_lane_angle(radius_a, r33)*SOFTKIN_RADIAN;
     const double axis_b_positive = offset_b + quotient_in_axis_b_positive;

@@ -21,7 +21,7 @@ void wrist3_regular(const void *machine, const softkin_lanes *given,
     double missed = misses[lane];
     /* polar coordinates: the radius at angle c */
     const double radius_c = softkin_lane_root(r31*r31 + r32*r32);
-    missed += radius_c > 1e-11 ? 0.0 : 1.0;
+    missed += radius_c > 2e-12 ? 0.0 : 1.0;
     const double sign_hand = sigma_hand; /* hand: +1 down, -1 up */
     /* polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
      * reference */
@@ -59,7 +59,7 @@ void wrist3_regular_all(const void *machine, const softkin_lanes *given,
     double missed = misses[lane];
     /* polar coordinates: the radius at angle c */
     const double radius_c = softkin_lane_root(r31*r31 + r32*r32);
-    missed += radius_c > 1e-11 ? 0.0 : 1.0;
+    missed += radius_c > 2e-12 ? 0.0 : 1.0;
     const double direction_y_c_down = -r32;
     const double scaled_r22_before_c_down = direction_y_c_down*r21 + r22*r31;
     const double direction_y_a_down = -direction_y_c_down*r11 - r12*r31;

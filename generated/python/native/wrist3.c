@@ -140,7 +140,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double radius_c = sqrt(r31*r31 + r32*r32); /* polar coordinates: the radius at angle c */
   const double sign_hand = sigma_hand; /* hand: +1 down, -1 up */
   double direction_x_c, direction_y_c;
-  if (radius_c > 1e-11) {
+  if (radius_c > 2e-12) {
     /* polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
      * reference */
     direction_x_c = r31*sign_hand;
@@ -307,7 +307,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       r33 = frame->rotation[2][2], ref_a = reference[0], ref_b = reference[1], ref_c = reference[2];
   const double radius_c = sqrt(r31*r31 + r32*r32); /* polar coordinates: the radius at angle c */
   double direction_x_c_down, direction_y_c_down, direction_x_c_up, direction_y_c_up;
-  if (radius_c > 1e-11) {
+  if (radius_c > 2e-12) {
     /* polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
      * reference */
     direction_x_c_down = r31;
@@ -336,7 +336,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_c_down = k->offset_c
       + softkin_angle_of(direction_y_c_down, direction_x_c_down)*SOFTKIN_RADIAN;
   double axis_a_up, axis_c_up;
-  if (radius_c > 1e-11) {
+  if (radius_c > 2e-12) {
     axis_a_up = 180.0 + axis_a_down;
     axis_c_up = 180.0 + axis_c_down;
   } else {

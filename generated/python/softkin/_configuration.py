@@ -8,15 +8,13 @@ from itertools import product
 from math import floor
 from typing import NamedTuple, TypeAlias
 
-from softkin._constants import EDGE, FREE_ANGLE, LARGEST
+from softkin._constants import COINCIDENT, EDGE, LARGEST
 from softkin._scalar import nearest_period
 from softkin._types import Configuration, KinematicsError, Reals, Signs, Status
 
 AUTOMATIC, FIRST, SECOND, COINCIDE = 0, 1, 2, 3
 """The values of a branch byte. `COINCIDE` is written where the branches meet, and read as automatic."""
 
-COINCIDENT = FREE_ANGLE
-"""Branches coincide where their margin is at most this in size."""
 FIRST_TURN, SECOND_TURN = -180.0 - EDGE, 180.0 - EDGE
 """The lower ends of the turns with the numbers 1 and 2 (degrees): earlier, so that rounding crosses no edge."""
 UNREACHABLE = int(Status.UNREACHABLE)

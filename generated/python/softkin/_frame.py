@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from math import cos, hypot, sin
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, overload
 
-from softkin._constants import FREE_ANGLE, LARGEST, LARGEST_ERROR
+from softkin._constants import COINCIDENT, LARGEST, LARGEST_ERROR
 from softkin._input import pose_of, reals, rotation_by_rows
 from softkin._rotation import in_words, made_rotation
 from softkin._scalar import DEGREE, RADIAN, atan2
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 ORIGIN: Vector = (0.0, 0.0, 0.0)
 IDENTITY: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-_NO_DIRECTION = FREE_ANGLE
+_NO_DIRECTION = COINCIDENT
 """Two axes are parallel where the sine of the angle between them is at most this."""
 
 

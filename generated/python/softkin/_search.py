@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
 from softkin._configuration import AUTOMATIC, Slot, slots
-from softkin._constants import FREE_ANGLE
+from softkin._constants import COINCIDENT
 from softkin._core import Mechanism
 from softkin._types import (
     Diagnosis,
@@ -27,8 +27,6 @@ from softkin._types import (
 _SAME = 2e-3
 """Axes that differ by less than this (degrees, lengths) are one solution of a branch: where the residual only touches
 zero, the scan finds the same root twice, and between two solutions of a branch there is one of another branch."""
-_COINCIDE = FREE_ANGLE
-"""A solution with a smaller margin belongs to both branches."""
 
 
 class SearchedInverse(Mechanism):
@@ -100,7 +98,7 @@ class SearchedInverse(Mechanism):
             return
         signs: list[Signs] = [()]
         for margin in pose[2]:
-            sides = (1, -1) if abs(margin) < _COINCIDE else (1 if margin > 0.0 else -1,)
+            sides = (1, -1) if abs(margin) < COINCIDENT else (1 if margin > 0.0 else -1,)
             signs = [(*s, side) for s in signs for side in sides]
         for key in signs:
             others = found.setdefault(key, [])

@@ -32,12 +32,12 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 51 additions, 59 multiplications, 0 divisions, 0 square roots, 13 sines
-    inverse: 79 additions, 70 multiplications, 10 divisions, 5 square roots, 6 sines
-    inverse, all 8 branches: 506 additions, 322 multiplications, 42 divisions, 17 square roots, 30 sines
+    inverse: 86 additions, 78 multiplications, 10 divisions, 5 square roots, 6 sines
+    inverse, all 8 branches: 558 additions, 382 multiplications, 42 divisions, 17 square roots, 30 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 98455 additions, 124105 multiplications, 5358 divisions, 1694
-    square roots, 7056 sines
-    steps of damped least squares on the closure, from one start after the other: at most 282 passes, all of
+    a branch at a singular pose, in addition: 108146 additions, 136778 multiplications, 5852 divisions, 1850
+    square roots, 7706 sines
+    steps of damped least squares on the closure, from one start after the other: at most 308 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -83,8 +83,10 @@ class Constants:
         rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
         # largest cosine within reach: 1, and the rounding of squared lengths
         bound_of_cos_q3 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (a2 * a3)
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         product_in_lost_digits_38 = 0.01 * machine_scale
+        machine_scale_times_rounding = 1e-12 * machine_scale
+        product_in_within_48 = 1e-11 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         a2_plus_a3 = a2 + a3
         a2_minus_a3 = a2 - a3
@@ -94,7 +96,9 @@ class Constants:
         self.offset_a2, self.offset_a3, self.offset_a4, self.offset_a5 = offset_a2, offset_a3, offset_a4, offset_a5
         self.offset_a6, self.machine_scale, self.rounding_q1 = offset_a6, machine_scale, rounding_q1
         self.bound_of_cos_q3, self.machine_scale_times_free_angle = bound_of_cos_q3, machine_scale_times_free_angle
-        self.product_in_lost_digits_38, self.one_by_machine_scale = product_in_lost_digits_38, one_by_machine_scale
+        self.product_in_lost_digits_38 = product_in_lost_digits_38
+        self.machine_scale_times_rounding = machine_scale_times_rounding
+        self.product_in_within_48, self.one_by_machine_scale = product_in_within_48, one_by_machine_scale
         self.a2_plus_a3, self.a2_minus_a3 = a2_plus_a3, a2_minus_a3
         self.quotient_in_closed_cos_q3 = quotient_in_closed_cos_q3
         self.quotient_in_closed_sin_q3 = quotient_in_closed_sin_q3
@@ -109,7 +113,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel e41fa4ddb02eb504"
+    KEY = "ac6_threeparallel 5bce976e4a58a448"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -380,7 +384,7 @@ class Ac6ThreeParallel(Mechanism):
             turn_of_attempt,
             turn_beside,
         ) = start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(282):
+        for _ in range(308):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -502,7 +506,9 @@ class Ac6ThreeParallel(Mechanism):
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_elbow or beside_shoulder or beside_wrist)
             from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
-            free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
+            free_angle = (
+                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
+            )
             product_in_damping = 0.001 * error
             damping = max(1e-13, product_in_damping)
             rate_1_1 = -one_by_machine_scale * y
@@ -651,11 +657,11 @@ class Ac6ThreeParallel(Mechanism):
                 * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) and (attempt < 89) and (error_left < least_error_left)
+            is_nearer = (attempt > 1) and (attempt < 115) and (error_left < least_error_left)
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 89) else 0.0)
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
                 if next_attempt > 62
                 else -360.0 * (1 - next_attempt) / 61.0
             )
@@ -736,16 +742,24 @@ class Ac6ThreeParallel(Mechanism):
                 * quotient_in_closed_sin_q3
             )
             closed_arm_across_q2 = a3 * closed_sin_q3
-            # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
-            # reference
-            closed_direction_x_q2 = (
+            # rotation by q2 that takes the arm to its target point
+            closed_along_q2 = (
                 closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
-                if closed_reach > free_angle_times_machine_scale
+            )
+            closed_across_q2 = (
+                closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
+            )
+            # at a singularity: the angle of the reference
+            closed_direction_x_q2 = (
+                closed_along_q2
+                if (closed_reach > free_angle_times_machine_scale)
+                and (closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2 > 0.0)
                 else cos(closed_reference_a2)
             )
             closed_direction_y_q2 = (
-                closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
-                if closed_reach > free_angle_times_machine_scale
+                closed_across_q2
+                if (closed_reach > free_angle_times_machine_scale)
+                and (closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2 > 0.0)
                 else sin(closed_reference_a2)
             )
             closed_angle_q2 = arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0)
@@ -766,7 +780,7 @@ class Ac6ThreeParallel(Mechanism):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             least_error_left_now = error_left if is_nearer else least_error_left
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -810,15 +824,15 @@ class Ac6ThreeParallel(Mechanism):
                     else tried_a6 + shared_quotient * step_a6
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
-            attempt = 90 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
+            attempt = 116 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 89)
+                if (next_attempt > 62) and (next_attempt < 115)
                 else turn_beside
             )
         chosen_a1 = tried_a1
@@ -977,13 +991,15 @@ class Ac6ThreeParallel(Mechanism):
         k = self._constants
         a2, a2_minus_a3, a2_plus_a3, a3, bound_of_cos_q3 = k.a2, k.a2_minus_a3, k.a2_plus_a3, k.a3, k.bound_of_cos_q3
         d1, d4, d5, d6, machine_scale = k.d1, k.d4, k.d5, k.d6, k.machine_scale
-        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
         offset_a6, product_in_lost_digits_38 = k.offset_a6, k.product_in_lost_digits_38
-        quotient_in_closed_cos_q3, quotient_in_closed_sin_q3 = k.quotient_in_closed_cos_q3, k.quotient_in_closed_sin_q3
-        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-        single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
+        product_in_within_48, quotient_in_closed_cos_q3 = k.product_in_within_48, k.quotient_in_closed_cos_q3
+        quotient_in_closed_sin_q3, rounding_q1, single_a1 = k.quotient_in_closed_sin_q3, k.rounding_q1, k.single_a1
+        single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
+        single_a6 = k.single_a6
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
@@ -1013,7 +1029,7 @@ class Ac6ThreeParallel(Mechanism):
         q6_radius_of_q5 = sigma_wrist * radius_q6
         cos_q5 = r13 * sin_q1 - r23 * cos_q1  # cosine and sine of q5 from the q6 radius and r22 equations
         # at a singularity: the angle of the reference
-        if radius_q6 > 1e-11:
+        if radius_q6 > 2e-12:
             along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r21 and r23 equations
             cos_q6 = along_q6 / radius_q6
             across_q6 = sigma_wrist * r22_from_q1
@@ -1046,20 +1062,39 @@ class Ac6ThreeParallel(Mechanism):
         if not (lost_digits_38 or (abs(cos_q3) <= bound_of_cos_q3)):
             missing = max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        arm_along_q2 = a2 + a3 * cos_q3
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_closed_sin_q3
+        arm_across_q2 = a3 * sin_q3
+        size_in_within_48 = abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+        within_48 = (reach > product_in_lost_digits_38) or (
+            size_in_within_48 - (machine_scale_times_rounding + reach) * product_in_within_48 <= 0.0
+        )
+        lost_digits_48 = (not within_48) and (
+            (-0.01 <= q6_radius_of_q5 <= 0.01)
+            or (-0.01 <= radius_q6 <= 0.01)
+            or (-0.01 <= sin_q3 <= 0.01)
+            or (abs(ahead_q1) <= product_in_lost_digits_38)
+        )
+        # q2: out of reach
+        if not (
+            lost_digits_48
+            or (reach > product_in_lost_digits_38)
+            or (size_in_within_48 - product_in_within_48 * (product_in_within_48 + reach) <= 0.0)
+        ):
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_closed_sin_q3
-        # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
-        if reach > machine_scale_times_free_angle:
-            arm_along_q2 = a2 + a3 * cos_q3
-            arm_across_q2 = a3 * sin_q3
-            direction_x_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
-            direction_y_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+        across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
+        # at a singularity: the angle of the reference
+        if reach > machine_scale_times_free_angle and across_q2 * across_q2 + along_q2 * along_q2 > 0.0:
+            direction_x_q2 = along_q2
+            direction_y_q2 = across_q2
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_q2 = cos(reference_a2)
@@ -1094,7 +1129,7 @@ class Ac6ThreeParallel(Mechanism):
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_38:
+        if lost_digits_38 or lost_digits_48:
             found = self._meet_pose(
                 (
                     ref_a1,
@@ -1141,6 +1176,13 @@ class Ac6ThreeParallel(Mechanism):
         if not (met or (abs(cos_q3) <= bound_of_cos_q3)):
             missing = max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        # q2: out of reach
+        if not (
+            met
+            or (reach > product_in_lost_digits_38)
+            or (size_in_within_48 - product_in_within_48 * (product_in_within_48 + reach) <= 0.0)
+        ):
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return (
             (found_a1 if met else axis_a1),
             (found_a2 if met else axis_a2),

@@ -82,7 +82,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_TXTYTZRYRXRZ"
-    KEY = "ac6_txtytzryrxrz b7d58706e81210a0"
+    KEY = "ac6_txtytzryrxrz 7390998e7fbd1633"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),
@@ -316,7 +316,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
         # polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
         # reference
-        if radius_a4 > 1e-11:
+        if radius_a4 > 2e-12:
             direction_x_a4 = sigma_wrist * r33
             direction_y_a4 = sigma_wrist * r13
         else:

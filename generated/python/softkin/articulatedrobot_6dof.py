@@ -32,12 +32,12 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 59 additions, 74 multiplications, 0 divisions, 0 square roots, 14 sines
-    inverse: 86 additions, 89 multiplications, 12 divisions, 6 square roots, 6 sines
-    inverse, all 8 branches: 495 additions, 376 multiplications, 52 divisions, 17 square roots, 34 sines
+    inverse: 93 additions, 97 multiplications, 12 divisions, 6 square roots, 6 sines
+    inverse, all 8 branches: 573 additions, 478 multiplications, 64 divisions, 25 square roots, 38 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 101860 additions, 133715 multiplications, 5079 divisions, 1414
-    square roots, 7057 sines
-    steps of damped least squares on the closure, from one start after the other: at most 282 passes, all of
+    a branch at a singular pose, in addition: 111247 additions, 146040 multiplications, 5547 divisions, 1544
+    square roots, 7707 sines
+    steps of damped least squares on the closure, from one start after the other: at most 308 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -84,21 +84,29 @@ class Constants:
         rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
         product_in_lost_digits_23 = 0.01 * machine_scale
         a2_minus_effective_q3 = a2 - effective_q3
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_rounding = 1e-12 * machine_scale
+        product_in_lost_digits_35 = 0.02 * a2 * effective_q3
+        product_in_within_35 = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         one_by_effective_q3 = 1.0 / effective_q3
         a2_plus_effective_q3 = a2 + effective_q3
         d4_by_effective_q3 = d4 / effective_q3
         a3_by_effective_q3 = a3 / effective_q3
+        a2_times_a3_times_2 = 2.0 * a2 * a3
+        a2_times_d4_times_2 = 2.0 * a2 * d4
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.d6 = d1, a1, a2, d3, a3, d4, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.offset_a5, self.offset_a6, self.machine_scale = offset_a5, offset_a6, machine_scale
         self.effective_q3, self.rounding_q1 = effective_q3, rounding_q1
         self.product_in_lost_digits_23, self.a2_minus_effective_q3 = product_in_lost_digits_23, a2_minus_effective_q3
+        self.machine_scale_times_rounding = machine_scale_times_rounding
+        self.product_in_lost_digits_35, self.product_in_within_35 = product_in_lost_digits_35, product_in_within_35
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.one_by_machine_scale, self.one_by_effective_q3 = one_by_machine_scale, one_by_effective_q3
         self.a2_plus_effective_q3, self.d4_by_effective_q3 = a2_plus_effective_q3, d4_by_effective_q3
-        self.a3_by_effective_q3 = a3_by_effective_q3
+        self.a3_by_effective_q3, self.a2_times_a3_times_2 = a3_by_effective_q3, a2_times_a3_times_2
+        self.a2_times_d4_times_2 = a2_times_d4_times_2
 
 
 class ArticulatedRobot6DOF(Mechanism):
@@ -110,7 +118,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof 290a7a6efce23fd7"
+    KEY = "articulatedrobot_6dof 1f57c9be899c4343"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -382,6 +390,7 @@ class ArticulatedRobot6DOF(Mechanism):
         # sum of both, twice the scale: cosine² + sine² is then 1
         closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
         closed_divisor_of_cos_q3 = closed_sum_q3 if closed_sum_q3 > 0.0 else 1.0
+        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
         # sine squared, times the squared scale
         closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
         closed_sin_swing_q3 = (
@@ -390,15 +399,14 @@ class ArticulatedRobot6DOF(Mechanism):
             * given_sigma_elbow
             / closed_divisor_of_cos_q3
         )
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        closed_cos_q3 = a3_by_effective_q3 * closed_cos_swing_q3 - closed_sin_swing_q3 * d4_by_effective_q3
+        closed_sin_q3 = a3_by_effective_q3 * closed_sin_swing_q3 + closed_cos_swing_q3 * d4_by_effective_q3
         closed_arm_along_q2 = -closed_sin_swing_q3 * effective_q3
-        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
         closed_arm_across_q2 = a2 + closed_cos_swing_q3 * effective_q3
         # rotation by q2 that takes the arm to its target point
         closed_along_q2 = closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
         closed_across_q2 = closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        closed_cos_q3 = a3_by_effective_q3 * closed_cos_swing_q3 - closed_sin_swing_q3 * d4_by_effective_q3
-        closed_sin_q3 = a3_by_effective_q3 * closed_sin_swing_q3 + closed_cos_swing_q3 * d4_by_effective_q3
         closed_axis_a3 = offset_a3 + arctan2(closed_sin_q3, closed_cos_q3 + 0.0) * RADIAN
         if not -180.000000001 <= closed_axis_a3 - closed_near_a3 < 179.999999999:
             closed_axis_a3 = nearest_period(closed_axis_a3, closed_near_a3)
@@ -419,7 +427,7 @@ class ArticulatedRobot6DOF(Mechanism):
             turn_of_attempt,
             turn_beside,
         ) = start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(282):
+        for _ in range(308):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -546,7 +554,9 @@ class ArticulatedRobot6DOF(Mechanism):
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_arm or beside_elbow or beside_hand)
             from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
-            free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
+            free_angle = (
+                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
+            )
             product_in_damping = 0.001 * error
             damping = max(1e-13, product_in_damping)
             rate_1_1 = -one_by_machine_scale * y
@@ -728,11 +738,11 @@ class ArticulatedRobot6DOF(Mechanism):
                 * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) and (attempt < 89) and (error_left < least_error_left)
+            is_nearer = (attempt > 1) and (attempt < 115) and (error_left < least_error_left)
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 89) else 0.0)
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
                 if next_attempt > 62
                 else -360.0 * (1 - next_attempt) / 61.0
             )
@@ -764,12 +774,12 @@ class ArticulatedRobot6DOF(Mechanism):
             # at a singularity: the angle of the reference
             closed_cos_q2 = (
                 closed_along_q2 / closed_length_q2
-                if closed_reach > free_angle_times_machine_scale
+                if (closed_reach > free_angle_times_machine_scale) and (sum_in_closed_length_q2 > 0.0)
                 else cos(closed_reference_a2)
             )
             closed_sin_q2 = (
                 closed_across_q2 / closed_length_q2
-                if closed_reach > free_angle_times_machine_scale
+                if (closed_reach > free_angle_times_machine_scale) and (sum_in_closed_length_q2 > 0.0)
                 else sin(closed_reference_a2)
             )
             closed_sin_q23 = closed_cos_q2 * closed_sin_q3 + closed_cos_q3 * closed_sin_q2
@@ -831,7 +841,7 @@ class ArticulatedRobot6DOF(Mechanism):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             least_error_left_now = error_left if is_nearer else least_error_left
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -875,15 +885,15 @@ class ArticulatedRobot6DOF(Mechanism):
                 if another or from_the_met_pose
                 else (tried_a6 if mirrors else tried_a6 + shared_quotient * step_a6)
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
-            attempt = 90 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
+            attempt = 116 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 89)
+                if (next_attempt > 62) and (next_attempt < 115)
                 else turn_beside
             )
         chosen_a1 = tried_a1
@@ -1055,14 +1065,17 @@ class ArticulatedRobot6DOF(Mechanism):
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
         a1, a2, a2_minus_effective_q3 = k.a1, k.a2, k.a2_minus_effective_q3
-        a2_plus_effective_q3, a3_by_effective_q3, d1, d3 = k.a2_plus_effective_q3, k.a3_by_effective_q3, k.d1, k.d3
+        a2_plus_effective_q3, a2_times_a3_times_2 = k.a2_plus_effective_q3, k.a2_times_a3_times_2
+        a2_times_d4_times_2, a3_by_effective_q3, d1, d3 = k.a2_times_d4_times_2, k.a3_by_effective_q3, k.d1, k.d3
         d4_by_effective_q3, d6, effective_q3 = k.d4_by_effective_q3, k.d6, k.effective_q3
-        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, product_in_lost_digits_23, rounding_q1 = k.offset_a6, k.product_in_lost_digits_23, k.rounding_q1
-        single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
-        single_a5, single_a6 = k.single_a5, k.single_a6
+        offset_a6, product_in_lost_digits_23 = k.offset_a6, k.product_in_lost_digits_23
+        product_in_lost_digits_35, product_in_within_35 = k.product_in_lost_digits_35, k.product_in_within_35
+        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
+        single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
@@ -1095,6 +1108,28 @@ class ArticulatedRobot6DOF(Mechanism):
         if not (lost_digits_23 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
             missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
+        arm_along_q2 = -effective_q3 * sin_swing_q3
+        arm_across_q2 = a2 + effective_q3 * cos_swing_q3
+        size_in_within_35 = abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_q3 = a3_by_effective_q3 * cos_swing_q3 - d4_by_effective_q3 * sin_swing_q3
+        sin_q3 = a3_by_effective_q3 * sin_swing_q3 + d4_by_effective_q3 * cos_swing_q3
+        within_35 = (reach > product_in_lost_digits_23) or (
+            size_in_within_35 - (machine_scale_times_rounding + reach) * product_in_within_35 <= 0.0
+        )
+        lost_digits_35 = (not within_35) and (
+            (abs(ahead_q1) <= product_in_lost_digits_23)
+            or (abs(a2_times_a3_times_2 * sin_q3 - a2_times_d4_times_2 * cos_q3) <= product_in_lost_digits_35)
+        )
+        # q2: out of reach
+        if not (
+            lost_digits_35
+            or (reach > product_in_lost_digits_23)
+            or (size_in_within_35 - product_in_within_35 * (product_in_within_35 + reach) <= 0.0)
+        ):
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1 = (ahead_q1 * wrist_x - d3 * wrist_y) / distance_q1_squared
@@ -1108,18 +1143,14 @@ class ArticulatedRobot6DOF(Mechanism):
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+        across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
+        across_q2_squared_plus_along_q2_squared = across_q2 * across_q2 + along_q2 * along_q2
         # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle:
-            arm_along_q2 = -effective_q3 * sin_swing_q3
-            arm_across_q2 = a2 + effective_q3 * cos_swing_q3
-            # rotation by q2 that takes the arm to its target point
-            along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
-            across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
-            across_q2_squared_plus_along_q2_squared = across_q2 * across_q2 + along_q2 * along_q2
+        if across_q2_squared_plus_along_q2_squared > 0.0 and reach > machine_scale_times_free_angle:
             length_q2 = (
-                sqrt(across_q2_squared_plus_along_q2_squared) if across_q2_squared_plus_along_q2_squared > 0.0 else 1.0
+                sqrt(across_q2_squared_plus_along_q2_squared) if across_q2_squared_plus_along_q2_squared > 0.0 else 0.0
             )
             cos_q2 = along_q2 / length_q2
             sin_q2 = across_q2 / length_q2
@@ -1132,9 +1163,6 @@ class ArticulatedRobot6DOF(Mechanism):
         axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = a3_by_effective_q3 * cos_swing_q3 - d4_by_effective_q3 * sin_swing_q3
-        sin_q3 = a3_by_effective_q3 * sin_swing_q3 + d4_by_effective_q3 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
@@ -1149,7 +1177,7 @@ class ArticulatedRobot6DOF(Mechanism):
         radius_q4 = sqrt(r23_from_q1 * r23_from_q1 + r33_from_q123 * r33_from_q123)
         # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
         # reference
-        if radius_q4 > 1e-11:
+        if radius_q4 > 2e-12:
             direction_x_q4 = -sigma_hand * r33_from_q123
             direction_y_q4 = sigma_hand * r23_from_q1
         else:
@@ -1183,7 +1211,7 @@ class ArticulatedRobot6DOF(Mechanism):
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_23:
+        if lost_digits_23 or lost_digits_35:
             found = self._meet_pose(
                 (
                     ref_a1,
@@ -1230,6 +1258,13 @@ class ArticulatedRobot6DOF(Mechanism):
         if not (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
             missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        # q2: out of reach
+        if not (
+            met
+            or (reach > product_in_lost_digits_23)
+            or (size_in_within_35 - product_in_within_35 * (product_in_within_35 + reach) <= 0.0)
+        ):
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return (
             (found_a1 if met else axis_a1),
             (found_a2 if met else axis_a2),

@@ -59,7 +59,7 @@ class Constants:
         self.lowest_theta, self.highest_theta, self.single_theta, self.mid_theta = machine._window("theta")
         self.lowest_phi, self.highest_phi, *_ = machine._window("phi", (offset_phi, 180.0 + offset_phi))
         machine_scale = 1.0  # characteristic length of the machine
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         self.offset_r, self.offset_theta, self.offset_phi = offset_r, offset_theta, offset_phi
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
@@ -75,7 +75,7 @@ class Crane(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Crane"
-    KEY = "crane 75e1449158336155"
+    KEY = "crane e011de7958397cda"
     AXES = (
         Axis(name="R", kind="linear", unit="u", meaning="Length of the boom", multi_turn=False),
         Axis(name="Theta", kind="rotary", unit="deg", meaning="Azimuth, from X", multi_turn=True),

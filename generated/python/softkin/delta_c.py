@@ -84,12 +84,12 @@ class Constants:
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = 1.0 if tcp_above else -1.0
         root_of_3 = sqrt(3.0)
-        product_in_normal_divisor = 1e-22 * rod_length * rod_length * rod_length * rod_length
+        product_in_normal_divisor = 4e-24 * rod_length * rod_length * rod_length * rod_length
         rod_length_squared = rod_length * rod_length
         rod_length_squared_times_rounding = 1e-12 * rod_length * rod_length
         arm_length_times_shortest_link = 1e-9 * arm_length
         product_in_divisor_a2 = 5e-10 * arm_length
-        product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        product_in_determinant_divisor = 2e-12 * machine_scale * machine_scale * machine_scale
         arm_length_times_root_of_3_times_half = 0.5 * arm_length * root_of_3
         sum_in_pivot_2_y = 0.5 * base_radius * root_of_3 - 0.5 * plate_radius * root_of_3
         base_radius_minus_plate_radius = base_radius - plate_radius
@@ -131,7 +131,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Delta_C"
-    KEY = "delta_c 15c883462bdc3695"
+    KEY = "delta_c 40a517099f488433"
     AXES = (
         Axis(
             name="A1",
@@ -484,7 +484,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         span_1_x = x - base_radius_minus_plate_radius  # rod 1: known part of its vector
         effective_a1 = sqrt(span_1_x * span_1_x + z * z)  # effective length of the arm that a1 turns
@@ -926,7 +926,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Status.UNREACHABLE
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length

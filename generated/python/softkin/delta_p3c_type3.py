@@ -159,13 +159,13 @@ class Constants:
         cos_azimuth_1_times_tcp_radius_1 = tcp_radius_1 * cos_azimuth_1
         cos_azimuth_2_times_tcp_radius_2 = tcp_radius_2 * cos_azimuth_2
         cos_azimuth_3_times_tcp_radius_3 = tcp_radius_3 * cos_azimuth_3
-        product_in_normal_divisor = 1e-22 * outer_arm_1 * outer_arm_1 * outer_arm_1 * outer_arm_1
+        product_in_normal_divisor = 4e-24 * outer_arm_1 * outer_arm_1 * outer_arm_1 * outer_arm_1
         outer_arm_1_squared = outer_arm_1 * outer_arm_1
         outer_arm_1_squared_times_rounding = 1e-12 * outer_arm_1 * outer_arm_1
         inner_arm_1_times_shortest_link = 1e-9 * inner_arm_1
         inner_arm_2_times_shortest_link = 1e-9 * inner_arm_2
         inner_arm_3_times_shortest_link = 1e-9 * inner_arm_3
-        product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        product_in_determinant_divisor = 2e-12 * machine_scale * machine_scale * machine_scale
         inner_arm_1_times_sin_azimuth_1 = inner_arm_1 * sin_azimuth_1
         sum_in_pivot_1_y = base_radius_1 * sin_azimuth_1 - sin_azimuth_1_times_tcp_radius_1
         inner_arm_2_times_sin_azimuth_2 = inner_arm_2 * sin_azimuth_2
@@ -254,7 +254,7 @@ class DeltaP3CType3(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Delta_P3C_Type3"
-    KEY = "delta_p3c_type3 831c9932bac00101"
+    KEY = "delta_p3c_type3 a4e0e109f9346d6d"
     AXES = (
         Axis(
             name="A1",

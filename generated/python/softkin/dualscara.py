@@ -104,7 +104,7 @@ class Constants:
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = -1.0 if tcp_back else 1.0
         half_base_distance = 0.5 * base_distance
-        product_in_normal_divisor = 1e-22 * rod_length_1 * rod_length_1
+        product_in_normal_divisor = 4e-24 * rod_length_1 * rod_length_1
         rod_length_1_squared_times_rounding = 1e-12 * rod_length_1 * rod_length_1
         rod_length_1_plus_rod_length_2 = rod_length_1 + rod_length_2
         rod_length_1_minus_rod_length_2 = rod_length_1 - rod_length_2
@@ -113,7 +113,7 @@ class Constants:
         arm_length_1_minus_rod_length_1 = arm_length_1 - rod_length_1
         arm_length_2_times_shortest_link = 1e-9 * arm_length_2
         arm_length_2_minus_rod_length_2 = arm_length_2 - rod_length_2
-        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        machine_scale_squared_times_free_angle = 2e-12 * machine_scale * machine_scale
         one_by_rod_length_1 = 1.0 / rod_length_1
         one_by_rod_length_2 = 1.0 / rod_length_2
         arm_length_1_plus_rod_length_1 = arm_length_1 + rod_length_1
@@ -152,7 +152,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_DualScara"
-    KEY = "dualscara 6c29d7ac9f3c545f"
+    KEY = "dualscara 518a05ebb26d0c73"
     AXES = (
         Axis(
             name="A1",
@@ -441,7 +441,7 @@ class DualScara(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         span_1_x = half_base_distance + x  # rod 1: known part of its vector
         y_squared = y * y
@@ -713,7 +713,7 @@ class DualScara(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Status.UNREACHABLE
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length

@@ -72,7 +72,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_GantryCutter3"
-    KEY = "gantrycutter3 f413443fcdc45772"
+    KEY = "gantrycutter3 91ad0640bfc2fd45"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),
@@ -224,7 +224,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         axis_x = offset_x + x
         axis_y = offset_y + y
@@ -288,7 +288,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Status.UNREACHABLE
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
@@ -345,7 +345,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return None
         return (
             offset_x + x,

@@ -83,7 +83,7 @@ class HeadHeadCB(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_HeadHead_CB"
-    KEY = "headhead_cb 00ce965c8c92fb69"
+    KEY = "headhead_cb 945aa2d28ffeb377"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),
@@ -281,7 +281,7 @@ class HeadHeadCB(Mechanism):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
         # at a singularity: the angle of the reference
-        if radius_c > 1e-11:
+        if radius_c > 2e-12:
             along_c = sigma_tilt * r13  # polar coordinates: angle c from the r13 and r23 equations
             cos_c = along_c / radius_c
             across_c = sigma_tilt * r23

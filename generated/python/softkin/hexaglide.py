@@ -504,7 +504,7 @@ class Hexaglide(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Hexaglide"
-    KEY = "hexaglide 3444f6e9f37d6a67"
+    KEY = "hexaglide 03c9f746a143d056"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="X of carriage 1", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="X of carriage 2", multi_turn=False),
@@ -1101,7 +1101,7 @@ class Hexaglide(IterativeForward):
             )
             spin_x = one_by_platform_radius * swing_x
             spin_y = one_by_platform_radius * swing_y
-            cos_pitch_divisor = cos_pitch if abs(cos_pitch) > 1e-11 else 1.0
+            cos_pitch_divisor = cos_pitch if abs(cos_pitch) > 2e-12 else 1.0
             roll_rate = (spin_x * cos_yaw + spin_y * sin_yaw) / cos_pitch_divisor
             pitch_rate = spin_y * cos_yaw - spin_x * sin_yaw
             spin_z = one_by_platform_radius * swing_z
@@ -1998,7 +1998,7 @@ class Hexaglide(IterativeForward):
             moment_6_z,
         ) = found
         # nothing controls the plate
-        if not (abs(determinant) > 1e-11):
+        if not (abs(determinant) > 2e-12):
             return Status.IMPOSSIBLE
         # twist of the platform per velocity of each axis
         (

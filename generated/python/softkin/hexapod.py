@@ -373,7 +373,7 @@ class Hexapod(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Hexapod"
-    KEY = "hexapod 60e034b7f337a521"
+    KEY = "hexapod a377a67679df05c5"
     AXES = (
         Axis(name="L1", kind="linear", unit="u", meaning="Length of leg 1, between its joints", multi_turn=False),
         Axis(name="L2", kind="linear", unit="u", meaning="Length of leg 2, between its joints", multi_turn=False),
@@ -940,7 +940,7 @@ class Hexapod(IterativeForward):
             )
             spin_x = one_by_platform_radius * swing_x
             spin_y = one_by_platform_radius * swing_y
-            cos_pitch_divisor = cos_pitch if abs(cos_pitch) > 1e-11 else 1.0
+            cos_pitch_divisor = cos_pitch if abs(cos_pitch) > 2e-12 else 1.0
             roll_rate = (spin_x * cos_yaw + spin_y * sin_yaw) / cos_pitch_divisor
             pitch_rate = spin_y * cos_yaw - spin_x * sin_yaw
             spin_z = one_by_platform_radius * swing_z
@@ -1701,7 +1701,7 @@ class Hexapod(IterativeForward):
             moment_6_z,
         ) = found
         # nothing controls the plate
-        if not (abs(determinant) > 1e-11):
+        if not (abs(determinant) > 2e-12):
             return Status.IMPOSSIBLE
         # twist of the platform per velocity of each axis
         (

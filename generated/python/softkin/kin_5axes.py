@@ -81,7 +81,7 @@ class Kin5Axes(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_5Axes"
-    KEY = "kin_5axes 528b8c68a602ff33"
+    KEY = "kin_5axes 6ed7d0e58bbb1a05"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),
@@ -288,7 +288,7 @@ class Kin5Axes(Mechanism):
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
         # polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
         # reference
-        if radius_a > 1e-11:
+        if radius_a > 2e-12:
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a
         else:

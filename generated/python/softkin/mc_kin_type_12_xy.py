@@ -98,7 +98,7 @@ class Constants:
         radius_2 = link_length_2 * link_length_4 / link_length_3
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = (-1.0 if e_right else 1.0) if not swap_xy else (1.0 if e_right else -1.0)
-        product_in_normal_divisor = 1e-22 * link_length_2 * link_length_2
+        product_in_normal_divisor = 4e-24 * link_length_2 * link_length_2
         link_length_2_squared_times_rounding = 1e-12 * link_length_2 * link_length_2
         link_length_2_plus_radius_2 = link_length_2 + radius_2
         link_length_2_minus_radius_2 = link_length_2 - radius_2
@@ -109,7 +109,7 @@ class Constants:
         link_length_5_times_shortest_link = 1e-9 * link_length_5
         link_length_4_minus_link_length_5 = link_length_4 - link_length_5
         link_length_3_by_link_length_2 = link_length_3 / link_length_2
-        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        machine_scale_squared_times_free_angle = 2e-12 * machine_scale * machine_scale
         link_length_2_by_link_length_3 = link_length_2 / link_length_3
         one_by_link_length_2 = 1.0 / link_length_2
         product_in_branch_w = link_length_1 * (link_length_2 + link_length_3)
@@ -161,7 +161,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
-    KEY = "mc_kin_type_12_xy bcc84163af92995f"
+    KEY = "mc_kin_type_12_xy d20273cef76cc241"
     AXES = (
         Axis(
             name="A1",

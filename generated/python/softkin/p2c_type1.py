@@ -68,13 +68,13 @@ class Constants:
         machine_scale = displacement + inner_arm + outer_arm + tcp_displacement
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = 1.0 if tcp_above else -1.0
-        product_in_normal_divisor = 1e-22 * outer_arm * outer_arm
+        product_in_normal_divisor = 4e-24 * outer_arm * outer_arm
         twice_outer_arm = 2.0 * outer_arm
         outer_arm_squared_times_rounding = 1e-12 * outer_arm * outer_arm
         machine_scale_times_plane = 1e-6 * machine_scale
         inner_arm_times_shortest_link = 1e-9 * inner_arm
         inner_arm_minus_outer_arm = inner_arm - outer_arm
-        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        machine_scale_squared_times_free_angle = 2e-12 * machine_scale * machine_scale
         displacement_minus_tcp_displacement = displacement - tcp_displacement
         one_by_outer_arm = 1.0 / outer_arm
         inner_arm_plus_outer_arm = inner_arm + outer_arm
@@ -106,7 +106,7 @@ class P2CType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type1"
-    KEY = "p2c_type1 043c00d4b9d2b54c"
+    KEY = "p2c_type1 b933ceccadc315dd"
     AXES = (
         Axis(
             name="A1",

@@ -74,13 +74,13 @@ class Constants:
         # assembly mode of this machine: the sign of the determinant of its rods
         assembly_sign = 1.0 if tcp_above else -1.0
         centre_1_to_2_y_squared = centre_1_to_2_y * centre_1_to_2_y
-        product_in_normal_divisor = 1e-22 * arm_length_1 * arm_length_1
+        product_in_normal_divisor = 4e-24 * arm_length_1 * arm_length_1
         arm_length_1_squared_times_rounding = 1e-12 * arm_length_1 * arm_length_1
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
         product_in_foot_fraction = arm_length_1_minus_arm_length_2 * machine_scale
         machine_scale_times_plane = 1e-6 * machine_scale
         arm_length_2_squared_times_rounding = 1e-12 * arm_length_2 * arm_length_2
-        machine_scale_squared_times_free_angle = 1e-11 * machine_scale * machine_scale
+        machine_scale_squared_times_free_angle = 2e-12 * machine_scale * machine_scale
         one_by_arm_length_1 = 1.0 / arm_length_1
         one_by_arm_length_2 = 1.0 / arm_length_2
         quotient_in_type2_arms_aligned = assembly_sign / (arm_length_1 * arm_length_2)
@@ -111,7 +111,7 @@ class P2XType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2X_Type1"
-    KEY = "p2x_type1 5a9a79084110bd37"
+    KEY = "p2x_type1 94c7c821c18ef4c4"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),

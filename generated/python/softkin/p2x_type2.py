@@ -61,7 +61,7 @@ class Constants:
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
         machine_scale_times_plane = 1e-6 * machine_scale
         shared_product = 2.5e-13 * arm_length * arm_length
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         assembly_sign_by_arm_length = assembly_sign / arm_length
         one_by_arm_length = 1.0 / arm_length
         self.arm_length, self.tcp_link_distance, self.offset_a1 = arm_length, tcp_link_distance, offset_a1
@@ -82,7 +82,7 @@ class P2XType2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_P2X_Type2"
-    KEY = "p2x_type2 9e72b0ccca9e8469"
+    KEY = "p2x_type2 e9df9cbc459e05d1"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),

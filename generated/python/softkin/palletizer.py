@@ -28,10 +28,10 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 30 additions, 29 multiplications, 0 divisions, 0 square roots, 9 sines
-    inverse: 48 additions, 38 multiplications, 4 divisions, 3 square roots, 4 sines
-    inverse, all 4 branches: 163 additions, 111 multiplications, 11 divisions, 7 square roots, 11 sines
+    inverse: 49 additions, 40 multiplications, 4 divisions, 3 square roots, 4 sines
+    inverse, all 4 branches: 165 additions, 117 multiplications, 11 divisions, 7 square roots, 11 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 4
+    a branch at a singular pose, in addition: 2 additions, 1 multiplications, 0 divisions, 0 square roots, 4
     sines
 
 A3 is the angle of the forearm against the base: where A2 alone moves, the forearm keeps its direction.
@@ -83,26 +83,34 @@ class Constants:
         )
         rounding_a1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         product_in_lost_digits_17 = 0.01 * machine_scale
+        machine_scale_times_rounding = 1e-12 * machine_scale
+        product_in_lost_digits_29 = 0.02 * link_length_1 * link_length_2
+        product_in_within_29 = 1e-11 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         quotient_in_closed_cos_swing_a3_from_a2 = 0.25 / (link_length_1 * link_length_2)
         shoulder_offset_plus_wrist_offset_x = shoulder_offset + wrist_offset_x
         base_height_plus_wrist_offset_z = base_height + wrist_offset_z
+        product_in_lost_digits_29_2 = 2.0 * link_length_1 * link_length_2
         self.base_height, self.shoulder_offset, self.link_length_1 = base_height, shoulder_offset, link_length_1
         self.link_length_2, self.wrist_offset_x, self.wrist_offset_z = link_length_2, wrist_offset_x, wrist_offset_z
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.machine_scale, self.bound_of_cos_swing_a3_from_a2 = machine_scale, bound_of_cos_swing_a3_from_a2
         self.rounding_a1, self.link_length_1_minus_link_length_2 = rounding_a1, link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.product_in_lost_digits_17, self.one_by_machine_scale = product_in_lost_digits_17, one_by_machine_scale
+        self.product_in_lost_digits_17 = product_in_lost_digits_17
+        self.machine_scale_times_rounding = machine_scale_times_rounding
+        self.product_in_lost_digits_29, self.product_in_within_29 = product_in_lost_digits_29, product_in_within_29
+        self.one_by_machine_scale = one_by_machine_scale
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
         self.quotient_in_closed_cos_swing_a3_from_a2 = quotient_in_closed_cos_swing_a3_from_a2
         self.shoulder_offset_plus_wrist_offset_x = shoulder_offset_plus_wrist_offset_x
         self.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z
+        self.product_in_lost_digits_29_2 = product_in_lost_digits_29_2
 
 
 class Palletizer(OffsetKinematics, TwistChoice):
@@ -114,7 +122,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer"
-    KEY = "palletizer 33c2c1299b8c168a"
+    KEY = "palletizer 3b3416c8e13ef56f"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),
@@ -328,7 +336,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             turn_of_attempt,
             turn_beside,
         ) = start_a1, start_a2, start_a3, start_a4, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(282):
+        for _ in range(308):
             a1 = (tried_a1 - offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -377,7 +385,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_elbow or beside_shoulder)
             from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
-            free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
+            free_angle = (
+                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
+            )
             product_in_damping = 0.001 * error
             damping = max(1e-13, product_in_damping)
             rate_1_1 = -one_by_machine_scale * y
@@ -420,11 +430,11 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) and (attempt < 89) and (error_left < least_error_left)
+            is_nearer = (attempt > 1) and (attempt < 115) and (error_left < least_error_left)
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 89) else 0.0)
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
                 if next_attempt > 62
                 else -360.0 * (1 - next_attempt) / 61.0
             )
@@ -498,16 +508,24 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 closed_one_plus_cos_a3_from_a2 - closed_one_less_cos_a3_from_a2
             ) * quotient_in_closed_cos_swing_a3_from_a2
             closed_arm_across_a2 = link_length_1 - closed_cos_swing_a3_from_a2 * link_length_2
-            # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
-            # reference
-            closed_direction_x_a2 = (
+            # rotation by a2 that takes the arm to its target point
+            closed_along_a2 = (
                 closed_arm_across_a2 * closed_wrist_z_from_a1 + closed_arm_along_a2 * closed_wrist_x_from_a1
-                if closed_reach > free_angle_times_machine_scale
+            )
+            closed_across_a2 = (
+                closed_arm_across_a2 * closed_wrist_x_from_a1 - closed_arm_along_a2 * closed_wrist_z_from_a1
+            )
+            # at a singularity: the angle of the reference
+            closed_direction_x_a2 = (
+                closed_along_a2
+                if (closed_reach > free_angle_times_machine_scale)
+                and (closed_across_a2 * closed_across_a2 + closed_along_a2 * closed_along_a2 > 0.0)
                 else cos(closed_reference_a2)
             )
             closed_direction_y_a2 = (
-                closed_arm_across_a2 * closed_wrist_x_from_a1 - closed_arm_along_a2 * closed_wrist_z_from_a1
-                if closed_reach > free_angle_times_machine_scale
+                closed_across_a2
+                if (closed_reach > free_angle_times_machine_scale)
+                and (closed_across_a2 * closed_across_a2 + closed_along_a2 * closed_along_a2 > 0.0)
                 else sin(closed_reference_a2)
             )
             closed_angle_a2 = arctan2(closed_direction_y_a2 + 0.0, closed_direction_x_a2 + 0.0)
@@ -520,7 +538,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             least_error_left_now = error_left if is_nearer else least_error_left
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -542,15 +560,15 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 else (tried_a3 if mirrors else tried_a3 + shared_quotient * step_a3)
             )
             tried_a4 = given_ref_a4 if another or from_the_met_pose else tried_a4
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
-            attempt = 90 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
+            attempt = 116 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 89)
+                if (next_attempt > 62) and (next_attempt < 115)
                 else turn_beside
             )
         chosen_a1 = tried_a1
@@ -658,7 +676,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         wrist_z = z - base_height_plus_wrist_offset_z  # coordinate of the point that the remaining links must reach
         radius_a1 = sqrt(x * x + y * y)  # polar coordinates: the radius at angle a1
@@ -696,6 +714,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         axis_a1 = offset_a1 + angle_a1 * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
+        arm_along_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2
         # sine squared, times the squared scale
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -704,13 +723,14 @@ class Palletizer(OffsetKinematics, TwistChoice):
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
-        if reach > machine_scale_times_free_angle:
-            arm_along_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2
-            arm_across_a2 = link_length_2 * cos_a3_from_a2
-            direction_x_a2 = arm_across_a2 * wrist_a1_radius + arm_along_a2 * wrist_z
-            direction_y_a2 = arm_along_a2 * wrist_a1_radius - arm_across_a2 * wrist_z
+        arm_across_a2 = link_length_2 * cos_a3_from_a2
+        # rotation by a2 that takes the arm to its target point
+        along_a2 = arm_across_a2 * wrist_a1_radius + arm_along_a2 * wrist_z
+        across_a2 = arm_along_a2 * wrist_a1_radius - arm_across_a2 * wrist_z
+        # at a singularity: the angle of the reference
+        if reach > machine_scale_times_free_angle and across_a2 * across_a2 + along_a2 * along_a2 > 0.0:
+            direction_x_a2 = along_a2
+            direction_y_a2 = across_a2
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_a2 = cos(reference_a2)
@@ -872,7 +892,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Status.UNREACHABLE
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
@@ -893,9 +913,12 @@ class Palletizer(OffsetKinematics, TwistChoice):
         half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
-        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
         offset_a4, product_in_lost_digits_17 = k.offset_a4, k.product_in_lost_digits_17
+        product_in_lost_digits_29 = k.product_in_lost_digits_29
+        product_in_lost_digits_29_2, product_in_within_29 = k.product_in_lost_digits_29_2, k.product_in_within_29
         quotient_in_closed_cos_swing_a3_from_a2, rounding_a1 = k.quotient_in_closed_cos_swing_a3_from_a2, k.rounding_a1
         shoulder_offset, single_a1, single_a2, single_a3 = k.shoulder_offset, k.single_a1, k.single_a2, k.single_a3
         wrist_offset_x, wrist_offset_z = k.wrist_offset_x, k.wrist_offset_z
@@ -940,6 +963,31 @@ class Palletizer(OffsetKinematics, TwistChoice):
         if not (lost_digits_17 or (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2)):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
+        # sine squared, times the squared scale
+        sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_a3_from_a2 = (
+            (sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0)
+            * sigma_elbow
+            * half_by_link_length_1_by_link_length_2
+        )
+        arm_along_a2 = link_length_2 * cos_a3_from_a2
+        arm_across_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2
+        size_in_within_29 = abs(arm_across_a2 * arm_across_a2 + arm_along_a2 * arm_along_a2 - reach * reach)
+        within_29 = (reach > product_in_lost_digits_17) or (
+            size_in_within_29 - (machine_scale_times_rounding + reach) * product_in_within_29 <= 0.0
+        )
+        lost_digits_29 = (not within_29) and (
+            (abs(ahead_a1) <= product_in_lost_digits_17)
+            or (abs(cos_a3_from_a2) * product_in_lost_digits_29_2 <= product_in_lost_digits_29)
+        )
+        # a2: out of reach
+        if not (
+            lost_digits_29
+            or (reach > product_in_lost_digits_17)
+            or (size_in_within_29 - product_in_within_29 * (product_in_within_29 + reach) <= 0.0)
+        ):
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_a1 > machine_scale_times_free_angle:
             cos_a1 = (ahead_a1 * x + tool_y * y) / distance_a1_squared
@@ -953,21 +1001,13 @@ class Palletizer(OffsetKinematics, TwistChoice):
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        # sine squared, times the squared scale
-        sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_a3_from_a2 = (
-            (sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0)
-            * sigma_elbow
-            * half_by_link_length_1_by_link_length_2
-        )
-        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
-        if reach > machine_scale_times_free_angle:
-            arm_along_a2 = link_length_2 * cos_a3_from_a2
-            arm_across_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2
-            direction_x_a2 = arm_across_a2 * wrist_z_from_a1 + arm_along_a2 * wrist_x_from_a1
-            direction_y_a2 = arm_across_a2 * wrist_x_from_a1 - arm_along_a2 * wrist_z_from_a1
+        # rotation by a2 that takes the arm to its target point
+        along_a2 = arm_across_a2 * wrist_z_from_a1 + arm_along_a2 * wrist_x_from_a1
+        across_a2 = arm_across_a2 * wrist_x_from_a1 - arm_along_a2 * wrist_z_from_a1
+        # at a singularity: the angle of the reference
+        if reach > machine_scale_times_free_angle and across_a2 * across_a2 + along_a2 * along_a2 > 0.0:
+            direction_x_a2 = along_a2
+            direction_y_a2 = across_a2
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_a2 = cos(reference_a2)
@@ -986,7 +1026,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_17:
+        if lost_digits_17 or lost_digits_29:
             found = self._meet_point(
                 (
                     point_x,
@@ -1019,6 +1059,13 @@ class Palletizer(OffsetKinematics, TwistChoice):
         if not (met or (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2)):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
+        # a2: out of reach
+        if not (
+            met
+            or (reach > product_in_lost_digits_17)
+            or (size_in_within_29 - product_in_within_29 * (product_in_within_29 + reach) <= 0.0)
+        ):
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return (
             (found_a1 if met else axis_a1),
             (found_a2 if met else axis_a2),

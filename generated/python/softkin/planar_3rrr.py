@@ -335,7 +335,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Planar_3RRR"
-    KEY = "planar_3rrr 90c76330ef348b1b"
+    KEY = "planar_3rrr e5024333caf97add"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z, from +X", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z, from +X", multi_turn=True),
@@ -672,7 +672,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         start_across = start_r21 - start_r12
         start_length = sqrt(start_across * start_across + start_along * start_along)
         # the tool points exactly the opposite way
-        if not (start_length > 1e-11):
+        if not (start_length > 2e-12):
             return Status.BAD_INPUT
         start_cos_heading = start_along / start_length
         start_sin_heading = start_across / start_length
@@ -724,7 +724,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         start_across = start_r21 - start_r12
         start_length = sqrt(start_across * start_across + start_along * start_along)
         # the tool points exactly the opposite way
-        if not (start_length > 1e-11):
+        if not (start_length > 2e-12):
             return Status.BAD_INPUT
         start_cos_heading = start_along / start_length
         start_sin_heading = start_across / start_length
@@ -774,7 +774,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -996,7 +996,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         start_across = start_r21 - start_r12
         start_length = sqrt(start_across * start_across + start_along * start_along)
         # the tool points exactly the opposite way
-        if not (start_length > 1e-11):
+        if not (start_length > 2e-12):
             return Status.BAD_INPUT
         start_cos_heading = start_along / start_length
         start_sin_heading = start_across / start_length
@@ -1042,7 +1042,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         start_across = start_r21 - start_r12
         start_length = sqrt(start_across * start_across + start_along * start_along)
         # the tool points exactly the opposite way
-        if not (start_length > 1e-11):
+        if not (start_length > 2e-12):
             return Status.BAD_INPUT
         start_cos_heading = start_along / start_length
         start_sin_heading = start_across / start_length
@@ -1067,7 +1067,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
             moment_3_z,
         ) = found
         # nothing controls the plate
-        if not (abs(determinant) > 1e-11):
+        if not (abs(determinant) > 2e-12):
             return Status.IMPOSSIBLE
         a1 = DEGREE * (axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -1127,7 +1127,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Status.UNREACHABLE
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length

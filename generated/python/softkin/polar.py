@@ -59,7 +59,7 @@ class Constants:
         self.lowest_r, self.highest_r, *_ = machine._window("r", (offset_r, 1e9 + offset_r))
         machine_scale = 1.0  # characteristic length of the machine
         machine_scale_times_plane = 1e-6 * machine_scale
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         self.offset_c, self.offset_r, self.machine_scale_times_plane = offset_c, offset_r, machine_scale_times_plane
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
@@ -75,7 +75,7 @@ class Polar(Mechanism):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Polar"
-    KEY = "polar 7ccdf12d32589107"
+    KEY = "polar 7f22839a27cccfa9"
     AXES = (
         Axis(name="C", kind="rotary", unit="deg", meaning="Arm about Z", multi_turn=True),
         Axis(name="R", kind="linear", unit="u", meaning="Radius, never negative", multi_turn=False),

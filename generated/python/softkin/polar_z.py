@@ -60,7 +60,7 @@ class Constants:
         self.lowest_r, self.highest_r, *_ = machine._window("r", (offset_r, 1e9 + offset_r))
         self.lowest_z, self.highest_z, *_ = machine._window("z")
         machine_scale = 1.0  # characteristic length of the machine
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         self.offset_c, self.offset_r, self.offset_z = offset_c, offset_r, offset_z
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
@@ -76,7 +76,7 @@ class PolarZ(Mechanism):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Polar_Z"
-    KEY = "polar_z 6e4d8915cd88d9f4"
+    KEY = "polar_z ac9610c84473bd12"
     AXES = (
         Axis(name="C", kind="rotary", unit="deg", meaning="Arm about Z", multi_turn=True),
         Axis(name="R", kind="linear", unit="u", meaning="Radius, never negative", multi_turn=False),

@@ -24,11 +24,11 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
-    inverse: 46 additions, 39 multiplications, 7 divisions, 4 square roots, 3 sines
-    inverse, all 4 branches: 161 additions, 118 multiplications, 20 divisions, 9 square roots, 10 sines
-    a branch at a singular pose, in addition: 25980 additions, 37535 multiplications, 2823 divisions, 850
-    square roots, 3953 sines
-    steps of damped least squares on the closure, from one start after the other: at most 282 passes, all of
+    inverse: 54 additions, 49 multiplications, 7 divisions, 4 square roots, 3 sines
+    inverse, all 4 branches: 191 additions, 156 multiplications, 20 divisions, 9 square roots, 10 sines
+    a branch at a singular pose, in addition: 28375 additions, 40998 multiplications, 3083 divisions, 928
+    square roots, 4317 sines
+    steps of damped least squares on the closure, from one start after the other: at most 308 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -73,21 +73,32 @@ class Constants:
         a2_times_shortest_link = 1e-9 * a2
         product_in_lost_digits_19 = 0.01 * machine_scale
         a2_minus_effective_q3_2 = a2 - effective_q3_2
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_rounding = 1e-12 * machine_scale
+        product_in_lost_digits_31 = 0.02 * a2 * effective_q3_2
+        product_in_within_31 = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
+        product_in_lost_digits_33 = 0.02 * a2 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         one_by_effective_q3_2 = 1.0 / effective_q3_2
         a2_plus_effective_q3_2 = a2 + effective_q3_2
         d4_by_effective_q3_2 = d4 / effective_q3_2
         a3_by_effective_q3_2 = a3 / effective_q3_2
+        a2_times_a3_times_2 = 2.0 * a2 * a3
+        a2_times_d4_times_2 = 2.0 * a2 * d4
+        twice_a2 = 2.0 * a2
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.offset_a1 = d1, a1, a2, d3, a3, d4, offset_a1
         self.offset_a2, self.offset_a3, self.machine_scale = offset_a2, offset_a3, machine_scale
         self.effective_q3_2, self.rounding_q1 = effective_q3_2, rounding_q1
         self.a2_times_shortest_link, self.product_in_lost_digits_19 = a2_times_shortest_link, product_in_lost_digits_19
         self.a2_minus_effective_q3_2 = a2_minus_effective_q3_2
+        self.machine_scale_times_rounding = machine_scale_times_rounding
+        self.product_in_lost_digits_31, self.product_in_within_31 = product_in_lost_digits_31, product_in_within_31
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.one_by_machine_scale, self.one_by_effective_q3_2 = one_by_machine_scale, one_by_effective_q3_2
-        self.a2_plus_effective_q3_2, self.d4_by_effective_q3_2 = a2_plus_effective_q3_2, d4_by_effective_q3_2
-        self.a3_by_effective_q3_2 = a3_by_effective_q3_2
+        self.product_in_lost_digits_33, self.one_by_machine_scale = product_in_lost_digits_33, one_by_machine_scale
+        self.one_by_effective_q3_2, self.a2_plus_effective_q3_2 = one_by_effective_q3_2, a2_plus_effective_q3_2
+        self.d4_by_effective_q3_2, self.a3_by_effective_q3_2 = d4_by_effective_q3_2, a3_by_effective_q3_2
+        self.a2_times_a3_times_2, self.a2_times_d4_times_2 = a2_times_a3_times_2, a2_times_d4_times_2
+        self.twice_a2 = twice_a2
 
 
 class PosRRR(OffsetKinematics):
@@ -99,7 +110,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr 38ea967b87ffff83"
+    KEY = "pos_rrr ffc48aa680eeba90"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -289,6 +300,9 @@ class PosRRR(OffsetKinematics):
         closed_arm_along_q2 = -closed_sin_swing_q3 * effective_q3_2
         closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
         closed_arm_across_q2 = a2 + closed_cos_swing_q3 * effective_q3_2
+        # rotation by q2 that takes the arm to its target point
+        closed_along_q2 = closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
+        closed_across_q2 = closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         closed_cos_q3 = a3_by_effective_q3_2 * closed_cos_swing_q3 - closed_sin_swing_q3 * d4_by_effective_q3_2
         closed_sin_q3 = a3_by_effective_q3_2 * closed_sin_swing_q3 + closed_cos_swing_q3 * d4_by_effective_q3_2
@@ -308,7 +322,7 @@ class PosRRR(OffsetKinematics):
             turn_of_attempt,
             turn_beside,
         ) = start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(282):
+        for _ in range(308):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -351,7 +365,9 @@ class PosRRR(OffsetKinematics):
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_arm or beside_elbow)
             from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
-            free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
+            free_angle = (
+                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
+            )
             free_angle_times_machine_scale = free_angle * machine_scale
             no_start_is_left = (
                 another
@@ -396,11 +412,11 @@ class PosRRR(OffsetKinematics):
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) and (attempt < 89) and (error_left < least_error_left)
+            is_nearer = (attempt > 1) and (attempt < 115) and (error_left < least_error_left)
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 89) else 0.0)
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
                 if next_attempt > 62
                 else -360.0 * (1 - next_attempt) / 61.0
             )
@@ -425,16 +441,17 @@ class PosRRR(OffsetKinematics):
             closed_reference_a2 = (
                 (tried_a2 if from_the_met_pose else 17.0 * free_turn + given_ref_a2) - offset_a2
             ) * DEGREE
-            # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
-            # reference
+            # at a singularity: the angle of the reference
             closed_direction_x_q2 = (
-                closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
-                if closed_reach > free_angle_times_machine_scale
+                closed_along_q2
+                if (closed_reach > free_angle_times_machine_scale)
+                and (closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2 > 0.0)
                 else cos(closed_reference_a2)
             )
             closed_direction_y_q2 = (
-                closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
-                if closed_reach > free_angle_times_machine_scale
+                closed_across_q2
+                if (closed_reach > free_angle_times_machine_scale)
+                and (closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2 > 0.0)
                 else sin(closed_reference_a2)
             )
             closed_axis_a2 = nearest_period(
@@ -443,7 +460,7 @@ class PosRRR(OffsetKinematics):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             least_error_left_now = error_left if is_nearer else least_error_left
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -468,15 +485,15 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
-            attempt = 90 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
+            attempt = 116 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 89)
+                if (next_attempt > 62) and (next_attempt < 115)
                 else turn_beside
             )
         chosen_a1 = tried_a1
@@ -580,6 +597,9 @@ class PosRRR(OffsetKinematics):
         closed_sin_q3 = (closed_cos_swing_q3 * tool_x + closed_sin_swing_q3 * tool_z) / closed_divisor_q3
         closed_arm_along_q2 = closed_cos_q3 * tool_x - closed_sin_q3 * tool_z
         closed_arm_across_q2 = a2 + closed_cos_q3 * tool_z + closed_sin_q3 * tool_x
+        # rotation by q2 that takes the arm to its target point
+        closed_along_q2 = closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
+        closed_across_q2 = closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
         closed_axis_a3 = offset_a3 + arctan2(closed_sin_q3, closed_cos_q3 + 0.0) * RADIAN
         if not -180.000000001 <= closed_axis_a3 - closed_near_a3 < 179.999999999:
             closed_axis_a3 = nearest_period(closed_axis_a3, closed_near_a3)
@@ -596,7 +616,7 @@ class PosRRR(OffsetKinematics):
             turn_of_attempt,
             turn_beside,
         ) = start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(282):
+        for _ in range(308):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -642,7 +662,9 @@ class PosRRR(OffsetKinematics):
             next_attempt = attempt + (1 if another else 0)
             mirrors = pose_is_close and (beside_arm or beside_elbow)
             from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
-            free_angle = 0.01 if from_the_met_pose or (next_attempt > 0) else 1e-11
+            free_angle = (
+                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
+            )
             free_angle_times_machine_scale = free_angle * machine_scale
             no_start_is_left = (
                 another
@@ -687,11 +709,11 @@ class PosRRR(OffsetKinematics):
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) and (attempt < 89) and (error_left < least_error_left)
+            is_nearer = (attempt > 1) and (attempt < 115) and (error_left < least_error_left)
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 89) else 0.0)
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
                 if next_attempt > 62
                 else -360.0 * (1 - next_attempt) / 61.0
             )
@@ -716,16 +738,17 @@ class PosRRR(OffsetKinematics):
             closed_reference_a2 = (
                 (tried_a2 if from_the_met_pose else 17.0 * free_turn + given_ref_a2) - offset_a2
             ) * DEGREE
-            # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
-            # reference
+            # at a singularity: the angle of the reference
             closed_direction_x_q2 = (
-                closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
-                if closed_reach > free_angle_times_machine_scale
+                closed_along_q2
+                if (closed_reach > free_angle_times_machine_scale)
+                and (closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2 > 0.0)
                 else cos(closed_reference_a2)
             )
             closed_direction_y_q2 = (
-                closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
-                if closed_reach > free_angle_times_machine_scale
+                closed_across_q2
+                if (closed_reach > free_angle_times_machine_scale)
+                and (closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2 > 0.0)
                 else sin(closed_reference_a2)
             )
             closed_axis_a2 = nearest_period(
@@ -734,7 +757,7 @@ class PosRRR(OffsetKinematics):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             least_error_left_now = error_left if is_nearer else least_error_left
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 89)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -759,15 +782,15 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 89) else 64) if another else passes_left_now
-            attempt = 90 if no_start_is_left else next_attempt
+            passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
+            attempt = 116 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 89)
+                if (next_attempt > 62) and (next_attempt < 115)
                 else turn_beside
             )
         chosen_a1 = tried_a1
@@ -855,11 +878,14 @@ class PosRRR(OffsetKinematics):
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
         a1, a2, a2_minus_effective_q3_2 = k.a1, k.a2, k.a2_minus_effective_q3_2
-        a2_plus_effective_q3_2, a3_by_effective_q3_2, d1 = k.a2_plus_effective_q3_2, k.a3_by_effective_q3_2, k.d1
-        d3, d4_by_effective_q3_2, effective_q3_2 = k.d3, k.d4_by_effective_q3_2, k.effective_q3_2
-        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        a2_plus_effective_q3_2, a2_times_a3_times_2 = k.a2_plus_effective_q3_2, k.a2_times_a3_times_2
+        a2_times_d4_times_2, a3_by_effective_q3_2, d1, d3 = k.a2_times_d4_times_2, k.a3_by_effective_q3_2, k.d1, k.d3
+        d4_by_effective_q3_2, effective_q3_2 = k.d4_by_effective_q3_2, k.effective_q3_2
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
+        product_in_lost_digits_19, product_in_lost_digits_31 = k.product_in_lost_digits_19, k.product_in_lost_digits_31
+        product_in_within_31, rounding_q1, single_a1 = k.product_in_within_31, k.rounding_q1, k.single_a1
         single_a2, single_a3 = k.single_a2, k.single_a3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
@@ -890,6 +916,28 @@ class PosRRR(OffsetKinematics):
         if not (lost_digits_19 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
             missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
+        arm_along_q2 = -effective_q3_2 * sin_swing_q3
+        arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
+        size_in_within_31 = abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_q3 = a3_by_effective_q3_2 * cos_swing_q3 - d4_by_effective_q3_2 * sin_swing_q3
+        sin_q3 = a3_by_effective_q3_2 * sin_swing_q3 + d4_by_effective_q3_2 * cos_swing_q3
+        within_31 = (reach > product_in_lost_digits_19) or (
+            size_in_within_31 - (machine_scale_times_rounding + reach) * product_in_within_31 <= 0.0
+        )
+        lost_digits_31 = (not within_31) and (
+            (abs(ahead_q1) <= product_in_lost_digits_19)
+            or (abs(a2_times_a3_times_2 * sin_q3 - a2_times_d4_times_2 * cos_q3) <= product_in_lost_digits_31)
+        )
+        # q2: out of reach
+        if not (
+            lost_digits_31
+            or (reach > product_in_lost_digits_19)
+            or (size_in_within_31 - product_in_within_31 * (product_in_within_31 + reach) <= 0.0)
+        ):
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1 = (ahead_q1 * x - d3 * y) / distance_q1_squared
@@ -903,15 +951,13 @@ class PosRRR(OffsetKinematics):
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
-        if reach > machine_scale_times_free_angle:
-            arm_along_q2 = -effective_q3_2 * sin_swing_q3
-            arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
-            direction_x_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
-            direction_y_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+        across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
+        # at a singularity: the angle of the reference
+        if reach > machine_scale_times_free_angle and across_q2 * across_q2 + along_q2 * along_q2 > 0.0:
+            direction_x_q2 = along_q2
+            direction_y_q2 = across_q2
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_q2 = cos(reference_a2)
@@ -921,16 +967,13 @@ class PosRRR(OffsetKinematics):
         axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = a3_by_effective_q3_2 * cos_swing_q3 - d4_by_effective_q3_2 * sin_swing_q3
-        sin_q3 = a3_by_effective_q3_2 * sin_swing_q3 + d4_by_effective_q3_2 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_19:
+        if lost_digits_19 or lost_digits_31:
             found = self._meet_pose(
                 (
                     ref_a1,
@@ -958,6 +1001,13 @@ class PosRRR(OffsetKinematics):
         if not (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
             missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        # q2: out of reach
+        if not (
+            met
+            or (reach > product_in_lost_digits_19)
+            or (size_in_within_31 - product_in_within_31 * (product_in_within_31 + reach) <= 0.0)
+        ):
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
@@ -1068,10 +1118,12 @@ class PosRRR(OffsetKinematics):
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
         a1, a2, a2_times_shortest_link, a3, d1, d3, d4 = k.a1, k.a2, k.a2_times_shortest_link, k.a3, k.d1, k.d3, k.d4
-        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+        machine_scale_times_free_angle = k.machine_scale_times_free_angle
+        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
-        single_a2, single_a3 = k.single_a2, k.single_a3
+        product_in_lost_digits_19, product_in_lost_digits_33 = k.product_in_lost_digits_19, k.product_in_lost_digits_33
+        product_in_within_31, rounding_q1, single_a1 = k.product_in_within_31, k.rounding_q1, k.single_a1
+        single_a2, single_a3, twice_a2 = k.single_a2, k.single_a3, k.twice_a2
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
@@ -1110,6 +1162,27 @@ class PosRRR(OffsetKinematics):
         if not (lost_digits_21 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
             missing = max(abs(a2 - effective_q3) - reach, -a2_minus_reach - effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_q3 = (tool_z * cos_swing_q3 - tool_x * sin_swing_q3) / effective_q3
+        sin_q3 = (tool_x * cos_swing_q3 + tool_z * sin_swing_q3) / effective_q3
+        arm_along_q2 = tool_x * cos_q3 - tool_z * sin_q3
+        arm_across_q2 = a2 + tool_z * cos_q3 + tool_x * sin_q3
+        size_in_within_33 = abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+        within_33 = (reach > product_in_lost_digits_19) or (
+            size_in_within_33 - (machine_scale_times_rounding + reach) * product_in_within_31 <= 0.0
+        )
+        lost_digits_33 = (not within_33) and (
+            (abs(ahead_q1) <= product_in_lost_digits_19) or (abs(arm_along_q2 * twice_a2) <= product_in_lost_digits_33)
+        )
+        # q2: out of reach
+        if not (
+            lost_digits_33
+            or (reach > product_in_lost_digits_19)
+            or (size_in_within_33 - product_in_within_31 * (product_in_within_31 + reach) <= 0.0)
+        ):
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1 = (ahead_q1 * x + tool_y * y) / distance_q1_squared
@@ -1123,18 +1196,13 @@ class PosRRR(OffsetKinematics):
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = (tool_z * cos_swing_q3 - tool_x * sin_swing_q3) / effective_q3
-        sin_q3 = (tool_x * cos_swing_q3 + tool_z * sin_swing_q3) / effective_q3
-        # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
-        if reach > machine_scale_times_free_angle:
-            arm_along_q2 = tool_x * cos_q3 - tool_z * sin_q3
-            arm_across_q2 = a2 + tool_z * cos_q3 + tool_x * sin_q3
-            direction_x_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
-            direction_y_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+        across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
+        # at a singularity: the angle of the reference
+        if reach > machine_scale_times_free_angle and across_q2 * across_q2 + along_q2 * along_q2 > 0.0:
+            direction_x_q2 = along_q2
+            direction_y_q2 = across_q2
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_q2 = cos(reference_a2)
@@ -1150,7 +1218,7 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_21:
+        if lost_digits_21 or lost_digits_33:
             found = self._meet_point(
                 (
                     point_x,
@@ -1181,6 +1249,13 @@ class PosRRR(OffsetKinematics):
         if not (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
             missing = max(abs(a2 - effective_q3) - reach, -a2_minus_reach - effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        # q2: out of reach
+        if not (
+            met
+            or (reach > product_in_lost_digits_19)
+            or (size_in_within_33 - product_in_within_31 * (product_in_within_31 + reach) <= 0.0)
+        ):
+            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 
     def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:

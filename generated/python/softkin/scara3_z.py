@@ -21,10 +21,10 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 19 additions, 12 multiplications, 0 divisions, 0 square roots, 7 sines
-    inverse: 39 additions, 30 multiplications, 5 divisions, 3 square roots, 3 sines
-    inverse, all 2 branches: 79 additions, 53 multiplications, 7 divisions, 4 square roots, 5 sines
+    inverse: 40 additions, 32 multiplications, 5 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches: 80 additions, 56 multiplications, 7 divisions, 4 square roots, 5 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2
+    a branch at a singular pose, in addition: 1 additions, 1 multiplications, 0 divisions, 0 square roots, 2
     sines
 
 As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset interface.
@@ -70,7 +70,7 @@ class Constants:
         # largest cosine within reach: 1, and the rounding of squared lengths
         bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (arm_length_1 * arm_length_2)
         arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
         quotient_in_cos_a2 = 0.25 / (arm_length_1 * arm_length_2)
         half_by_arm_length_1_by_arm_length_2 = 0.5 / (arm_length_1 * arm_length_2)
@@ -92,7 +92,7 @@ class Scara3Z(TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_Z"
-    KEY = "scara3_z 03e7863d0f3f2b78"
+    KEY = "scara3_z 96dfc64feed9a345"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -271,7 +271,7 @@ class Scara3Z(TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
@@ -288,17 +288,19 @@ class Scara3Z(TwistChoice):
         if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(arm_length_1_minus_arm_length_2) - reach, reach - arm_length_1_plus_arm_length_2)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
+        arm_along_a1 = arm_length_1 + arm_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
             (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow * half_by_arm_length_1_by_arm_length_2
         )
-        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
-        if reach > machine_scale_times_free_angle:
-            arm_along_a1 = arm_length_1 + arm_length_2 * cos_a2
-            arm_across_a1 = arm_length_2 * sin_a2
-            direction_x_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
-            direction_y_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
+        arm_across_a1 = arm_length_2 * sin_a2
+        # rotation by a1 that takes the arm to its target point
+        along_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
+        across_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
+        # at a singularity: the angle of the reference
+        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
+            direction_x_a1 = along_a1
+            direction_y_a1 = across_a1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(reference_a1)
@@ -396,7 +398,7 @@ class Scara3Z(TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Status.UNREACHABLE
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length

@@ -21,10 +21,10 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 19 additions, 12 multiplications, 0 divisions, 0 square roots, 7 sines
-    inverse: 39 additions, 30 multiplications, 5 divisions, 3 square roots, 3 sines
-    inverse, all 2 branches: 79 additions, 53 multiplications, 7 divisions, 4 square roots, 5 sines
+    inverse: 40 additions, 32 multiplications, 5 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches: 80 additions, 56 multiplications, 7 divisions, 4 square roots, 5 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2
+    a branch at a singular pose, in addition: 1 additions, 1 multiplications, 0 divisions, 0 square roots, 2
     sines
 
 The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
@@ -74,7 +74,7 @@ class Constants:
         # largest cosine within reach: 1, and the rounding of squared lengths
         bound_of_cos_a3 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (link_length_1 * link_length_2)
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         link_length_1_times_shortest_link = 1e-9 * link_length_1
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         quotient_in_cos_a3 = 0.25 / (link_length_1 * link_length_2)
@@ -101,7 +101,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCCC"
-    KEY = "scara4_zccc d3581be5b51c0233"
+    KEY = "scara4_zccc 2c80cf4879ff188d"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Column along Z, up", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
@@ -280,7 +280,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
@@ -298,19 +298,21 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         axis_a1 = offset_a1 + z
+        arm_along_a2 = link_length_1 + link_length_2 * cos_a3
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = (
             (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
-        if reach > machine_scale_times_free_angle:
-            arm_along_a2 = link_length_1 + link_length_2 * cos_a3
-            arm_across_a2 = link_length_2 * sin_a3
-            direction_x_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
-            direction_y_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
+        arm_across_a2 = link_length_2 * sin_a3
+        # rotation by a2 that takes the arm to its target point
+        along_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
+        across_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
+        # at a singularity: the angle of the reference
+        if reach > machine_scale_times_free_angle and across_a2 * across_a2 + along_a2 * along_a2 > 0.0:
+            direction_x_a2 = along_a2
+            direction_y_a2 = across_a2
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_a2 = cos(reference_a2)
@@ -407,7 +409,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Status.UNREACHABLE
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
@@ -464,13 +466,14 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (tool_x * cos_swing_a3 + tool_y * sin_swing_a3) / effective_a3
         sin_a3 = (tool_x * sin_swing_a3 - tool_y * cos_swing_a3) / effective_a3
-        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
-        if reach > machine_scale_times_free_angle:
-            arm_along_a2 = link_length_1 + tool_x * cos_a3 - tool_y * sin_a3
-            arm_across_a2 = tool_y * cos_a3 + tool_x * sin_a3
-            direction_x_a2 = arm_across_a2 * y + arm_along_a2 * x
-            direction_y_a2 = arm_along_a2 * y - arm_across_a2 * x
+        arm_along_a2 = link_length_1 + tool_x * cos_a3 - tool_y * sin_a3
+        arm_across_a2 = tool_y * cos_a3 + tool_x * sin_a3
+        along_a2 = arm_across_a2 * y + arm_along_a2 * x  # rotation by a2 that takes the arm to its target point
+        across_a2 = arm_along_a2 * y - arm_across_a2 * x
+        # at a singularity: the angle of the reference
+        if reach > machine_scale_times_free_angle and across_a2 * across_a2 + along_a2 * along_a2 > 0.0:
+            direction_x_a2 = along_a2
+            direction_y_a2 = across_a2
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_a2 = cos(reference_a2)

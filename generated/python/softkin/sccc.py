@@ -21,10 +21,10 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 21 additions, 15 multiplications, 0 divisions, 0 square roots, 7 sines
-    inverse: 49 additions, 43 multiplications, 5 divisions, 3 square roots, 3 sines
-    inverse, all 2 branches: 96 additions, 73 multiplications, 7 divisions, 4 square roots, 5 sines
+    inverse: 50 additions, 45 multiplications, 5 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches: 97 additions, 76 multiplications, 7 divisions, 4 square roots, 5 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 9 additions, 8 multiplications, 0 divisions, 0 square roots, 2
+    a branch at a singular pose, in addition: 10 additions, 9 multiplications, 0 divisions, 0 square roots, 2
     sines
 
 A belt arm with all motors in the base typically has coupling_12 = coupling_23 = -1.
@@ -79,7 +79,7 @@ class Constants:
         bound_of_cos_a2 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (link_length_1 * link_length_2)
         machine_scale_times_plane = 1e-6 * machine_scale
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-        machine_scale_times_free_angle = 1e-11 * machine_scale
+        machine_scale_times_free_angle = 2e-12 * machine_scale
         coupling_12_plus_coupling_13_plus_one = 1.0 + coupling_12 + coupling_13
         coupling_23_plus_one = 1.0 + coupling_23
         link_length_1_times_shortest_link = 1e-9 * link_length_1
@@ -116,7 +116,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_SCCC"
-    KEY = "sccc 89ee8f78ebf25e19"
+    KEY = "sccc 1341c7b6b1466e58"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Link 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Link 2 about Z", multi_turn=True),
@@ -316,7 +316,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -337,19 +337,21 @@ class SCCC(OffsetKinematics, TwistChoice):
         if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
+        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
             (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
-        if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2 * cos_a2
-            arm_across_a1 = link_length_2 * sin_a2
-            direction_x_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
-            direction_y_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
+        arm_across_a1 = link_length_2 * sin_a2
+        # rotation by a1 that takes the arm to its target point
+        along_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
+        across_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
+        # at a singularity: the angle of the reference
+        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
+            direction_x_a1 = along_a1
+            direction_y_a1 = across_a1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(reference_a1)
@@ -529,7 +531,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         heading_along = r11 + r22
         heading_across = r21 - r12
         # the tool points exactly the opposite way
-        if not ((abs(heading_across) > 1e-11) or (abs(heading_along) > 1e-11)):
+        if not ((abs(heading_across) > 2e-12) or (abs(heading_along) > 2e-12)):
             return Status.UNREACHABLE
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         cos_heading = heading_along / heading_length
@@ -593,13 +595,14 @@ class SCCC(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + tool_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - tool_y * cos_swing_a2) / effective_a2
-        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
-        if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + tool_x * cos_a2 - tool_y * sin_a2
-            arm_across_a1 = tool_y * cos_a2 + tool_x * sin_a2
-            direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
-            direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
+        arm_along_a1 = link_length_1 + tool_x * cos_a2 - tool_y * sin_a2
+        arm_across_a1 = tool_y * cos_a2 + tool_x * sin_a2
+        along_a1 = arm_across_a1 * y + arm_along_a1 * x  # rotation by a1 that takes the arm to its target point
+        across_a1 = arm_along_a1 * y - arm_across_a1 * x
+        # at a singularity: the angle of the reference
+        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
+            direction_x_a1 = along_a1
+            direction_y_a1 = across_a1
         else:
             direction_x_a1 = cos(reference_a1)
             direction_y_a1 = sin(reference_a1)

@@ -82,7 +82,7 @@ class TableTableAC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_TableTable_AC"
-    KEY = "tabletable_ac adb92e54c80bfca3"
+    KEY = "tabletable_ac 6909ab958c9b1d87"
     AXES = (
         Axis(
             name="X",
@@ -297,7 +297,7 @@ class TableTableAC(Mechanism):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
         # at a singularity: the angle of the reference
-        if radius_c > 1e-11:
+        if radius_c > 2e-12:
             along_c = sigma_tilt * r23  # polar coordinates: angle c from the r23 and r13 equations
             cos_c = along_c / radius_c
             across_c = sigma_tilt * r13

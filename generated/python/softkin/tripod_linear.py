@@ -76,10 +76,10 @@ class Constants:
         assembly_sign = -1.0 if tcp_below else 1.0
         sin_max_angle_ball_joint = sin(DEGREE * max_angle_ball_joint)
         root_of_3 = sqrt(3.0)
-        product_in_normal_divisor = 1e-22 * arm_length * arm_length * arm_length * arm_length
+        product_in_normal_divisor = 4e-24 * arm_length * arm_length * arm_length * arm_length
         arm_length_squared = arm_length * arm_length
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
-        product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        product_in_determinant_divisor = 2e-12 * machine_scale * machine_scale * machine_scale
         product_in_pivot_2_y = 0.5 * root_of_3 * sin_rail_angle
         sum_in_pivot_2_y = 0.5 * inner_radius * root_of_3 - 0.5 * outer_radius * root_of_3
         inner_radius_minus_outer_radius = inner_radius - outer_radius
@@ -136,7 +136,7 @@ class TripodLinear(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Linear"
-    KEY = "tripod_linear 46d2e04366e77b85"
+    KEY = "tripod_linear dddf88ea5aa0e6dd"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1; positive goes down its rail", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2; positive goes down its rail", multi_turn=False),

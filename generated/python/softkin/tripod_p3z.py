@@ -161,14 +161,14 @@ class Constants:
             else (-1.0 if tcp_above else 1.0)
         )
         normal_z_squared = normal_z * normal_z
-        product_in_normal_divisor = 1e-22 * arm_length * arm_length * arm_length * arm_length
+        product_in_normal_divisor = 4e-24 * arm_length * arm_length * arm_length * arm_length
         centre_1_to_3_y_times_normal_z = centre_1_to_3_y * normal_z
         centre_1_to_2_y_times_normal_z = centre_1_to_2_y * normal_z
         centre_1_to_3_x_times_normal_z = centre_1_to_3_x * normal_z
         centre_1_to_2_x_times_normal_z = centre_1_to_2_x * normal_z
         arm_length_squared = arm_length * arm_length
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
-        product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        product_in_determinant_divisor = 2e-12 * machine_scale * machine_scale * machine_scale
         sum_in_projection_2 = 0.5 * centre_1_to_2_x * centre_1_to_2_x + 0.5 * centre_1_to_2_y * centre_1_to_2_y
         sum_in_projection_3 = 0.5 * centre_1_to_3_x * centre_1_to_3_x + 0.5 * centre_1_to_3_y * centre_1_to_3_y
         one_by_arm_length = 1.0 / arm_length
@@ -215,7 +215,7 @@ class TripodP3Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_P3Z"
-    KEY = "tripod_p3z cfa8347cda1722dd"
+    KEY = "tripod_p3z 16cef44b1a3e8642"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along Z, up", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along Z, up", multi_turn=False),

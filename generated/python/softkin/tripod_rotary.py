@@ -93,14 +93,14 @@ class Constants:
         assembly_sign = 1.0 if tcp_above else -1.0
         sin_max_angle_ball_joint = sin(DEGREE * max_angle_ball_joint)
         root_of_3 = sqrt(3.0)
-        product_in_normal_divisor = 1e-22 * arm_length_2 * arm_length_2 * arm_length_2 * arm_length_2
+        product_in_normal_divisor = 4e-24 * arm_length_2 * arm_length_2 * arm_length_2 * arm_length_2
         arm_length_2_squared = arm_length_2 * arm_length_2
         arm_length_2_squared_times_rounding = 1e-12 * arm_length_2 * arm_length_2
         arm_length_1_times_shortest_link = 1e-9 * arm_length_1
         arm_1_radius_minus_fixed_length_1 = arm_1_radius - fixed_length_1
         product_in_scaled_cosine_a1 = 2.0 * arm_1_radius_minus_fixed_length_1 * arm_length_1
         product_in_divisor_a2 = 5e-10 * arm_length_1
-        product_in_determinant_divisor = 1e-11 * machine_scale * machine_scale * machine_scale
+        product_in_determinant_divisor = 2e-12 * machine_scale * machine_scale * machine_scale
         arm_length_1_times_root_of_3_times_half = 0.5 * arm_length_1 * root_of_3
         sum_in_pivot_2_y = 0.5 * fixed_length_1 * root_of_3 - 0.5 * arm_1_radius * root_of_3
         half_arm_length_1 = 0.5 * arm_length_1
@@ -144,7 +144,7 @@ class TripodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
-    KEY = "tripod_rotary 0b83618ba0982885"
+    KEY = "tripod_rotary 402d5839eb4e6bd1"
     AXES = (
         Axis(
             name="A1",

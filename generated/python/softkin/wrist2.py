@@ -89,7 +89,7 @@ class Wrist2(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist2"
-    KEY = "wrist2 c8edbff7c6f33714"
+    KEY = "wrist2 10b9cd4ebc03c431"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Yaw about Z", multi_turn=True),
         Axis(
@@ -264,7 +264,7 @@ class Wrist2(OrientationKinematics):
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
         # polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
         # reference
-        if radius_a > 1e-11:
+        if radius_a > 2e-12:
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a
         else:

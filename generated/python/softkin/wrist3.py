@@ -75,7 +75,7 @@ class Wrist3(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist3"
-    KEY = "wrist3 2c5bdd974d8824e5"
+    KEY = "wrist3 a78696a8aebed404"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Turn about Z", multi_turn=True),
         Axis(name="B", kind="rotary", unit="deg", meaning="Turn about the turned -Y", multi_turn=True),
@@ -256,7 +256,7 @@ class Wrist3(OrientationKinematics):
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
         # polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
         # reference
-        if radius_c > 1e-11:
+        if radius_c > 2e-12:
             direction_x_c = sigma_hand * r31
             direction_y_c = -sigma_hand * r32
         else:

@@ -1,12 +1,10 @@
 /** Configuration bytes: the branches that they leave open, and the bytes of a pose. */
 
-import { EDGE, FREE_ANGLE, LARGEST } from "./constants.js";
+import { COINCIDENT, EDGE, LARGEST } from "./constants.js";
 import { nearestPeriod } from "./numbers.js";
 
 /** The byte of an open branch; 1 and 2 are its two branches, 3 says that both coincide, and is read as open. */
 export const AUTOMATIC = 0;
-/** Branches coincide where their margin is at most this in size. */
-export const COINCIDENT = FREE_ANGLE;
 
 /**
  * The slots that branch bytes leave open, the first byte varies fastest.

@@ -15,9 +15,9 @@
  */
 
 import {
-  AUTOMATIC, COINCIDENT, branchByte, slotsOf, squaredDistance, turnInside, turnOf,
+  AUTOMATIC, branchByte, slotsOf, squaredDistance, turnInside, turnOf,
 } from "./configuration.js";
-import { MEANINGS, Status, TIE } from "./constants.js";
+import { COINCIDENT, MEANINGS, Status, TIE } from "./constants.js";
 import { bytesOf, numbersOf, parametersOf, poseOf, refuseParameters } from "./input.js";
 import { constantsOf } from "./limits.js";
 import { isReasonable } from "./numbers.js";

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 430
+    VALUES = 439
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -136,7 +136,7 @@ class ArrayPrograms(Programs):
         ) = initial(
             start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
         )
-        for _ in range(282):
+        for _ in range(308):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -260,7 +260,9 @@ class ArrayPrograms(Programs):
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_wrist)
             from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
-            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
+            free_angle = select(
+                from_the_met_pose, 0.01, select(next_attempt > 0, select(next_attempt > 62, 1e-5, 0.01), 2e-12)
+            )
             product_in_damping = 0.001 * error
             damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
             rate_1_1 = -k.one_by_machine_scale * y
@@ -409,12 +411,12 @@ class ArrayPrograms(Programs):
                 * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) & (attempt < 89) & (error_left < least_error_left)
+            is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
                 next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 89), turn_beside, 0.0),
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
                 -360.0 * (1 - next_attempt) / 61.0,
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
@@ -488,16 +490,24 @@ class ArrayPrograms(Programs):
             closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
             closed_sin_q3 = root(closed_sine_square_q3) * given_sigma_elbow * k.quotient_in_closed_sin_q3
             closed_arm_across_q2 = k.a3 * closed_sin_q3
-            # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
-            # reference
+            # rotation by q2 that takes the arm to its target point
+            closed_along_q2 = (
+                closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
+            )
+            closed_across_q2 = (
+                closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
+            )
+            # at a singularity: the angle of the reference
             closed_direction_x_q2 = select(
-                closed_reach > free_angle_times_machine_scale,
-                closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1,
+                (closed_reach > free_angle_times_machine_scale)
+                & (closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2 > 0.0),
+                closed_along_q2,
                 cos(closed_reference_a2),
             )
             closed_direction_y_q2 = select(
-                closed_reach > free_angle_times_machine_scale,
-                closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1,
+                (closed_reach > free_angle_times_machine_scale)
+                & (closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2 > 0.0),
+                closed_across_q2,
                 sin(closed_reference_a2),
             )
             closed_angle_q2 = atan2(closed_direction_y_q2, closed_direction_x_q2)
@@ -516,7 +526,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             least_error_left_now = select(is_nearer, error_left, least_error_left)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
             if settled(done, status):
                 break
             (
@@ -593,14 +603,14 @@ class ArrayPrograms(Programs):
                             tried_a6 + shared_quotient * step_a6,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
-                    select(no_start_is_left, 90, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
+                    select(no_start_is_left, 116, next_attempt),
                     select(another | mirrors, 9.0, error),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 89),
+                        (next_attempt > 62) & (next_attempt < 115),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),
@@ -743,7 +753,7 @@ class ArrayPrograms(Programs):
         across_q6 = sigma_wrist * r22_from_q1
         sin_q6 = across_q6 / radius_q6
         # at a singularity: the angle of the reference
-        cos_q6, sin_q6 = elsewhere(radius_q6 > 1e-11, (cos_q6, sin_q6), elsewhere_cos_q6, (ref_a6,))
+        cos_q6, sin_q6 = elsewhere(radius_q6 > 2e-12, (cos_q6, sin_q6), elsewhere_cos_q6, (ref_a6,))
         r31_from_q1_before_q6 = r31 * cos_q6 - r32 * sin_q6
         r31_from_q1_before_q56 = r31_from_q1_before_q6 * cos_q5 - q6_radius_of_q5 * r33
         # coordinate of the point that the remaining links must reach
@@ -764,11 +774,26 @@ class ArrayPrograms(Programs):
             | (absolute(radius_q6) <= 0.01)
             | (absolute(ahead_q1) <= k.product_in_lost_digits_38)
         )
+        arm_along_q2 = k.a2 + k.a3 * cos_q3
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
+        sin_q3 = root(sine_square_q3) * sigma_elbow * k.quotient_in_closed_sin_q3
+        arm_across_q2 = k.a3 * sin_q3
+        size_in_within_48 = absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+        within_48 = (reach > k.product_in_lost_digits_38) | (
+            size_in_within_48 - (k.machine_scale_times_rounding + reach) * k.product_in_within_48 <= 0.0
+        )
+        lost_digits_48 = (opposite(within_48)) & (
+            (absolute(q6_radius_of_q5) <= 0.01)
+            | (absolute(radius_q6) <= 0.01)
+            | (absolute(sin_q3) <= 0.01)
+            | (absolute(ahead_q1) <= k.product_in_lost_digits_38)
+        )
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_q3 = root(sine_square_q3) * sigma_elbow * k.quotient_in_closed_sin_q3
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+        across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
@@ -776,15 +801,10 @@ class ArrayPrograms(Programs):
             direction_y_q2 = sin(reference_a2)
             return (direction_x_q2, direction_y_q2)
 
-        arm_along_q2 = k.a2 + k.a3 * cos_q3
-        arm_across_q2 = k.a3 * sin_q3
-        direction_x_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
-        direction_y_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
-        # rotation by q2 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
+        # at a singularity: the angle of the reference
         direction_x_q2, direction_y_q2 = elsewhere(
-            reach > k.machine_scale_times_free_angle,
-            (direction_x_q2, direction_y_q2),
+            (reach > k.machine_scale_times_free_angle) & (across_q2 * across_q2 + along_q2 * along_q2 > 0.0),
+            (along_q2, across_q2),
             elsewhere_direction_x_q2,
             (ref_a2,),
         )
@@ -811,9 +831,17 @@ class ArrayPrograms(Programs):
         require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
         require(status, lost_digits_38 | (absolute(cos_q3) <= k.bound_of_cos_q3), Status.UNREACHABLE)
+        # q2: out of reach
+        require(
+            status,
+            lost_digits_48
+            | (reach > k.product_in_lost_digits_38)
+            | (size_in_within_48 - k.product_in_within_48 * (k.product_in_within_48 + reach) <= 0.0),
+            Status.UNREACHABLE,
+        )
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
-            lost_digits_38,
+            lost_digits_38 | lost_digits_48,
             self.meet_pose,
             (
                 ref_a1,
@@ -856,6 +884,14 @@ class ArrayPrograms(Programs):
         met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = found
         # q3: out of reach
         require(status, met | (absolute(cos_q3) <= k.bound_of_cos_q3), Status.UNREACHABLE)
+        # q2: out of reach
+        require(
+            status,
+            met
+            | (reach > k.product_in_lost_digits_38)
+            | (size_in_within_48 - k.product_in_within_48 * (k.product_in_within_48 + reach) <= 0.0),
+            Status.UNREACHABLE,
+        )
         return (
             select(met, found_a1, axis_a1),
             select(met, found_a2, axis_a2),

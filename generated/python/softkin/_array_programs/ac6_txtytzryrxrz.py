@@ -103,7 +103,7 @@ class ArrayPrograms(Programs):
         # polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
         # reference
         direction_x_a4, direction_y_a4 = elsewhere(
-            radius_a4 > 1e-11, (direction_x_a4, direction_y_a4), elsewhere_direction_x_a4, (ref_a4,)
+            radius_a4 > 2e-12, (direction_x_a4, direction_y_a4), elsewhere_direction_x_a4, (ref_a4,)
         )
         open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 460
+    VALUES = 468
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -133,18 +133,18 @@ class ArrayPrograms(Programs):
         # sum of both, twice the scale: cosine² + sine² is then 1
         closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
         closed_divisor_of_cos_q3 = select(closed_sum_q3 > 0.0, closed_sum_q3, 1.0)
+        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
         # sine squared, times the squared scale
         closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
         closed_sin_swing_q3 = -2.0 * root(closed_sine_square_q3) * given_sigma_elbow / closed_divisor_of_cos_q3
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        closed_cos_q3 = k.a3_by_effective_q3 * closed_cos_swing_q3 - closed_sin_swing_q3 * k.d4_by_effective_q3
+        closed_sin_q3 = k.a3_by_effective_q3 * closed_sin_swing_q3 + closed_cos_swing_q3 * k.d4_by_effective_q3
         closed_arm_along_q2 = -closed_sin_swing_q3 * k.effective_q3
-        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
         closed_arm_across_q2 = k.a2 + closed_cos_swing_q3 * k.effective_q3
         # rotation by q2 that takes the arm to its target point
         closed_along_q2 = closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
         closed_across_q2 = closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        closed_cos_q3 = k.a3_by_effective_q3 * closed_cos_swing_q3 - closed_sin_swing_q3 * k.d4_by_effective_q3
-        closed_sin_q3 = k.a3_by_effective_q3 * closed_sin_swing_q3 + closed_cos_swing_q3 * k.d4_by_effective_q3
         closed_axis_a3 = nearest_period(k.offset_a3 + degrees(closed_sin_q3, closed_cos_q3), closed_near_a3)
         sum_in_closed_length_q2 = closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2
         # steps of damped least squares on the closure, from one start after the other
@@ -165,7 +165,7 @@ class ArrayPrograms(Programs):
         ) = initial(
             start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
         )
-        for _ in range(282):
+        for _ in range(308):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -292,7 +292,9 @@ class ArrayPrograms(Programs):
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_arm | beside_elbow | beside_hand)
             from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
-            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
+            free_angle = select(
+                from_the_met_pose, 0.01, select(next_attempt > 0, select(next_attempt > 62, 1e-5, 0.01), 2e-12)
+            )
             product_in_damping = 0.001 * error
             damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
             rate_1_1 = -k.one_by_machine_scale * y
@@ -474,12 +476,12 @@ class ArrayPrograms(Programs):
                 * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) & (attempt < 89) & (error_left < least_error_left)
+            is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
                 next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 89), turn_beside, 0.0),
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
                 -360.0 * (1 - next_attempt) / 61.0,
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
@@ -509,12 +511,12 @@ class ArrayPrograms(Programs):
             )
             # at a singularity: the angle of the reference
             closed_cos_q2 = select(
-                closed_reach > free_angle_times_machine_scale,
+                (closed_reach > free_angle_times_machine_scale) & (sum_in_closed_length_q2 > 0.0),
                 closed_along_q2 / closed_length_q2,
                 cos(closed_reference_a2),
             )
             closed_sin_q2 = select(
-                closed_reach > free_angle_times_machine_scale,
+                (closed_reach > free_angle_times_machine_scale) & (sum_in_closed_length_q2 > 0.0),
                 closed_across_q2 / closed_length_q2,
                 sin(closed_reference_a2),
             )
@@ -573,7 +575,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             least_error_left_now = select(is_nearer, error_left, least_error_left)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
             if settled(done, status):
                 break
             (
@@ -650,14 +652,14 @@ class ArrayPrograms(Programs):
                         closed_axis_a6,
                         select(mirrors, tried_a6, tried_a6 + shared_quotient * step_a6),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
-                    select(no_start_is_left, 90, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
+                    select(no_start_is_left, 116, next_attempt),
                     select(another | mirrors, 9.0, error),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 89),
+                        (next_attempt > 62) & (next_attempt < 115),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),
@@ -787,6 +789,21 @@ class ArrayPrograms(Programs):
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
         within_23 = absolute(cos_swing_q3) <= 1.0
         lost_digits_23 = (opposite(within_23)) & (absolute(ahead_q1) <= k.product_in_lost_digits_23)
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0 * root(sine_square_q3) * sigma_elbow / divisor_of_cos_q3
+        arm_along_q2 = -k.effective_q3 * sin_swing_q3
+        arm_across_q2 = k.a2 + k.effective_q3 * cos_swing_q3
+        size_in_within_35 = absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_q3 = k.a3_by_effective_q3 * cos_swing_q3 - k.d4_by_effective_q3 * sin_swing_q3
+        sin_q3 = k.a3_by_effective_q3 * sin_swing_q3 + k.d4_by_effective_q3 * cos_swing_q3
+        within_35 = (reach > k.product_in_lost_digits_23) | (
+            size_in_within_35 - (k.machine_scale_times_rounding + reach) * k.product_in_within_35 <= 0.0
+        )
+        lost_digits_35 = (opposite(within_35)) & (
+            (absolute(ahead_q1) <= k.product_in_lost_digits_23)
+            | (absolute(k.a2_times_a3_times_2 * sin_q3 - k.a2_times_d4_times_2 * cos_q3) <= k.product_in_lost_digits_35)
+        )
 
         def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
@@ -803,8 +820,10 @@ class ArrayPrograms(Programs):
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = -2.0 * root(sine_square_q3) * sigma_elbow / divisor_of_cos_q3
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+        across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
+        across_q2_squared_plus_along_q2_squared = across_q2 * across_q2 + along_q2 * along_q2
 
         def elsewhere_cos_q2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
@@ -812,27 +831,19 @@ class ArrayPrograms(Programs):
             sin_q2 = sin(reference_a2)
             return (cos_q2, sin_q2)
 
-        arm_along_q2 = -k.effective_q3 * sin_swing_q3
-        arm_across_q2 = k.a2 + k.effective_q3 * cos_swing_q3
-        # rotation by q2 that takes the arm to its target point
-        along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
-        across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
-        across_q2_squared_plus_along_q2_squared = across_q2 * across_q2 + along_q2 * along_q2
-        length_q2 = select(
-            across_q2_squared_plus_along_q2_squared > 0.0, root(across_q2_squared_plus_along_q2_squared), 1.0
-        )
+        length_q2 = root(across_q2_squared_plus_along_q2_squared)
         cos_q2 = along_q2 / length_q2
         sin_q2 = across_q2 / length_q2
         # at a singularity: the angle of the reference
         cos_q2, sin_q2 = elsewhere(
-            reach > k.machine_scale_times_free_angle, (cos_q2, sin_q2), elsewhere_cos_q2, (ref_a2,)
+            (across_q2_squared_plus_along_q2_squared > 0.0) & (reach > k.machine_scale_times_free_angle),
+            (cos_q2, sin_q2),
+            elsewhere_cos_q2,
+            (ref_a2,),
         )
         open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(k.offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: whole turns added
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = k.a3_by_effective_q3 * cos_swing_q3 - k.d4_by_effective_q3 * sin_swing_q3
-        sin_q3 = k.a3_by_effective_q3 * sin_swing_q3 + k.d4_by_effective_q3 * cos_swing_q3
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(k.offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: whole turns added
@@ -855,7 +866,7 @@ class ArrayPrograms(Programs):
         # polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
         # reference
         direction_x_q4, direction_y_q4 = elsewhere(
-            radius_q4 > 1e-11, (direction_x_q4, direction_y_q4), elsewhere_direction_x_q4, (ref_a4,)
+            radius_q4 > 2e-12, (direction_x_q4, direction_y_q4), elsewhere_direction_x_q4, (ref_a4,)
         )
         open_a4 = select(k.single_a4, k.mid_a4, ref_a4)  # A4: without a commanded turn, the value nearest to this
         near_a4 = select(turn_a4 != 0, 360.0 * select(turn_a4 > 0, turn_a4 - 1, turn_a4), open_a4)
@@ -884,9 +895,17 @@ class ArrayPrograms(Programs):
         require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
         require(status, lost_digits_23 | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
+        # q2: out of reach
+        require(
+            status,
+            lost_digits_35
+            | (reach > k.product_in_lost_digits_23)
+            | (size_in_within_35 - k.product_in_within_35 * (k.product_in_within_35 + reach) <= 0.0),
+            Status.UNREACHABLE,
+        )
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
-            lost_digits_23,
+            lost_digits_23 | lost_digits_35,
             self.meet_pose,
             (
                 ref_a1,
@@ -929,6 +948,14 @@ class ArrayPrograms(Programs):
         met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = found
         # q3: out of reach
         require(status, met | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
+        # q2: out of reach
+        require(
+            status,
+            met
+            | (reach > k.product_in_lost_digits_23)
+            | (size_in_within_35 - k.product_in_within_35 * (k.product_in_within_35 + reach) <= 0.0),
+            Status.UNREACHABLE,
+        )
         return (
             select(met, found_a1, axis_a1),
             select(met, found_a2, axis_a2),

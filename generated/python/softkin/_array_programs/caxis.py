@@ -64,7 +64,7 @@ class ArrayPrograms(OrientationPrograms):
         near_c = select(turn_c != 0, 360.0 * select(turn_c > 0, turn_c - 1, turn_c), open_c)
         axis_c = nearest_period(k.offset_c + degrees(heading_across, heading_along), near_c)  # C: whole turns added
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         return (axis_c,), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -102,12 +102,12 @@ class ArrayPrograms(OrientationPrograms):
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(
-            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+            (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), heading_length, 1.0
         )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status
 
     def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:

@@ -235,7 +235,7 @@ class ArrayPrograms(Programs):
         # A4: whole turns added
         axis_a4 = nearest_period(k.offset_a4 + degrees(heading_across, heading_along), near_a4)
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         # a1: its effective length is too short
         # a1: out of reach
         require(
@@ -516,10 +516,10 @@ class ArrayPrograms(Programs):
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(
-            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+            (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), heading_length, 1.0
         )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

@@ -75,7 +75,7 @@ class ArrayPrograms(Programs):
         near_r = select(turn_r != 0, 360.0 * select(turn_r > 0, turn_r - 1, turn_r), open_r)
         axis_r = nearest_period(k.offset_r + degrees(direction_y_r, heading_along), near_r)  # R: whole turns added
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
         return (axis_x, axis_y, axis_r), status
@@ -127,10 +127,10 @@ class ArrayPrograms(Programs):
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(
-            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+            (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), heading_length, 1.0
         )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

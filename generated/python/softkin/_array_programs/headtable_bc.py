@@ -89,7 +89,7 @@ class ArrayPrograms(Programs):
         across_c = -sigma_tilt * r23
         sin_c = across_c / radius_c
         # at a singularity: the angle of the reference
-        cos_c, sin_c = elsewhere(radius_c > 1e-11, (cos_c, sin_c), elsewhere_cos_c, (ref_c,))
+        cos_c, sin_c = elsewhere(radius_c > 2e-12, (cos_c, sin_c), elsewhere_cos_c, (ref_c,))
         c_radius_of_b = sigma_tilt * radius_c
         sum_in_joint_x = c_radius_of_b * k.pivot_length - k.head_offset * r33
         # joint_x and joint_y from the x and y equations, linear in both

@@ -236,7 +236,7 @@ class ArrayPrograms(StartedPrograms):
             )
             spin_x = k.one_by_platform_radius * swing_x
             spin_y = k.one_by_platform_radius * swing_y
-            cos_pitch_divisor = select(absolute(cos_pitch) > 1e-11, cos_pitch, 1.0)
+            cos_pitch_divisor = select(absolute(cos_pitch) > 2e-12, cos_pitch, 1.0)
             roll_rate = (spin_x * cos_yaw + spin_y * sin_yaw) / cos_pitch_divisor
             pitch_rate = spin_y * cos_yaw - spin_x * sin_yaw
             spin_z = k.one_by_platform_radius * swing_z
@@ -965,7 +965,7 @@ class ArrayPrograms(StartedPrograms):
             ),
         )
         # nothing controls the plate
-        require(status, absolute(determinant) > 1e-11, Status.IMPOSSIBLE)
+        require(status, absolute(determinant) > 2e-12, Status.IMPOSSIBLE)
         return (
             (column_1_vx, column_2_vx, column_3_vx, column_4_vx, column_5_vx, column_6_vx),
             (column_1_vy, column_2_vy, column_3_vy, column_4_vy, column_5_vy, column_6_vy),

@@ -96,7 +96,7 @@ class ArrayPrograms(Programs):
         # polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
         # reference
         direction_x_a, direction_y_a = elsewhere(
-            radius_a > 1e-11, (direction_x_a, direction_y_a), elsewhere_direction_x_a, (ref_a,)
+            radius_a > 2e-12, (direction_x_a, direction_y_a), elsewhere_direction_x_a, (ref_a,)
         )
         open_a = select(k.single_a, k.mid_a, ref_a)  # A: without a commanded turn, the value nearest to this
         near_a = select(turn_a != 0, 360.0 * select(turn_a > 0, turn_a - 1, turn_a), open_a)

@@ -37,7 +37,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 255
+    VALUES = 259
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def meet_point(self, given: Values, status: Codes) -> Values:
@@ -97,7 +97,7 @@ class ArrayPrograms(Programs):
             turn_of_attempt,
             turn_beside,
         ) = initial(start_a1, start_a2, start_a3, start_a4, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
-        for _ in range(282):
+        for _ in range(308):
             a1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -146,7 +146,9 @@ class ArrayPrograms(Programs):
             next_attempt = attempt + select(another, 1, 0)
             mirrors = pose_is_close & (beside_elbow | beside_shoulder)
             from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
-            free_angle = select(from_the_met_pose | (next_attempt > 0), 0.01, 1e-11)
+            free_angle = select(
+                from_the_met_pose, 0.01, select(next_attempt > 0, select(next_attempt > 62, 1e-5, 0.01), 2e-12)
+            )
             product_in_damping = 0.001 * error
             damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
             rate_1_1 = -k.one_by_machine_scale * y
@@ -189,12 +191,12 @@ class ArrayPrograms(Programs):
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
-            is_nearer = (attempt > 1) & (attempt < 89) & (error_left < least_error_left)
+            is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
                 next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 89), turn_beside, 0.0),
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
                 -360.0 * (1 - next_attempt) / 61.0,
             )
             closed_reference_a4 = (
@@ -261,16 +263,24 @@ class ArrayPrograms(Programs):
                 closed_one_plus_cos_a3_from_a2 - closed_one_less_cos_a3_from_a2
             ) * k.quotient_in_closed_cos_swing_a3_from_a2
             closed_arm_across_a2 = k.link_length_1 - closed_cos_swing_a3_from_a2 * k.link_length_2
-            # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
-            # reference
+            # rotation by a2 that takes the arm to its target point
+            closed_along_a2 = (
+                closed_arm_across_a2 * closed_wrist_z_from_a1 + closed_arm_along_a2 * closed_wrist_x_from_a1
+            )
+            closed_across_a2 = (
+                closed_arm_across_a2 * closed_wrist_x_from_a1 - closed_arm_along_a2 * closed_wrist_z_from_a1
+            )
+            # at a singularity: the angle of the reference
             closed_direction_x_a2 = select(
-                closed_reach > free_angle_times_machine_scale,
-                closed_arm_across_a2 * closed_wrist_z_from_a1 + closed_arm_along_a2 * closed_wrist_x_from_a1,
+                (closed_reach > free_angle_times_machine_scale)
+                & (closed_across_a2 * closed_across_a2 + closed_along_a2 * closed_along_a2 > 0.0),
+                closed_along_a2,
                 cos(closed_reference_a2),
             )
             closed_direction_y_a2 = select(
-                closed_reach > free_angle_times_machine_scale,
-                closed_arm_across_a2 * closed_wrist_x_from_a1 - closed_arm_along_a2 * closed_wrist_z_from_a1,
+                (closed_reach > free_angle_times_machine_scale)
+                & (closed_across_a2 * closed_across_a2 + closed_along_a2 * closed_along_a2 > 0.0),
+                closed_across_a2,
                 sin(closed_reference_a2),
             )
             closed_angle_a2 = atan2(closed_direction_y_a2, closed_direction_x_a2)
@@ -283,7 +293,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             least_error_left_now = select(is_nearer, error_left, least_error_left)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 89))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
             if settled(done, status):
                 break
             (
@@ -334,14 +344,14 @@ class ArrayPrograms(Programs):
                         select(mirrors, tried_a3, tried_a3 + shared_quotient * step_a3),
                     ),
                     select(another | from_the_met_pose, given_ref_a4, tried_a4),
-                    select(another, select((next_attempt > 1) & (next_attempt < 89), 0, 64), passes_left_now),
-                    select(no_start_is_left, 90, next_attempt),
+                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
+                    select(no_start_is_left, 116, next_attempt),
                     select(another | mirrors, 9.0, error),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 89),
+                        (next_attempt > 62) & (next_attempt < 115),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),
@@ -454,10 +464,15 @@ class ArrayPrograms(Programs):
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + angle_a1 / DEGREE, near_a1)  # A1: whole turns added
+        arm_along_a2 = k.link_length_1 - k.link_length_2 * cos_swing_a3_from_a2
         # sine squared, times the squared scale
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3_from_a2 = root(sine_square_a3_from_a2) * sigma_elbow * k.half_by_link_length_1_by_link_length_2
+        arm_across_a2 = k.link_length_2 * cos_a3_from_a2
+        # rotation by a2 that takes the arm to its target point
+        along_a2 = arm_across_a2 * wrist_a1_radius + arm_along_a2 * wrist_z
+        across_a2 = arm_along_a2 * wrist_a1_radius - arm_across_a2 * wrist_z
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
@@ -465,15 +480,10 @@ class ArrayPrograms(Programs):
             direction_y_a2 = sin(reference_a2)
             return (direction_x_a2, direction_y_a2)
 
-        arm_along_a2 = k.link_length_1 - k.link_length_2 * cos_swing_a3_from_a2
-        arm_across_a2 = k.link_length_2 * cos_a3_from_a2
-        direction_x_a2 = arm_across_a2 * wrist_a1_radius + arm_along_a2 * wrist_z
-        direction_y_a2 = arm_along_a2 * wrist_a1_radius - arm_across_a2 * wrist_z
-        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
+        # at a singularity: the angle of the reference
         direction_x_a2, direction_y_a2 = elsewhere(
-            reach > k.machine_scale_times_free_angle,
-            (direction_x_a2, direction_y_a2),
+            (reach > k.machine_scale_times_free_angle) & (across_a2 * across_a2 + along_a2 * along_a2 > 0.0),
+            (along_a2, across_a2),
             elsewhere_direction_x_a2,
             (ref_a2,),
         )
@@ -492,7 +502,7 @@ class ArrayPrograms(Programs):
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4 = nearest_period(k.offset_a4 + (angle_heading - angle_a1) / DEGREE, near_a4)
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         # a3_from_a2: out of reach
         require(status, absolute(cos_swing_a3_from_a2) <= k.bound_of_cos_swing_a3_from_a2, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
@@ -596,10 +606,10 @@ class ArrayPrograms(Programs):
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(
-            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+            (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), heading_length, 1.0
         )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

@@ -157,11 +157,11 @@ class ArrayPrograms(StartedPrograms):
         start_along = k.start_r11 + k.start_r22  # nearest rotation about Z
         start_across = k.start_r21 - k.start_r12
         start_length = sqrt(start_across * start_across + start_along * start_along)
-        start_divisor = select(start_length > 1e-11, start_length, 1.0)
+        start_divisor = select(start_length > 2e-12, start_length, 1.0)
         start_cos_heading = start_along / start_divisor
         start_sin_heading = start_across / start_divisor
         # the tool points exactly the opposite way
-        require(status, start_length > 1e-11, Status.BAD_INPUT)
+        require(status, start_length > 2e-12, Status.BAD_INPUT)
         # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, k.start_x, k.start_y), status
@@ -217,7 +217,7 @@ class ArrayPrograms(StartedPrograms):
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(
-            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+            (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), heading_length, 1.0
         )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
@@ -318,7 +318,7 @@ class ArrayPrograms(StartedPrograms):
         near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(k.offset_a3 + degrees(sin_a3, cos_a3), near_a3)  # A3: whole turns added
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
         # a1: its effective length is too short
@@ -392,11 +392,11 @@ class ArrayPrograms(StartedPrograms):
         start_along = k.start_r11 + k.start_r22  # nearest rotation about Z
         start_across = k.start_r21 - k.start_r12
         start_length = sqrt(start_across * start_across + start_along * start_along)
-        start_divisor = select(start_length > 1e-11, start_length, 1.0)
+        start_divisor = select(start_length > 2e-12, start_length, 1.0)
         start_cos_heading = start_along / start_divisor
         start_sin_heading = start_across / start_divisor
         # the tool points exactly the opposite way
-        require(status, start_length > 1e-11, Status.BAD_INPUT)
+        require(status, start_length > 2e-12, Status.BAD_INPUT)
         # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, k.start_x, k.start_y), status
@@ -435,11 +435,11 @@ class ArrayPrograms(StartedPrograms):
         start_along = k.start_r11 + k.start_r22  # nearest rotation about Z
         start_across = k.start_r21 - k.start_r12
         start_length = sqrt(start_across * start_across + start_along * start_along)
-        start_divisor = select(start_length > 1e-11, start_length, 1.0)
+        start_divisor = select(start_length > 2e-12, start_length, 1.0)
         start_cos_heading = start_along / start_divisor
         start_sin_heading = start_across / start_divisor
         # the tool points exactly the opposite way
-        require(status, start_length > 1e-11, Status.BAD_INPUT)
+        require(status, start_length > 2e-12, Status.BAD_INPUT)
         # pose of the platform, by Newton's method from the start
         found = self.find_platform(
             (axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, k.start_x, k.start_y), status
@@ -494,7 +494,7 @@ class ArrayPrograms(StartedPrograms):
             ),
         )
         # nothing controls the plate
-        require(status, absolute(determinant) > 1e-11, Status.IMPOSSIBLE)
+        require(status, absolute(determinant) > 2e-12, Status.IMPOSSIBLE)
         return (
             (column_1_vx, column_2_vx, column_3_vx),
             (column_1_vy, column_2_vy, column_3_vy),
@@ -518,10 +518,10 @@ class ArrayPrograms(StartedPrograms):
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(
-            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+            (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), heading_length, 1.0
         )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

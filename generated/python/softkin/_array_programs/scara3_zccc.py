@@ -32,7 +32,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 66
+    VALUES = 68
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
@@ -78,7 +78,7 @@ class ArrayPrograms(Programs):
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(
-            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+            (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), heading_length, 1.0
         )
         cos_heading = heading_along / heading_divisor
         wrist_x = x - k.link_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
@@ -91,8 +91,13 @@ class ArrayPrograms(Programs):
         one_plus_cos_a3 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) * k.quotient_in_cos_a3
         axis_a1 = k.offset_a1 + z
+        arm_along_a2 = k.link_length_1 + k.link_length_2 * cos_a3
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = root(sine_square_a3) * sigma_elbow * k.half_by_link_length_1_by_link_length_2
+        arm_across_a2 = k.link_length_2 * sin_a3
+        # rotation by a2 that takes the arm to its target point
+        along_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
+        across_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
@@ -100,15 +105,10 @@ class ArrayPrograms(Programs):
             direction_y_a2 = sin(reference_a2)
             return (direction_x_a2, direction_y_a2)
 
-        arm_along_a2 = k.link_length_1 + k.link_length_2 * cos_a3
-        arm_across_a2 = k.link_length_2 * sin_a3
-        direction_x_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
-        direction_y_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
-        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
+        # at a singularity: the angle of the reference
         direction_x_a2, direction_y_a2 = elsewhere(
-            reach > k.machine_scale_times_free_angle,
-            (direction_x_a2, direction_y_a2),
+            (reach > k.machine_scale_times_free_angle) & (across_a2 * across_a2 + along_a2 * along_a2 > 0.0),
+            (along_a2, across_a2),
             elsewhere_direction_x_a2,
             (ref_a2,),
         )
@@ -126,7 +126,7 @@ class ArrayPrograms(Programs):
         # a4 from the sum a234 of angles about parallel axes; A4: whole turns added
         axis_a4 = nearest_period(k.offset_a4 + (angle_heading - angle_a2 - angle_a3) / DEGREE, near_a4)
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         # a3: out of reach
         require(status, absolute(cos_a3) <= k.bound_of_cos_a3, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
@@ -198,10 +198,10 @@ class ArrayPrograms(Programs):
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(
-            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+            (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), heading_length, 1.0
         )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

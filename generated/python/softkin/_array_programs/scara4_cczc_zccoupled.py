@@ -32,7 +32,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 63
+    VALUES = 65
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
@@ -99,8 +99,12 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * k.quotient_in_cos_a2
+        arm_along_a1 = k.link_length_1 + k.link_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = root(sine_square_a2) * sigma_elbow * k.half_by_link_length_1_by_link_length_2
+        arm_across_a1 = k.link_length_2 * sin_a2
+        along_a1 = arm_across_a1 * y + arm_along_a1 * x  # rotation by a1 that takes the arm to its target point
+        across_a1 = arm_along_a1 * y - arm_across_a1 * x
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
@@ -108,15 +112,10 @@ class ArrayPrograms(Programs):
             direction_y_a1 = sin(reference_a1)
             return (direction_x_a1, direction_y_a1)
 
-        arm_along_a1 = k.link_length_1 + k.link_length_2 * cos_a2
-        arm_across_a1 = k.link_length_2 * sin_a2
-        direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
-        direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
-        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
+        # at a singularity: the angle of the reference
         direction_x_a1, direction_y_a1 = elsewhere(
-            reach > k.machine_scale_times_free_angle,
-            (direction_x_a1, direction_y_a1),
+            (reach > k.machine_scale_times_free_angle) & (across_a1 * across_a1 + along_a1 * along_a1 > 0.0),
+            (along_a1, across_a1),
             elsewhere_direction_x_a1,
             (ref_a1,),
         )
@@ -137,7 +136,7 @@ class ArrayPrograms(Programs):
         a3 = z - a4 * k.quotient_in_z  # a3 from the z equation, which is linear in it
         axis_a3 = a3 + k.offset_a3
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         # a2: out of reach
         require(status, absolute(cos_a2) <= k.bound_of_cos_a2, Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
@@ -212,12 +211,12 @@ class ArrayPrograms(Programs):
             heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(
-            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+            (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), heading_length, 1.0
         )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         return (
             (cos_heading, -k.shared_value * sin_heading, 0.0),
             (sin_heading, k.shared_value * cos_heading, 0.0),

@@ -32,7 +32,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 77
+    VALUES = 79
     JACOBIAN_ROWS = (0, 1, 5)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
@@ -83,7 +83,7 @@ class ArrayPrograms(Programs):
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(
-            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+            (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), heading_length, 1.0
         )
         cos_heading = heading_along / heading_divisor
         wrist_x = x - k.link_length_3 * cos_heading  # coordinate of the point that the remaining links must reach
@@ -95,8 +95,13 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * k.quotient_in_cos_a2
+        arm_along_a1 = k.link_length_1 + k.link_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = root(sine_square_a2) * sigma_elbow * k.half_by_link_length_1_by_link_length_2
+        arm_across_a1 = k.link_length_2 * sin_a2
+        # rotation by a1 that takes the arm to its target point
+        along_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
+        across_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
@@ -104,15 +109,10 @@ class ArrayPrograms(Programs):
             direction_y_a1 = sin(reference_a1)
             return (direction_x_a1, direction_y_a1)
 
-        arm_along_a1 = k.link_length_1 + k.link_length_2 * cos_a2
-        arm_across_a1 = k.link_length_2 * sin_a2
-        direction_x_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
-        direction_y_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
-        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
-        # reference
+        # at a singularity: the angle of the reference
         direction_x_a1, direction_y_a1 = elsewhere(
-            reach > k.machine_scale_times_free_angle,
-            (direction_x_a1, direction_y_a1),
+            (reach > k.machine_scale_times_free_angle) & (across_a1 * across_a1 + along_a1 * along_a1 > 0.0),
+            (along_a1, across_a1),
             elsewhere_direction_x_a1,
             (ref_a1,),
         )
@@ -156,7 +156,7 @@ class ArrayPrograms(Programs):
         # a3 from the sum a123 of angles about parallel axes; A3: whole turns added
         axis_a3 = nearest_period(k.offset_a3 + (angle_heading - angle_a1 - angle_a2 - sum_in_axis_a3) / DEGREE, near_a3)
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         # z: a planar machine has none
         require(status, absolute(z) <= k.machine_scale_times_plane, Status.UNREACHABLE)
         # a2: out of reach
@@ -247,10 +247,10 @@ class ArrayPrograms(Programs):
         heading_across = r21 - r12
         heading_length = sqrt(heading_across * heading_across + heading_along * heading_along)
         heading_divisor = select(
-            (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), heading_length, 1.0
+            (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), heading_length, 1.0
         )
         cos_heading = heading_along / heading_divisor
         sin_heading = heading_across / heading_divisor
         # the tool points exactly the opposite way
-        require(status, (absolute(heading_across) > 1e-11) | (absolute(heading_along) > 1e-11), Status.UNREACHABLE)
+        require(status, (absolute(heading_across) > 2e-12) | (absolute(heading_along) > 2e-12), Status.UNREACHABLE)
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0)), status

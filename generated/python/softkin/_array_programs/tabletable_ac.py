@@ -90,7 +90,7 @@ class ArrayPrograms(Programs):
         across_c = sigma_tilt * r13
         sin_c = across_c / radius_c
         # at a singularity: the angle of the reference
-        cos_c, sin_c = elsewhere(radius_c > 1e-11, (cos_c, sin_c), elsewhere_cos_c, (ref_c,))
+        cos_c, sin_c = elsewhere(radius_c > 2e-12, (cos_c, sin_c), elsewhere_cos_c, (ref_c,))
         x_from_c = x * cos_c - y * sin_c
         axis_x = k.offset_x + x_from_c
         c_radius_of_a = sigma_tilt * radius_c

@@ -93,7 +93,7 @@ class ArrayPrograms(OrientationPrograms):
         # polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
         # reference
         direction_x_c, direction_y_c = elsewhere(
-            radius_c > 1e-11, (direction_x_c, direction_y_c), elsewhere_direction_x_c, (ref_c,)
+            radius_c > 2e-12, (direction_x_c, direction_y_c), elsewhere_direction_x_c, (ref_c,)
         )
         scaled_r22_before_c = direction_x_c * r22 + direction_y_c * r21
         direction_y_a = -direction_x_c * r12 - direction_y_c * r11

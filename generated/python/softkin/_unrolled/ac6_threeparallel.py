@@ -23,13 +23,15 @@ def unrolled(k: Constants) -> Unrolled:
     highest_a3, highest_a4, highest_a5, highest_a6 = k.highest_a3, k.highest_a4, k.highest_a5, k.highest_a6
     lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
     lowest_a5, lowest_a6 = k.lowest_a5, k.lowest_a6
-    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
+    machine_scale_times_free_angle = k.machine_scale_times_free_angle
+    machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
     mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
     offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
     offset_a6, product_in_lost_digits_38 = k.offset_a6, k.product_in_lost_digits_38
-    quotient_in_closed_cos_q3, quotient_in_closed_sin_q3 = k.quotient_in_closed_cos_q3, k.quotient_in_closed_sin_q3
-    rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-    single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
+    product_in_within_48, quotient_in_closed_cos_q3 = k.product_in_within_48, k.quotient_in_closed_cos_q3
+    quotient_in_closed_sin_q3, rounding_q1, single_a1 = k.quotient_in_closed_sin_q3, k.rounding_q1, k.single_a1
+    single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
+    single_a6 = k.single_a6
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
     def branches(
@@ -72,13 +74,13 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q5_left = r13 * sin_q1_left - r23 * cos_q1_left
         reference_a6 = (ref_a6 - offset_a6) * DEGREE
         cos_of_reference_a6 = cos(reference_a6)
-        length_q6 = radius_q6_left if radius_q6_left > 1e-11 else 1.0
+        length_q6 = radius_q6_left if radius_q6_left > 2e-12 else 1.0
         r21_from_q1_left_by_radius_q6 = r21_from_q1 / length_q6
         # at a singularity: the angle of the reference
-        cos_q6_left_down = -r21_from_q1_left_by_radius_q6 if radius_q6_left > 1e-11 else cos_of_reference_a6
+        cos_q6_left_down = -r21_from_q1_left_by_radius_q6 if radius_q6_left > 2e-12 else cos_of_reference_a6
         sin_of_reference_a6 = sin(reference_a6)
         r22_from_q1_left_by_radius_q6 = r22_from_q1 / length_q6
-        sin_q6_left_down = r22_from_q1_left_by_radius_q6 if radius_q6_left > 1e-11 else sin_of_reference_a6
+        sin_q6_left_down = r22_from_q1_left_by_radius_q6 if radius_q6_left > 2e-12 else sin_of_reference_a6
         radius_q6_left_times_r33 = r33 * radius_q6_left
         r31_from_q1_before_q56_left_down = (
             r31 * cos_q6_left_down - r32 * sin_q6_left_down
@@ -107,7 +109,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (not lost_digits_38):
             return ()
         # at a singularity: the angle of the reference
-        if radius_q6_left > 1e-11:
+        if radius_q6_left > 2e-12:
             cos_q6_left_up = r21_from_q1_left_by_radius_q6
             sin_q6_left_up = -r22_from_q1_left_by_radius_q6
             r31_from_q1_before_q56_left_up = -r31_from_q1_before_q56_left_down
@@ -155,12 +157,12 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q6_right = sqrt(r21_from_q1 * r21_from_q1 + r22_from_q1 * r22_from_q1)
         # cosine and sine of q5 from the q6 radius and r22 equations
         cos_q5_right = r13 * sin_q1_right - r23 * cos_q1_right
-        length_q6 = radius_q6_right if radius_q6_right > 1e-11 else 1.0
+        length_q6 = radius_q6_right if radius_q6_right > 2e-12 else 1.0
         r21_from_q1_right_by_radius_q6 = r21_from_q1 / length_q6
         # at a singularity: the angle of the reference
-        cos_q6_right_down = -r21_from_q1_right_by_radius_q6 if radius_q6_right > 1e-11 else cos_of_reference_a6
+        cos_q6_right_down = -r21_from_q1_right_by_radius_q6 if radius_q6_right > 2e-12 else cos_of_reference_a6
         r22_from_q1_right_by_radius_q6 = r22_from_q1 / length_q6
-        sin_q6_right_down = r22_from_q1_right_by_radius_q6 if radius_q6_right > 1e-11 else sin_of_reference_a6
+        sin_q6_right_down = r22_from_q1_right_by_radius_q6 if radius_q6_right > 2e-12 else sin_of_reference_a6
         radius_q6_right_times_r33 = r33 * radius_q6_right
         r31_from_q1_before_q56_right_down = (
             r31 * cos_q6_right_down - r32 * sin_q6_right_down
@@ -188,7 +190,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (not lost_digits_38):
             return ()
         # at a singularity: the angle of the reference
-        if radius_q6_right > 1e-11:
+        if radius_q6_right > 2e-12:
             cos_q6_right_up = r21_from_q1_right_by_radius_q6
             sin_q6_right_up = -r22_from_q1_right_by_radius_q6
             r31_from_q1_before_q56_right_up = -r31_from_q1_before_q56_right_down
@@ -220,21 +222,123 @@ def unrolled(k: Constants) -> Unrolled:
         # digits may be lost
         if not (not lost_digits_38):
             return ()
-        refusal_left_down = 0 if abs(cos_q3_left_down) <= bound_of_cos_q3 else 3  # q3: out of reach
-        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left) * RADIAN
         # sine squared, times the squared scale
         sine_square_q3 = one_less_cos_q3_left_down * one_plus_cos_q3_left_down
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
-        if reach_left_down > machine_scale_times_free_angle:
-            angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3_left_down)
-            angle_of_wrist_x_from_q1 = arctan2(wrist_z_from_q1_left_down, wrist_x_from_q1_left_down)
-            angle_q2_left_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
-            angle_q2_left_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
+        sin_q3_left_up_down = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
+        arm_along_q2_left_down = a2 + a3 * cos_q3_left_down
+        arm_across_q2_left_up_down = a3 * sin_q3_left_up_down
+        size_in_within_48_left_up_down = abs(
+            arm_across_q2_left_up_down * arm_across_q2_left_up_down
+            + arm_along_q2_left_down * arm_along_q2_left_down
+            - reach_left_down * reach_left_down
+        )
+        within_48 = (reach_left_down > product_in_lost_digits_38) or (
+            size_in_within_48_left_up_down - (machine_scale_times_rounding + reach_left_down) * product_in_within_48
+            <= 0.0
+        )
+        lost_digits_48_down = (not within_48) and (
+            (-0.01 <= radius_q6_left <= 0.01)
+            or (-0.01 <= sin_q3_left_up_down <= 0.01)
+            or (abs(ahead_q1) <= product_in_lost_digits_38)
+        )
+        # digits may be lost
+        if not (not lost_digits_48_down):
+            return ()
+        sine_square_q3 = one_less_cos_q3_left_up * one_plus_cos_q3_left_up  # sine squared, times the squared scale
+        sin_q3_left_up_up = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
+        arm_along_q2_left_up = a2 + a3 * cos_q3_left_up
+        arm_across_q2_left_up_up = a3 * sin_q3_left_up_up
+        size_in_within_48_left_up_up = abs(
+            arm_across_q2_left_up_up * arm_across_q2_left_up_up
+            + arm_along_q2_left_up * arm_along_q2_left_up
+            - reach_left_up * reach_left_up
+        )
+        within_48 = (reach_left_up > product_in_lost_digits_38) or (
+            size_in_within_48_left_up_up - (machine_scale_times_rounding + reach_left_up) * product_in_within_48 <= 0.0
+        )
+        lost_digits_48_up = (not within_48) and (
+            (-0.01 <= radius_q6_left <= 0.01)
+            or (-0.01 <= sin_q3_left_up_up <= 0.01)
+            or (abs(ahead_q1) <= product_in_lost_digits_38)
+        )
+        # digits may be lost
+        if not ((not lost_digits_48_up) and (not lost_digits_48_down) and (not lost_digits_48_up)):
+            return ()
+        # sine squared, times the squared scale
+        sine_square_q3 = one_less_cos_q3_right_down * one_plus_cos_q3_right_down
+        sin_q3_right_up_down = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
+        arm_along_q2_right_down = a2 + a3 * cos_q3_right_down
+        arm_across_q2_right_up_down = a3 * sin_q3_right_up_down
+        size_in_within_48_right_up_down = abs(
+            arm_across_q2_right_up_down * arm_across_q2_right_up_down
+            + arm_along_q2_right_down * arm_along_q2_right_down
+            - reach_right_down * reach_right_down
+        )
+        within_48 = (reach_right_down > product_in_lost_digits_38) or (
+            size_in_within_48_right_up_down - (machine_scale_times_rounding + reach_right_down) * product_in_within_48
+            <= 0.0
+        )
+        lost_digits_48_down = (not within_48) and (
+            (-0.01 <= radius_q6_right <= 0.01)
+            or (-0.01 <= sin_q3_right_up_down <= 0.01)
+            or (abs(ahead_q1) <= product_in_lost_digits_38)
+        )
+        # digits may be lost
+        if not (not lost_digits_48_down):
+            return ()
+        # sine squared, times the squared scale
+        sine_square_q3 = one_less_cos_q3_right_up * one_plus_cos_q3_right_up
+        sin_q3_right_up_up = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
+        arm_along_q2_right_up = a2 + a3 * cos_q3_right_up
+        arm_across_q2_right_up_up = a3 * sin_q3_right_up_up
+        size_in_within_48_right_up_up = abs(
+            arm_across_q2_right_up_up * arm_across_q2_right_up_up
+            + arm_along_q2_right_up * arm_along_q2_right_up
+            - reach_right_up * reach_right_up
+        )
+        within_48 = (reach_right_up > product_in_lost_digits_38) or (
+            size_in_within_48_right_up_up - (machine_scale_times_rounding + reach_right_up) * product_in_within_48
+            <= 0.0
+        )
+        lost_digits_48_up = (not within_48) and (
+            (-0.01 <= radius_q6_right <= 0.01)
+            or (-0.01 <= sin_q3_right_up_up <= 0.01)
+            or (abs(ahead_q1) <= product_in_lost_digits_38)
+        )
+        # digits may be lost
+        if not ((not lost_digits_48_up) and (not lost_digits_48_down) and (not lost_digits_48_up)):
+            return ()
+        # q2: out of reach
+        if abs(cos_q3_left_down) <= bound_of_cos_q3:
+            refusal_left_up_down = (
+                0
+                if (reach_left_down > product_in_lost_digits_38)
+                or (
+                    size_in_within_48_left_up_down - product_in_within_48 * (product_in_within_48 + reach_left_down)
+                    <= 0.0
+                )
+                else 3
+            )
         else:
-            reference_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_q2_left_up_down = reference_a2
-            angle_q2_left_down_down = reference_a2
-        angle_q3_down = arctan2(sin_q3, cos_q3_left_down)
+            refusal_left_up_down = 3
+        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left) * RADIAN
+        angle_of_arm_along_q2_down = arctan2(arm_across_q2_left_up_down, arm_along_q2_left_down)
+        angle_of_wrist_x_from_q1_down = arctan2(wrist_z_from_q1_left_down, wrist_x_from_q1_left_down)
+        reference_a2 = (ref_a2 - offset_a2) * DEGREE
+        product_in_along_q2_down = arm_along_q2_left_down * wrist_x_from_q1_left_down
+        product_in_along_q2_left_up_down_2 = arm_across_q2_left_up_down * wrist_z_from_q1_left_down
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = product_in_along_q2_down + product_in_along_q2_left_up_down_2
+        product_in_across_q2_down = arm_across_q2_left_up_down * wrist_x_from_q1_left_down
+        product_in_across_q2_left_up_down_2 = arm_along_q2_left_down * wrist_z_from_q1_left_down
+        across_q2 = product_in_across_q2_left_up_down_2 - product_in_across_q2_down
+        angle_q2_left_up_down = (
+            angle_of_wrist_x_from_q1_down - angle_of_arm_along_q2_down
+            if (reach_left_down > machine_scale_times_free_angle)
+            and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
+            else reference_a2
+        )
+        angle_q3_down = arctan2(sin_q3_left_up_down, cos_q3_left_down)
         quotient_in_axis_a3_left_up_down = angle_q3_down * RADIAN
         angle_with_q4_down = arctan2(r31_from_q1_before_q56_left_down, r33_from_q1_before_q6_left_down)
         # q4 from the sum q234 of angles about parallel axes
@@ -242,21 +346,33 @@ def unrolled(k: Constants) -> Unrolled:
         quotient_in_axis_a5 = arctan2(radius_q6_left, cos_q5_left) * RADIAN
         axis_a5_left_down = offset_a5 + quotient_in_axis_a5
         axis_a6_left_down = offset_a6 + arctan2(sin_q6_left_down, cos_q6_left_down) * RADIAN
-        refusal_left_up = 0 if abs(cos_q3_left_up) <= bound_of_cos_q3 else 3  # q3: out of reach
-        sine_square_q3 = one_less_cos_q3_left_up * one_plus_cos_q3_left_up  # sine squared, times the squared scale
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
-        if reach_left_up > machine_scale_times_free_angle:
-            angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3_left_up)
-            angle_of_wrist_x_from_q1 = arctan2(wrist_z_from_q1_left_up, wrist_x_from_q1_left_up)
-            angle_q2_left_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
-            angle_q2_left_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
+        # q2: out of reach
+        if abs(cos_q3_left_up) <= bound_of_cos_q3:
+            refusal_left_up_up = (
+                0
+                if (reach_left_up > product_in_lost_digits_38)
+                or (size_in_within_48_left_up_up - product_in_within_48 * (product_in_within_48 + reach_left_up) <= 0.0)
+                else 3
+            )
         else:
-            reference_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_q2_left_up_up = reference_a2
-            angle_q2_left_down_up = reference_a2
-        angle_q3_up = arctan2(sin_q3, cos_q3_left_up)
+            refusal_left_up_up = 3
+        angle_of_arm_along_q2_up = arctan2(arm_across_q2_left_up_up, arm_along_q2_left_up)
+        angle_of_wrist_x_from_q1_up = arctan2(wrist_z_from_q1_left_up, wrist_x_from_q1_left_up)
+        product_in_along_q2_up = arm_along_q2_left_up * wrist_x_from_q1_left_up
+        product_in_along_q2_left_up_up_2 = arm_across_q2_left_up_up * wrist_z_from_q1_left_up
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = product_in_along_q2_left_up_up_2 + product_in_along_q2_up
+        product_in_across_q2_up = arm_across_q2_left_up_up * wrist_x_from_q1_left_up
+        product_in_across_q2_left_up_up_2 = arm_along_q2_left_up * wrist_z_from_q1_left_up
+        across_q2 = product_in_across_q2_left_up_up_2 - product_in_across_q2_up
+        angle_q2_left_up_up = (
+            angle_of_wrist_x_from_q1_up - angle_of_arm_along_q2_up
+            if (reach_left_up > machine_scale_times_free_angle) and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
+            else reference_a2
+        )
+        angle_q3_up = arctan2(sin_q3_left_up_up, cos_q3_left_up)
         quotient_in_axis_a3_left_up_up = angle_q3_up * RADIAN
-        if radius_q6_left > 1e-11:
+        if radius_q6_left > 2e-12:
             angle_with_q4_up = 180.0 * DEGREE + angle_with_q4_down
             axis_a6_left_up = 180.0 + axis_a6_left_down
         else:
@@ -265,25 +381,57 @@ def unrolled(k: Constants) -> Unrolled:
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_left_up_up - angle_q3_up) * RADIAN
         axis_a5_left_up = offset_a5 - quotient_in_axis_a5
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = product_in_along_q2_down - product_in_along_q2_left_up_down_2
+        across_q2 = product_in_across_q2_down + product_in_across_q2_left_up_down_2
+        angle_q2_left_down_down = (
+            angle_of_arm_along_q2_down + angle_of_wrist_x_from_q1_down
+            if (reach_left_down > machine_scale_times_free_angle)
+            and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
+            else reference_a2
+        )
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_left_down_down) * RADIAN
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = product_in_along_q2_up - product_in_along_q2_left_up_up_2
+        across_q2 = product_in_across_q2_left_up_up_2 + product_in_across_q2_up
+        angle_q2_left_down_up = (
+            angle_of_arm_along_q2_up + angle_of_wrist_x_from_q1_up
+            if (reach_left_up > machine_scale_times_free_angle) and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
+            else reference_a2
+        )
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_left_down_up) * RADIAN
-        refusal_right_down = 0 if abs(cos_q3_right_down) <= bound_of_cos_q3 else 3  # q3: out of reach
-        axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right) * RADIAN
-        # sine squared, times the squared scale
-        sine_square_q3 = one_less_cos_q3_right_down * one_plus_cos_q3_right_down
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
-        if reach_right_down > machine_scale_times_free_angle:
-            angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3_right_down)
-            angle_of_wrist_x_from_q1 = arctan2(wrist_z_from_q1_right_down, wrist_x_from_q1_right_down)
-            angle_q2_right_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
-            angle_q2_right_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
+        # q2: out of reach
+        if abs(cos_q3_right_down) <= bound_of_cos_q3:
+            refusal_right_up_down = (
+                0
+                if (reach_right_down > product_in_lost_digits_38)
+                or (
+                    size_in_within_48_right_up_down - product_in_within_48 * (product_in_within_48 + reach_right_down)
+                    <= 0.0
+                )
+                else 3
+            )
         else:
-            reference_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_q2_right_up_down = reference_a2
-            angle_q2_right_down_down = reference_a2
-        angle_q3_down = arctan2(sin_q3, cos_q3_right_down)
+            refusal_right_up_down = 3
+        axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right) * RADIAN
+        angle_of_arm_along_q2_down = arctan2(arm_across_q2_right_up_down, arm_along_q2_right_down)
+        angle_of_wrist_x_from_q1_down = arctan2(wrist_z_from_q1_right_down, wrist_x_from_q1_right_down)
+        product_in_along_q2_down = arm_along_q2_right_down * wrist_x_from_q1_right_down
+        product_in_along_q2_right_up_down_2 = arm_across_q2_right_up_down * wrist_z_from_q1_right_down
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = product_in_along_q2_down + product_in_along_q2_right_up_down_2
+        product_in_across_q2_down = arm_across_q2_right_up_down * wrist_x_from_q1_right_down
+        product_in_across_q2_right_up_down_2 = arm_along_q2_right_down * wrist_z_from_q1_right_down
+        across_q2 = product_in_across_q2_right_up_down_2 - product_in_across_q2_down
+        angle_q2_right_up_down = (
+            angle_of_wrist_x_from_q1_down - angle_of_arm_along_q2_down
+            if (reach_right_down > machine_scale_times_free_angle)
+            and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
+            else reference_a2
+        )
+        angle_q3_down = arctan2(sin_q3_right_up_down, cos_q3_right_down)
         quotient_in_axis_a3_right_up_down = angle_q3_down * RADIAN
         angle_with_q4_down = arctan2(r31_from_q1_before_q56_right_down, r33_from_q1_before_q6_right_down)
         # q4 from the sum q234 of angles about parallel axes
@@ -291,22 +439,36 @@ def unrolled(k: Constants) -> Unrolled:
         quotient_in_axis_a5 = arctan2(radius_q6_right, cos_q5_right) * RADIAN
         axis_a5_right_down = offset_a5 + quotient_in_axis_a5
         axis_a6_right_down = offset_a6 + arctan2(sin_q6_right_down, cos_q6_right_down) * RADIAN
-        refusal_right_up = 0 if abs(cos_q3_right_up) <= bound_of_cos_q3 else 3  # q3: out of reach
-        # sine squared, times the squared scale
-        sine_square_q3 = one_less_cos_q3_right_up * one_plus_cos_q3_right_up
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
-        if reach_right_up > machine_scale_times_free_angle:
-            angle_of_arm_along_q2 = arctan2(a3 * sin_q3, a2 + a3 * cos_q3_right_up)
-            angle_of_wrist_x_from_q1 = arctan2(wrist_z_from_q1_right_up, wrist_x_from_q1_right_up)
-            angle_q2_right_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
-            angle_q2_right_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
+        # q2: out of reach
+        if abs(cos_q3_right_up) <= bound_of_cos_q3:
+            refusal_right_up_up = (
+                0
+                if (reach_right_up > product_in_lost_digits_38)
+                or (
+                    size_in_within_48_right_up_up - product_in_within_48 * (product_in_within_48 + reach_right_up)
+                    <= 0.0
+                )
+                else 3
+            )
         else:
-            reference_a2 = (ref_a2 - offset_a2) * DEGREE
-            angle_q2_right_up_up = reference_a2
-            angle_q2_right_down_up = reference_a2
-        angle_q3_up = arctan2(sin_q3, cos_q3_right_up)
+            refusal_right_up_up = 3
+        angle_of_arm_along_q2_up = arctan2(arm_across_q2_right_up_up, arm_along_q2_right_up)
+        angle_of_wrist_x_from_q1_up = arctan2(wrist_z_from_q1_right_up, wrist_x_from_q1_right_up)
+        product_in_along_q2_up = arm_along_q2_right_up * wrist_x_from_q1_right_up
+        product_in_along_q2_right_up_up_2 = arm_across_q2_right_up_up * wrist_z_from_q1_right_up
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = product_in_along_q2_right_up_up_2 + product_in_along_q2_up
+        product_in_across_q2_up = arm_across_q2_right_up_up * wrist_x_from_q1_right_up
+        product_in_across_q2_right_up_up_2 = arm_along_q2_right_up * wrist_z_from_q1_right_up
+        across_q2 = product_in_across_q2_right_up_up_2 - product_in_across_q2_up
+        angle_q2_right_up_up = (
+            angle_of_wrist_x_from_q1_up - angle_of_arm_along_q2_up
+            if (reach_right_up > machine_scale_times_free_angle) and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
+            else reference_a2
+        )
+        angle_q3_up = arctan2(sin_q3_right_up_up, cos_q3_right_up)
         quotient_in_axis_a3_right_up_up = angle_q3_up * RADIAN
-        if radius_q6_right > 1e-11:
+        if radius_q6_right > 2e-12:
             angle_with_q4_up = 180.0 * DEGREE + angle_with_q4_down
             axis_a6_right_up = 180.0 + axis_a6_right_down
         else:
@@ -315,8 +477,25 @@ def unrolled(k: Constants) -> Unrolled:
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_right_up_up - angle_q3_up) * RADIAN
         axis_a5_right_up = offset_a5 - quotient_in_axis_a5
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = product_in_along_q2_down - product_in_along_q2_right_up_down_2
+        across_q2 = product_in_across_q2_down + product_in_across_q2_right_up_down_2
+        angle_q2_right_down_down = (
+            angle_of_arm_along_q2_down + angle_of_wrist_x_from_q1_down
+            if (reach_right_down > machine_scale_times_free_angle)
+            and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
+            else reference_a2
+        )
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_right_down_down) * RADIAN
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = product_in_along_q2_up - product_in_along_q2_right_up_up_2
+        across_q2 = product_in_across_q2_right_up_up_2 + product_in_across_q2_up
+        angle_q2_right_down_up = (
+            angle_of_arm_along_q2_up + angle_of_wrist_x_from_q1_up
+            if (reach_right_up > machine_scale_times_free_angle) and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
+            else reference_a2
+        )
         # q4 from the sum q234 of angles about parallel axes
         axis_a4_right_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_right_down_up) * RADIAN
         return (
@@ -328,8 +507,8 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a5_left_down,
                 axis_a6_left_down,
             )
-            if refusal_left_down == 0
-            else refused[refusal_left_down],
+            if refusal_left_up_down == 0
+            else refused[refusal_left_up_down],
             (
                 axis_a1_right,
                 offset_a2 + angle_q2_right_up_down * RADIAN,
@@ -338,8 +517,8 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a5_right_down,
                 axis_a6_right_down,
             )
-            if refusal_right_down == 0
-            else refused[refusal_right_down],
+            if refusal_right_up_down == 0
+            else refused[refusal_right_up_down],
             (
                 axis_a1_left,
                 offset_a2 + angle_q2_left_down_down * RADIAN,
@@ -348,8 +527,8 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a5_left_down,
                 axis_a6_left_down,
             )
-            if refusal_left_down == 0
-            else refused[refusal_left_down],
+            if refusal_left_up_down == 0
+            else refused[refusal_left_up_down],
             (
                 axis_a1_right,
                 offset_a2 + angle_q2_right_down_down * RADIAN,
@@ -358,8 +537,8 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a5_right_down,
                 axis_a6_right_down,
             )
-            if refusal_right_down == 0
-            else refused[refusal_right_down],
+            if refusal_right_up_down == 0
+            else refused[refusal_right_up_down],
             (
                 axis_a1_left,
                 offset_a2 + angle_q2_left_up_up * RADIAN,
@@ -368,8 +547,8 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a5_left_up,
                 axis_a6_left_up,
             )
-            if refusal_left_up == 0
-            else refused[refusal_left_up],
+            if refusal_left_up_up == 0
+            else refused[refusal_left_up_up],
             (
                 axis_a1_right,
                 offset_a2 + angle_q2_right_up_up * RADIAN,
@@ -378,8 +557,8 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a5_right_up,
                 axis_a6_right_up,
             )
-            if refusal_right_up == 0
-            else refused[refusal_right_up],
+            if refusal_right_up_up == 0
+            else refused[refusal_right_up_up],
             (
                 axis_a1_left,
                 offset_a2 + angle_q2_left_down_up * RADIAN,
@@ -388,8 +567,8 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a5_left_up,
                 axis_a6_left_up,
             )
-            if refusal_left_up == 0
-            else refused[refusal_left_up],
+            if refusal_left_up_up == 0
+            else refused[refusal_left_up_up],
             (
                 axis_a1_right,
                 offset_a2 + angle_q2_right_down_up * RADIAN,
@@ -398,8 +577,8 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a5_right_up,
                 axis_a6_right_up,
             )
-            if refusal_right_up == 0
-            else refused[refusal_right_up],
+            if refusal_right_up_up == 0
+            else refused[refusal_right_up_up],
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
@@ -433,7 +612,7 @@ def unrolled(k: Constants) -> Unrolled:
         q6_radius_of_q5 = sigma_wrist * radius_q6
         cos_q5 = r13 * sin_q1 - r23 * cos_q1  # cosine and sine of q5 from the q6 radius and r22 equations
         # at a singularity: the angle of the reference
-        if radius_q6 > 1e-11:
+        if radius_q6 > 2e-12:
             along_q6 = -sigma_wrist * r21_from_q1  # polar coordinates: angle q6 from the r21 and r23 equations
             cos_q6 = along_q6 / radius_q6
             sin_q6 = (sigma_wrist * r22_from_q1) / radius_q6
@@ -467,8 +646,32 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_closed_sin_q3
-        if reach > machine_scale_times_free_angle:
-            angle_q2 = arctan2(wrist_z_from_q1, wrist_x_from_q1) - arctan2(a3 * sin_q3, a2 + a3 * cos_q3)
+        arm_along_q2 = a2 + a3 * cos_q3
+        arm_across_q2 = a3 * sin_q3
+        size_in_within_48 = abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+        within_48 = (reach > product_in_lost_digits_38) or (
+            size_in_within_48 - (machine_scale_times_rounding + reach) * product_in_within_48 <= 0.0
+        )
+        lost_digits_48 = (not within_48) and (
+            (-0.01 <= q6_radius_of_q5 <= 0.01)
+            or (-0.01 <= radius_q6 <= 0.01)
+            or (-0.01 <= sin_q3 <= 0.01)
+            or (abs(ahead_q1) <= product_in_lost_digits_38)
+        )
+        # digits may be lost
+        if not (not lost_digits_48):
+            return ()
+        # q2: out of reach
+        if not (
+            (reach > product_in_lost_digits_38)
+            or (size_in_within_48 - product_in_within_48 * (product_in_within_48 + reach) <= 0.0)
+        ):
+            return None
+        # rotation by q2 that takes the arm to its target point
+        along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
+        across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
+        if reach > machine_scale_times_free_angle and across_q2 * across_q2 + along_q2 * along_q2 > 0.0:
+            angle_q2 = arctan2(wrist_z_from_q1, wrist_x_from_q1) - arctan2(arm_across_q2, arm_along_q2)
         else:
             angle_q2 = (ref_a2 - offset_a2) * DEGREE
         angle_q3 = arctan2(sin_q3, cos_q3)

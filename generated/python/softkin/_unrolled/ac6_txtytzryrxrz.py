@@ -40,7 +40,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_z = z - flange_x * r31 - flange_y * r32 - flange_z * r33
         axis_a3 = offset_a3 + wrist_z
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
-        if radius_a4 > 1e-11:
+        if radius_a4 > 2e-12:
             # polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
             # reference
             direction_x_a4_upright = r33
@@ -102,7 +102,7 @@ def unrolled(k: Constants) -> Unrolled:
         radius_a4 = sqrt(r13 * r13 + r33 * r33)  # polar coordinates: the radius at angle a4
         # polar coordinates: angle a4 from the r33 and r13 equations; at a singularity: the angle of the
         # reference
-        if radius_a4 > 1e-11:
+        if radius_a4 > 2e-12:
             direction_x_a4 = sigma_wrist * r33
             direction_y_a4 = sigma_wrist * r13
             if radius_a4 > 0.1:

@@ -32,7 +32,7 @@ def unrolled(k: Constants) -> Unrolled:
         _, _, _, ref_c, _ = 5 * (0.0,) if reference is None else reference
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
         # at a singularity: the angle of the reference
-        if radius_c > 1e-11:
+        if radius_c > 2e-12:
             cos_c_positive = r13 / radius_c
             sin_c_positive = r23 / radius_c
             cos_c_negative = -cos_c_positive
@@ -60,7 +60,7 @@ def unrolled(k: Constants) -> Unrolled:
         # joint_z from the z equation, which is linear in it
         joint_z_negative = z_plus_pivot_length_times_r33 - radius_c_times_head_offset
         axis_c_negative = (
-            180.0 + axis_c_positive if radius_c > 1e-11 else offset_c + arctan2(sin_c_negative, cos_c_negative) * RADIAN
+            180.0 + axis_c_positive if radius_c > 2e-12 else offset_c + arctan2(sin_c_negative, cos_c_negative) * RADIAN
         )
         return (
             (
@@ -86,7 +86,7 @@ def unrolled(k: Constants) -> Unrolled:
         _, _, _, ref_c, _ = 5 * (0.0,) if reference is None else reference
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
         # at a singularity: the angle of the reference
-        if radius_c > 1e-11:
+        if radius_c > 2e-12:
             along_c = sigma_tilt * r13  # polar coordinates: angle c from the r13 and r23 equations
             cos_c = along_c / radius_c
             sin_c = (sigma_tilt * r23) / radius_c

@@ -32,7 +32,7 @@ def unrolled(k: Constants) -> Unrolled:
         _, _, _, _, ref_c = 5 * (0.0,) if reference is None else reference
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
         # at a singularity: the angle of the reference
-        if radius_c > 1e-11:
+        if radius_c > 2e-12:
             cos_c_positive = r13 / radius_c
             sin_c_positive = -(r23 / radius_c)
             cos_c_negative = -cos_c_positive
@@ -62,7 +62,7 @@ def unrolled(k: Constants) -> Unrolled:
         joint_x_negative = (x - sum_in_joint_x * cos_c_negative) * cos_c_negative + (
             -y - sum_in_joint_x * sin_c_negative
         ) * sin_c_negative
-        if radius_c > 1e-11:
+        if radius_c > 2e-12:
             joint_y_negative = -joint_y_positive
             axis_c_negative = 180.0 + axis_c_positive
         else:
@@ -94,7 +94,7 @@ def unrolled(k: Constants) -> Unrolled:
         _, _, _, _, ref_c = 5 * (0.0,) if reference is None else reference
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
         # at a singularity: the angle of the reference
-        if radius_c > 1e-11:
+        if radius_c > 2e-12:
             along_c = sigma_tilt * r13  # polar coordinates: angle c from the r13 and r23 equations
             cos_c = along_c / radius_c
             sin_c = (-sigma_tilt * r23) / radius_c

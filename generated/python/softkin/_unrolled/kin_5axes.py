@@ -41,7 +41,7 @@ def unrolled(k: Constants) -> Unrolled:
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
         # polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
         # reference
-        if radius_a > 1e-11:
+        if radius_a > 2e-12:
             direction_x_a_positive = r13_of_a
             direction_y_a_positive = r23_of_a
             direction_x_a_negative = -r13_of_a
@@ -56,7 +56,7 @@ def unrolled(k: Constants) -> Unrolled:
         quotient_in_axis_b = arctan2(radius_a, r33) * RADIAN
         axis_a_negative = (
             180.0 + axis_a_positive
-            if radius_a > 1e-11
+            if radius_a > 2e-12
             else offset_a + arctan2(direction_y_a_negative, direction_x_a_negative) * RADIAN
         )
         return (
@@ -75,7 +75,7 @@ def unrolled(k: Constants) -> Unrolled:
         radius_a = sqrt(r13_of_a * r13_of_a + r23_of_a * r23_of_a)  # polar coordinates: the radius at angle a
         # polar coordinates: angle a from the r13 and r23 equations; at a singularity: the angle of the
         # reference
-        if radius_a > 1e-11:
+        if radius_a > 2e-12:
             direction_x_a = sigma_roll * r13_of_a
             direction_y_a = sigma_roll * r23_of_a
         else:

@@ -35,7 +35,7 @@ def unrolled(k: Constants) -> Unrolled:
         radius_c_times_z_from_c = radius_c * z_from_c
         r33_times_z_from_c = r33 * z_from_c
         quotient_in_axis_a = arctan2(radius_c, r33) * RADIAN
-        if radius_c > 1e-11:
+        if radius_c > 2e-12:
             cos_c_positive = r23 / radius_c  # at a singularity: the angle of the reference
             sin_c_positive = r13 / radius_c
             x_from_c_positive = x * cos_c_positive - y * sin_c_positive
@@ -91,7 +91,7 @@ def unrolled(k: Constants) -> Unrolled:
         _, _, _, _, ref_c = 5 * (0.0,) if reference is None else reference
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
         # at a singularity: the angle of the reference
-        if radius_c > 1e-11:
+        if radius_c > 2e-12:
             along_c = sigma_tilt * r23  # polar coordinates: angle c from the r23 and r13 equations
             cos_c = along_c / radius_c
             sin_c = (sigma_tilt * r13) / radius_c

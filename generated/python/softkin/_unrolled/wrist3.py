@@ -31,7 +31,7 @@ def unrolled(k: Constants) -> Unrolled:
         _, _, ref_c = 3 * (0.0,) if reference is None else reference
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
         quotient_in_axis_b = arctan2(radius_c, r33) * RADIAN
-        if radius_c > 1e-11:
+        if radius_c > 2e-12:
             # polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
             # reference
             direction_x_c_down = r31
@@ -77,7 +77,7 @@ def unrolled(k: Constants) -> Unrolled:
         radius_c = sqrt(r31 * r31 + r32 * r32)  # polar coordinates: the radius at angle c
         # polar coordinates: angle c from the r31 and r32 equations; at a singularity: the angle of the
         # reference
-        if radius_c > 1e-11:
+        if radius_c > 2e-12:
             direction_x_c = sigma_hand * r31
             direction_y_c = -sigma_hand * r32
         else:
