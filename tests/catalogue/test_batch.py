@@ -9,7 +9,7 @@ from numpy.random import Generator
 from softkin import KinematicsError, Status, _batch
 
 from tests.catalogue.closure import Array
-from tests.catalogue.machines import Machine
+from tests.catalogue.machines import Machine, few
 from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal
 
@@ -36,7 +36,7 @@ def mixed(machine: Machine, rng: Generator) -> tuple[Array, Array, Array, Array]
 
 def test_mixed_rows_are_the_scalar_calls(machines: tuple[Machine, ...]) -> None:
     """A batch with good and bad rows gives the axes and statuses of single calls."""
-    for number, machine in enumerate(machines):
+    for number, machine in enumerate(few(machines)):
         positions, rotations, configurations, references = mixed(machine, np.random.default_rng(number))
         found, statuses = machine.robot.inverse_batch(positions, rotations, configurations, references)
         assert found.shape == (ROWS, len(machine.mechanism.joints)) and statuses.dtype == np.uint8
@@ -55,7 +55,7 @@ def test_mixed_rows_are_the_scalar_calls(machines: tuple[Machine, ...]) -> None:
 
 def test_a_row_that_is_refused_leaves_the_others_alone(machines: tuple[Machine, ...]) -> None:
     """Named branches and commanded turns that differ from row to row; then garbage in every fourth row."""
-    for number, machine in enumerate(machines):
+    for number, machine in enumerate(few(machines)):
         rng = np.random.default_rng(number)
         axes = machine.draw(48, rng)
         positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
@@ -122,13 +122,13 @@ def test_one_configuration_may_leave_branches_open_in_many_rows(
     monkeypatch.setattr(_batch, "EVERY_SLOT", 24)
     for machine in machines[:2]:
         rng = np.random.default_rng(5)
-        axes = machine.draw(60, rng)
+        axes = machine.draw(40, rng)
         positions, rotations, _, _ = machine.robot.forward_batch(axes)
-        for _ in range(3):
+        for _ in range(2):
             one = np.zeros(len(machine.robot.CONFIGURATION), int)
             one[: machine.robot.BRANCHES] = rng.integers(0, 4, machine.robot.BRANCHES)
             for configuration in (one, one * 0):
-                rows = np.tile(configuration, (60, 1))
+                rows = np.tile(configuration, (40, 1))
                 rows[0] = 1  # the rows then differ
                 found, statuses = machine.robot.inverse_batch(positions, rotations, configuration, axes)
                 own, expected = machine.robot.inverse_batch(positions, rotations, rows, axes)
@@ -196,7 +196,7 @@ def test_several_threads_may_share_a_robot(machines: tuple[Machine, ...]) -> Non
     from concurrent.futures import ThreadPoolExecutor
 
     machine = machines[1]
-    axes = machine.draw(3000, np.random.default_rng(4))
+    axes = machine.draw(1000, np.random.default_rng(4))
     expected = machine.robot.forward_batch(axes)[0]
     with ThreadPoolExecutor(4) as pool:
         for found in pool.map(lambda _: machine.robot.forward_batch(axes)[0], range(8)):

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import inf, nan
 
 import numpy as np
-import pytest
 from softkin import Status
 
 from tests.catalogue.closure import Array
@@ -110,20 +110,24 @@ def test_positions_and_references_of_no_reasonable_size(machines: tuple[Machine,
                 assert refusal(robot.inverse, (positions[4], rotations[4]), None, references[4]) is Status.BAD_INPUT
 
 
-@pytest.mark.parametrize("what", [*NO_ROTATIONS, *(f"{n}" for n in NUMBERS)])
-def test_frames_that_are_no_rotation(machines: tuple[Machine, ...], what: str) -> None:
+def no_rotations(rotation: Array) -> Iterator[Array]:
+    """Matrices that are none; then an entry that is no number, each in its turn."""
+    for factor in NO_ROTATIONS.values():
+        yield factor @ rotation
+    for i in range(9):
+        for number in (nan, NUMBERS[1 + i % 5]):
+            entries = rotation.copy()
+            entries.flat[i] = number
+            yield entries
+
+
+def test_frames_that_are_no_rotation(machines: tuple[Machine, ...]) -> None:
     """Refused where the rotation is read; accepted where it is not."""
     machine, axes, positions, rotations = some(machines)
     robot, own = machine.robot, machine.own(axes)
     near = held_at(robot, axes, 0.0 * axes)
-    wrongs = [NO_ROTATIONS[what] @ rotations[3]] if what in NO_ROTATIONS else []
-    if not wrongs:
-        for i in range(9):
-            entries = rotations[3].copy()
-            entries.flat[i] = float(what)
-            wrongs.append(entries)
     clean = robot.inverse_batch(positions, rotations, own, near)[0]
-    for wrong in wrongs:
+    for wrong in no_rotations(rotations[3]):
         table = rotations.copy()
         table[3] = wrong
         got, statuses = robot.inverse_batch(positions, table, own, near)

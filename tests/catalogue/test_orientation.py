@@ -61,7 +61,7 @@ def test_it_is_the_nearest_in_the_frobenius_norm(machines: tuple[Machine, ...]) 
     """Nearer than every rotation of a fine turn of the flange."""
     angles = np.linspace(-np.pi, np.pi, 7201)
     for machine in turning(machines)[1:4]:
-        rotations = some_rotations(COUNT, 3)
+        rotations = some_rotations(COUNT // 3, 3)
         flange = machine.closure.poses(machine.draw(1, np.random.default_rng(4)))[1][0]
         candidates = about_z(angles) @ flange
         for rotation, found in zip(rotations, projected(machine, rotations), strict=True):

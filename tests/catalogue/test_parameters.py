@@ -134,13 +134,3 @@ def test_a_coupling_is_given_once(machines: tuple[Machine, ...]) -> None:
             machine.changed(pitch_zc=20.0, gear_coupling=0.0)
             machine.changed(pitch_zc=0.0, gear_coupling=0.1)
             refused(machine, "gear_coupling", pitch_zc=20.0, gear_coupling=0.1)
-
-
-def test_a_robot_does_not_change(machines: tuple[Machine, ...]) -> None:
-    """The parameters of a mechanism cannot be changed."""
-    robot = machines[1].robot
-    with pytest.raises(TypeError):
-        robot.parameters["check_limits"] = 0.0  # type: ignore[index]
-    with pytest.raises(AttributeError):
-        robot.something = 1.0  # type: ignore[attr-defined]
-    assert eval(repr(robot), vars(softkin) | {type(robot).__name__: type(robot)}).parameters == robot.parameters

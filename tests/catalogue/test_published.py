@@ -141,8 +141,7 @@ def test_parallel_arm_by_hand() -> None:
 
 
 @pytest.mark.parametrize(
-    ("dimensions", "position"),
-    [(UR5, (-817.25, -191.45, -5.491)), (UR10, (-1184.3, -256.141, 11.6))],
+    ("dimensions", "position"), [(UR5, (-817.25, -191.45, -5.491)), (UR10, (-1184.3, -256.141, 11.6))]
 )
 def test_zero_pose_of_arms_with_three_parallel_axes(dimensions: dict[str, float], position: tuple[float, ...]) -> None:
     """As their controllers show it: stretched to the back, the flange turned to the side."""

@@ -10,10 +10,10 @@ import pytest
 from softkin import KinematicsError, Status
 
 from tests.catalogue.closure import Array
-from tests.catalogue.machines import Machine
+from tests.catalogue.machines import Machine, few
 from tests.orthonormal import mirrored, repaired, single, slightly_off, too_far_off
 
-COUNT = 12
+COUNT = 9
 
 
 def some(machine: Machine) -> tuple[Array, Array, Array]:
@@ -24,7 +24,7 @@ def some(machine: Machine) -> tuple[Array, Array, Array]:
 
 def test_a_frame_in_single_precision_is_answered(machines: tuple[Machine, ...]) -> None:
     """Scalar and batch alike, as the repaired frame is, and the closure holds there."""
-    for machine in machines[:3]:
+    for machine in few(machines)[-2:]:
         robot = machine.robot
         axes, positions, rotations = some(machine)
         rounded = rotations.astype(np.float32)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from derive.description.joints import Kind
 from derive.importing.arms.lines import Arm, arm_of
 from derive.importing.formats.urdf import read_urdf
-from tests.importing.kinematics import imported
+from tests.importing.kinematics import imported_text
 from tests.importing.robots import COLLECTION, WRITTEN, File, joint, urdf, written
 
 pytestmark = pytest.mark.slow
@@ -98,7 +98,6 @@ def test_a_description_does_not_depend_on_the_frames_of_the_file(name: str, tmp_
     assert all(len(line.drives) == 1 and line.drives[0][1] == 1.0 for line in arm.lines)
     texts = set()
     for seed in range(SEEDS):
-        path = tmp_path / "arm.urdf"
-        path.write_text(urdf("arm", *_joints(arm, seed)), encoding="utf-8")
-        texts.add(imported(path).text.split('"""', 2)[2])
+        found = imported_text(tmp_path / "arm.urdf", urdf("arm", *_joints(arm, seed)))
+        texts.add(found.text.split('"""', 2)[2])
     assert len(texts) == 1

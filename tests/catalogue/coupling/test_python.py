@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import copy
 import math
-import pickle
 
 import numpy as np
 import pytest
@@ -48,14 +46,6 @@ def test_the_same_names_in_both_parts() -> None:
     robot = softkin.Coupled(softkin.PosRRR(**ARM), softkin.Wrist3())
     assert [b.name for b in robot.CONFIGURATION] == ["arm", "elbow", "A1", "A2", "A3", "hand", "A", "B", "C"]
     assert len(set(robot.MARGINS)) == len(robot.MARGINS) == 3
-
-
-def test_copies_and_other_processes() -> None:
-    """A copied or pickled coupling gives the same results."""
-    robot = scara_with_c(offset_c=5.0)
-    axes = (10.0, 20.0, 30.0, 40.0)
-    for other in (copy.copy(robot), copy.deepcopy(robot), pickle.loads(pickle.dumps(robot))):
-        assert repr(other) == repr(robot) and other.forward(axes) == robot.forward(axes)
 
 
 def test_the_image() -> None:

@@ -18,7 +18,7 @@ from tests.catalogue.loops.planted import FAULTS, Fault
 def the_test(fault: Fault) -> Callable[[tuple[LoopMachine, ...]], None]:
     """The test that is to fail, ready to be given machines."""
     module, _, name = fault.noticed_by.partition(".")
-    folder = "catalogue.loops" if module in ("test_type2", "test_margins", "test_bounds", "test_reach") else "catalogue"
+    folder = "catalogue.loops" if module in ("test_type2", "test_margins", "test_reach") else "catalogue"
     function = getattr(import_module(f"tests.{folder}.{module}"), name)
     wanted = inspect.signature(function).parameters
 

@@ -9,7 +9,7 @@ import pickle
 import numpy as np
 import pytest
 import softkin
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from softkin import Frame, KinematicsError, Status
 
@@ -144,6 +144,7 @@ ANGLES, LENGTHS = st.floats(-180.0, 180.0), st.floats(-500.0, 500.0)
 FRAMES = st.builds(Frame.from_euler, ANGLES, ANGLES, ANGLES, st.tuples(LENGTHS, LENGTHS, LENGTHS))
 
 
+@settings(max_examples=30)
 @given(FRAMES, FRAMES, st.tuples(*[st.floats(-170.0, 170.0)] * 6))
 def test_any_base_and_any_tool(base: Frame, tool: Frame, axes: tuple[float, ...]) -> None:
     """Of six axes and of four: base times flange times tool; and the answer has the frame, alone and in a batch."""
