@@ -130,7 +130,6 @@ class Sized:
 
 
 def sized(kind: Kind) -> Iterator[Sized]:
-    """The machines of a kind."""
     for label, sizes in kind.sizes.items():
         robot = class_of(kind)(**sizes, check_limits=False)
         yield Sized(label, robot, sum(map(abs, sizes.values())), kind.slides)

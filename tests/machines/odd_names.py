@@ -124,7 +124,6 @@ class Odd:
     title: str
 
     def mechanism(self) -> Mechanism:
-        """The machine."""
         return self.make(f"Odd{self.title}", lambda name: self.names.get(name, name))
 
     def twin(self) -> Mechanism:
@@ -149,11 +148,7 @@ ODD: Mapping[str, Odd] = {
         "Words",
     ),
     "constants called as words": Odd(
-        _scara,
-        _named("arm_1 arm_2 tip", "lambda np del"),
-        {"lambda": "lambda_", "del": "del_"},
-        {},
-        "Constants",
+        _scara, _named("arm_1 arm_2 tip", "lambda np del"), {"lambda": "lambda_", "del": "del_"}, {}, "Constants"
     ),
     "names of the derivation": Odd(
         _plane_arm,

@@ -33,7 +33,6 @@ CARRIERS = {
 
 @cache
 def inclined() -> softkin.Mechanism:
-    """The tool, derived."""
     found: softkin.Mechanism = compile_mechanism(INCLINED)(beside=30.0, below=-50.0)
     return found
 
