@@ -26,7 +26,6 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 @pytest.fixture
 def machines(mechanism: Mechanism) -> tuple[Machine, ...]:
-    """Its machines."""
     if mechanism.is_platform:
         return turning_machines_of(mechanism)
     return loop_machines_of(mechanism) if mechanism.rods else machines_of(mechanism)

@@ -53,7 +53,6 @@ PAIRED = tuple(m for m in CANDIDATES if softkin.catalogue()[m.name].MARGINS and 
 
 
 def robots(mechanism: Mechanism) -> Iterator[Machine]:
-    """Machines of one mechanism."""
     if mechanism.rods:
         yield from loop_machines_of(mechanism)[1:3]
         return

@@ -55,7 +55,6 @@ def distances_of(machine: Machine, answers: list[Array], references: Array) -> A
 
 @pytest.mark.slow("Hexaglide", "Planar", "ThreeParallel")
 def test_an_open_branch_is_the_nearest(machines: tuple[Machine, ...]) -> None:
-    """An open branch is that of the solution nearest to the reference."""
     for machine in few(machines):
         robot = machine.changed(check_limits=False)
         axes = machine.draw(300, np.random.default_rng(1))
@@ -164,7 +163,6 @@ def test_where_nothing_is_open_the_reference_has_no_influence(machines: tuple[Ma
 
 
 def test_without_a_configuration_branch_1_and_the_nearest_turn(machines: tuple[Machine, ...]) -> None:
-    """Without a configuration the inverse takes branch 1 and the turn nearest to the reference."""
     for machine in few(machines):
         robot = machine.changed(check_limits=False)
         branches, periods = robot.DEFAULT_CONFIGURATION[: robot.BRANCHES], robot.DEFAULT_CONFIGURATION[robot.BRANCHES :]

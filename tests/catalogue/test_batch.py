@@ -35,7 +35,6 @@ def mixed(machine: Machine, rng: Generator) -> tuple[Array, Array, Array, Array]
 
 
 def test_mixed_rows_are_the_scalar_calls(machines: tuple[Machine, ...]) -> None:
-    """A batch with good and bad rows gives the axes and statuses of single calls."""
     for number, machine in enumerate(few(machines)):
         positions, rotations, configurations, references = mixed(machine, np.random.default_rng(number))
         found, statuses = machine.robot.inverse_batch(positions, rotations, configurations, references)
@@ -53,24 +52,6 @@ def test_mixed_rows_are_the_scalar_calls(machines: tuple[Machine, ...]) -> None:
         assert {int(Status.OK), int(Status.BAD_INPUT)} <= set(statuses.tolist())
 
 
-def test_a_row_that_is_refused_leaves_the_others_alone(machines: tuple[Machine, ...]) -> None:
-    """Named branches and commanded turns that differ from row to row; then garbage in every fourth row."""
-    for number, machine in enumerate(few(machines)):
-        rng = np.random.default_rng(number)
-        axes = machine.draw(48, rng)
-        positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
-        named = configurations.astype(int)
-        named[:, : machine.robot.BRANCHES] = rng.integers(1, 3, (48, machine.robot.BRANCHES))
-        before, statuses = machine.robot.inverse_batch(positions, rotations, named, axes)
-        spoiled = np.arange(48) % 4 == 3
-        positions[spoiled] = [np.nan, 0.0, np.inf]
-        named[spoiled & (rng.random(48) < 0.5)] = 300
-        after, found = machine.robot.inverse_batch(positions, rotations, named, axes)
-        assert (found[spoiled] == Status.BAD_INPUT).all() and np.isnan(after[spoiled]).all()
-        assert (found[~spoiled] == statuses[~spoiled]).all()
-        assert np.array_equal(after[~spoiled], before[~spoiled], equal_nan=True)
-
-
 def test_a_batch_is_its_parts(machines: tuple[Machine, ...]) -> None:
     """Longer than a chunk, and bit for bit what each row gives alone."""
     for machine in machines[1:2]:
@@ -86,7 +67,6 @@ def test_a_batch_is_its_parts(machines: tuple[Machine, ...]) -> None:
 
 
 def test_no_rows(machines: tuple[Machine, ...]) -> None:
-    """A batch without rows gives arrays without rows."""
     robot = machines[0].robot
     width, size = len(robot.AXES), len(robot.CONFIGURATION)
     shapes = [part.shape for part in robot.forward_batch(np.zeros((0, width)))]
@@ -98,7 +78,6 @@ def test_no_rows(machines: tuple[Machine, ...]) -> None:
 
 
 def test_one_row_may_stand_for_all(machines: tuple[Machine, ...]) -> None:
-    """One configuration and one reference may stand for all rows."""
     for machine in machines[:2]:
         axes = machine.draw(30, np.random.default_rng(2))
         axes = held_at(machine.robot, np.tile(axes[0], (30, 1)), axes)
@@ -139,7 +118,6 @@ def test_one_configuration_may_leave_branches_open_in_many_rows(
 
 
 def test_inputs_are_left_alone(machines: tuple[Machine, ...]) -> None:
-    """A batch does not change its input arrays."""
     machine = machines[1]
     axes = machine.draw(30, np.random.default_rng(3))
     positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
@@ -181,7 +159,6 @@ def wrong_calls(robot: softkin.Mechanism) -> list[tuple[object, ...]]:
 
 
 def test_wrong_shapes_and_types(machines: tuple[Machine, ...]) -> None:
-    """A batch with a wrong shape or type raises BAD_INPUT."""
     robot = machines[0].robot
     for arguments in wrong_calls(robot):
         assert refusal(robot.inverse_batch, *arguments) is Status.BAD_INPUT
@@ -192,7 +169,6 @@ def test_wrong_shapes_and_types(machines: tuple[Machine, ...]) -> None:
 
 
 def test_several_threads_may_share_a_robot(machines: tuple[Machine, ...]) -> None:
-    """Several threads may call one mechanism at the same time."""
     from concurrent.futures import ThreadPoolExecutor
 
     machine = machines[1]

@@ -50,7 +50,6 @@ def test_an_axis_that_carries_another_is_always_limited(mechanism: Mechanism, ma
 
 
 def test_limits_of_its_own_replace_the_two_turns(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """Limits of a helical axis replace its default range of two turns."""
     for machine in fitting(machines):
         for i, joint in enumerate(mechanism.joints):
             if joint.kind is not Kind.HELICAL:

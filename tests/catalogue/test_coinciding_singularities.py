@@ -43,14 +43,12 @@ CASES = [(m, label) for m in SPATIAL for label in (*ROBOTS.get(m.name, {}), "bar
 
 @pytest.fixture(params=CASES, ids=lambda c: f"{c[0].name}-{c[1]}")
 def one(request: pytest.FixtureRequest) -> Machine:
-    """A robot of the catalogue."""
     mechanism, label = request.param
     return robot_of(mechanism, label)
 
 
 @cache
 def robot_of(mechanism: Mechanism, label: str) -> Machine:
-    """One of them."""
     if label in ("bare", "random"):
         return bare_machine(mechanism) if label == "bare" else machines_of(mechanism)[-1]
     return machine(mechanism, label, ROBOTS[mechanism.name][label])
@@ -124,7 +122,6 @@ def test_every_pose_of_the_grid(one: Machine, around: str) -> None:
 
 
 def test_singularities_that_coincide(one: Machine) -> None:
-    """Poses at which singularities coincide are solved."""
     axes = np.concatenate(list(coinciding(one)))
     near = np.abs(one.closure.indicators(one.closure.joints(axes))) < CLOSEST * one.largest
     assert near.any(axis=0).all()  # every branch, and several at once

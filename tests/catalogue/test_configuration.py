@@ -116,7 +116,6 @@ def test_where_branches_coincide_the_byte_is_3(machines: tuple[Machine, ...]) ->
 
 
 def test_wrong_bytes_are_refused(machines: tuple[Machine, ...]) -> None:
-    """Bytes without a meaning raise BAD_INPUT."""
     for machine in machines[:2]:
         robot = machine.robot
         axes = machine.draw(5, np.random.default_rng(6))

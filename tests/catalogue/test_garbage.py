@@ -48,7 +48,6 @@ def some(machines: tuple[Machine, ...]) -> tuple[Machine, Array, Array, Array]:
 
 
 def test_axis_values_that_are_no_numbers_of_reasonable_size(machines: tuple[Machine, ...]) -> None:
-    """Axis values that are no numbers of reasonable size are refused."""
     machine, axes, _, _ = some(machines)
     robot = machine.robot
     for i in range(axes.shape[1]):
@@ -68,7 +67,6 @@ def test_axis_values_that_are_no_numbers_of_reasonable_size(machines: tuple[Mach
 
 
 def test_too_few_or_too_many_axes(machines: tuple[Machine, ...]) -> None:
-    """A wrong number of axis values raises BAD_INPUT."""
     machine, axes, positions, rotations = some(machines)
     robot = machine.robot
     frame = positions[0], rotations[0]
@@ -81,7 +79,6 @@ def test_too_few_or_too_many_axes(machines: tuple[Machine, ...]) -> None:
 
 
 def test_positions_and_references_of_no_reasonable_size(machines: tuple[Machine, ...]) -> None:
-    """Positions and references that are no numbers of reasonable size are refused, row by row."""
     machine, axes, positions, rotations = some(machines)
     robot = machine.robot
     own, near = machine.own(axes), held_at(robot, axes, 0.0 * axes)
@@ -146,7 +143,6 @@ def test_frames_that_are_no_rotation(machines: tuple[Machine, ...]) -> None:
 
 
 def test_whether_the_rotation_is_read_is_said(machines: tuple[Machine, ...]) -> None:
-    """`READS_ROTATION` says whether the inverse reads the commanded rotation."""
     machine, axes, positions, rotations = some(machines)
     robot, own = machine.robot, machine.own(axes)
     assert machine.closure.follows_rotation == robot.READS_ROTATION
@@ -161,7 +157,6 @@ def test_whether_the_rotation_is_read_is_said(machines: tuple[Machine, ...]) -> 
 
 
 def test_what_has_not_the_form_of_a_frame(machines: tuple[Machine, ...]) -> None:
-    """An argument without the form of a frame raises BAD_INPUT."""
     machine, axes, positions, rotations = some(machines)
     robot, near = machine.robot, axes[0]
     p, r = positions[0], rotations[0]

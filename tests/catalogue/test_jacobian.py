@@ -60,12 +60,10 @@ def exponents(machine: Machine, axes: Array) -> Array:
 
 
 def test_rows_are_the_task(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """The rows of the Jacobian are the coordinates of the task."""
     assert (*mechanism.task.position, *TURNS[mechanism.task.turning]) == machines[0].robot.JACOBIAN_ROWS
 
 
 def test_it_is_the_derivative_of_the_closure(machines: tuple[Machine, ...]) -> None:
-    """The Jacobian is that of the closure equations."""
     for machine in machines:
         axes = machine.draw(60, np.random.default_rng(1))
         expected = machine.closure.jacobian(axes, machine.closure.poses(axes)[0])
@@ -73,7 +71,6 @@ def test_it_is_the_derivative_of_the_closure(machines: tuple[Machine, ...]) -> N
 
 
 def test_it_has_full_rank_at_regular_poses_and_only_there(machines: tuple[Machine, ...]) -> None:
-    """The Jacobian has full rank at regular poses, and loses it at singular ones."""
     for machine in machines:
         axes = machine.draw(60, np.random.default_rng(3))
         values = np.linalg.svd(of_solved(machine, axes), compute_uv=False)

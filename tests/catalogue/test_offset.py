@@ -66,7 +66,7 @@ def _count(machine: Machine) -> int:
 def drawn(machine: Machine, seed: int) -> tuple[Array, Array]:
     """Regular axes with regular offsets, up to the reach."""
     rng = np.random.default_rng(seed)
-    axes = machine.draw(6 * POSES, rng)
+    axes = machine.draw(10 * POSES, rng)
     offsets = rng.uniform(-0.6, 0.6, (len(axes), 3)) * machine.reach
     chosen = regular(machine, axes, offsets)
     assert chosen.sum() >= POSES
@@ -83,7 +83,6 @@ def test_who_offers_it(mechanism: Mechanism, machines: tuple[Machine, ...]) -> N
 
 @pytest.mark.long("P2C")
 def test_round_trip_with_the_reference_at_the_same_axes(machines: tuple[Machine, ...]) -> None:
-    """The inverse of a point beside the flange leads back to the axes."""
     for machine in offered(machines):
         axes, offsets = drawn(machine, 1)
         for values, offset, point in zip(axes, offsets, points(machine, axes, offsets), strict=True):
@@ -132,7 +131,6 @@ def _answers(machine: Machine, places: Array, offsets: Array, configuration: tup
 
 
 def test_zero_offset_is_the_inverse(machines: tuple[Machine, ...]) -> None:
-    """With a zero offset the offset interface answers as the inverse."""
     for machine in offered(machines):
         axes = machine.draw(POSES, np.random.default_rng(4))
         frames = machine.closure.poses(axes)
@@ -219,7 +217,6 @@ def on_the_axis(machine: Machine, values: Array, joint: int) -> tuple[Array, Arr
 
 
 def test_garbage(machines: tuple[Machine, ...]) -> None:
-    """Garbage in the arguments of the offset interface is refused."""
     for machine in offered(machines)[:1]:
         robot = machine.robot
         axes = machine.draw(1, np.random.default_rng(6))[0]

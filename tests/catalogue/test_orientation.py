@@ -43,7 +43,6 @@ def turning(machines: tuple[Machine, ...]) -> list[Machine]:
 
 
 def test_it_is_offered_where_the_machine_chooses_the_twist(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """Exactly the mechanisms that follow one turn of the rotation offer `project`."""
     for machine in machines:
         assert hasattr(machine.robot, "project") == (mechanism.task.turning is Turning.ABOUT_Z)
 
@@ -71,7 +70,6 @@ def test_it_is_the_nearest_in_the_frobenius_norm(machines: tuple[Machine, ...]) 
 
 
 def test_projecting_again_changes_nothing(machines: tuple[Machine, ...]) -> None:
-    """Projecting a projected rotation does not change it."""
     for machine in turning(machines):
         once = projected(machine, some_rotations(COUNT, 5))
         assert np.abs(projected(machine, once) - once).max() < 1e-14

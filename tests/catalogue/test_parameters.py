@@ -24,7 +24,6 @@ def refused(machine: Machine, name: str, **given: object) -> None:
 
 
 def test_every_number_must_be_one(machines: tuple[Machine, ...]) -> None:
-    """A parameter that is no number of reasonable size is refused."""
     for parameter in machines[1].robot.PARAMETERS:
         for value in (nan, inf, -inf, 1e300, -1e300, "5", None, [5.0], 5j):
             refused(machines[1], parameter.name, **{parameter.name: value})
@@ -69,7 +68,6 @@ def test_ranges_of_the_vendor() -> None:
 
 
 def test_lengths_must_be_given_and_nothing_else_need_be(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """Lengths have no default, and all other parameters have one."""
     robot_class = type(machines[0].robot)
     lengths = {p.name: p.nominal for p in mechanism.parameters if p.default is None}
     assert {p.name for p in mechanism.parameters if p.role is Role.LENGTH} <= set(lengths)
@@ -85,7 +83,6 @@ def test_lengths_must_be_given_and_nothing_else_need_be(mechanism: Mechanism, ma
 
 
 def test_defaults_are_the_ones_it_says(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """The default of a parameter is the one that the class lists."""
     robot = machines[0].robot
     for parameter in robot.PARAMETERS:
         expected = machines[0].given.get(parameter.name, parameter.default)
@@ -101,7 +98,6 @@ def test_defaults_are_the_ones_it_says(mechanism: Mechanism, machines: tuple[Mac
 
 
 def test_limits_must_be_in_order(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """A lower limit that is not below the upper one is refused."""
     names = [j.key for j in mechanism.joints] + [q.name for q in mechanism.limited]
     for name in names:
         lower, upper = f"lower_{name}", f"upper_{name}"
@@ -113,7 +109,6 @@ def test_limits_must_be_in_order(mechanism: Mechanism, machines: tuple[Machine, 
 
 
 def test_signs_and_flags(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """A direction is 1 or -1, a flag is true or false, and other values are refused."""
     kinds = {p.name: p.kind for p in machines[0].robot.PARAMETERS}
     for name, kind in kinds.items():
         good = {"sign": (1, -1, 1.0), "flag": (True, False, 0, 1, 1.0)}.get(kind, ())

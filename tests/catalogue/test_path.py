@@ -48,7 +48,6 @@ def follow(
 
 
 def chosen(machines: tuple[Machine, ...], label: str) -> Machine:
-    """The machine with that label."""
     (found,) = (m for m in machines if m.label == label)
     return found
 
@@ -69,7 +68,6 @@ def test_many_turns(machines: tuple[Machine, ...]) -> None:
 
 @pytest.mark.long
 def test_an_automatic_branch_stays_on_a_regular_way(machines: tuple[Machine, ...]) -> None:
-    """On a regular path an automatic choice stays on its branch."""
     for machine in few(machines)[:2]:
         axes = tour(machine, 1200, turns=-1)
         found, answered = follow(machine.robot, machine, axes, (0,) * machine.robot.BRANCHES)

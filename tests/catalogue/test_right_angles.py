@@ -55,7 +55,6 @@ def possible(chosen: Machine, axes: Array) -> Array:
 
 
 def test_forward_answers_where_there_is_a_pose(grid: tuple[Machine, Array]) -> None:
-    """At right angles forward kinematics answers wherever there is a pose."""
     chosen, axes = grid
     positions, rotations, _, statuses = chosen.robot.forward_batch(axes)
     inside = possible(chosen, axes)

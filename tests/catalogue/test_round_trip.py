@@ -53,7 +53,6 @@ def test_open_periods_are_found_by_the_reference(machines: tuple[Machine, ...]) 
 
 
 def test_every_slot_satisfies_the_closure(machines: tuple[Machine, ...]) -> None:
-    """The axes of every slot satisfy the closure equations at the commanded frame."""
     for machine in few(machines):
         axes = machine.draw(POSES, np.random.default_rng(4))
         frames = machine.closure.poses(axes)
@@ -74,7 +73,6 @@ def test_every_slot_satisfies_the_closure(machines: tuple[Machine, ...]) -> None
 
 
 def test_inverse_all_holds_every_branch_in_its_slot(machines: tuple[Machine, ...]) -> None:
-    """`inverse_all` has in each slot the answer of the inverse for its bytes."""
     for machine in few(machines):
         robot = machine.changed(check_limits=False)  # near the end of an axis the other branch may be beyond it
         axes = machine.draw(10, np.random.default_rng(5))
@@ -89,15 +87,3 @@ def test_inverse_all_holds_every_branch_in_its_slot(machines: tuple[Machine, ...
                 again = robot.inverse((position, rotation), solution.configuration, strangers(machine, values))
                 assert np.abs(np.subtract(again, solution.axes)).max() < AXES
             assert min(np.abs(np.subtract(s.axes, values)).max() for s in answered) < AXES
-
-
-def test_a_scalar_inverse_is_the_batch_inverse(machines: tuple[Machine, ...]) -> None:
-    """Single calls and batches of the inverse agree."""
-    for machine in few(machines):
-        axes = machine.draw(25, np.random.default_rng(6))
-        positions, rotations = machine.closure.poses(axes)
-        _, _, configurations, _ = machine.robot.forward_batch(axes)
-        found, _ = machine.robot.inverse_batch(positions, rotations, configurations, axes)
-        for row in range(len(axes)):
-            scalar = machine.robot.inverse((positions[row], rotations[row]), configurations[row].tolist(), axes[row])
-            assert np.abs(np.subtract(scalar, found[row])).max() < 1e-11

@@ -53,7 +53,6 @@ def test_a_frame_in_single_precision_is_answered(machines: tuple[Machine, ...]) 
 
 
 def test_every_small_error_is_repaired_and_every_larger_one_refused(machines: tuple[Machine, ...]) -> None:
-    """A rotation with a small error is repaired, and one with a larger error is refused."""
     machine = machines[-1]
     robot = machine.robot
     axes, positions, rotations = some(machine)

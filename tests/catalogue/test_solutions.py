@@ -49,7 +49,7 @@ def test_where_the_closure_has_no_root_no_slot_answers(machines: tuple[Machine, 
     none.
     """
     counts = set()
-    for machine in few(machines):
+    for machine in machines[::2]:
         axes = machine.draw(3, np.random.default_rng(32))
         scales = (0.05, 0.6, 2.2)
         for values, position, rotation, scale in zip(axes, *machine.closure.poses(axes), scales, strict=True):

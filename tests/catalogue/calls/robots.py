@@ -44,7 +44,6 @@ def poses(name: str, number: int, count: int) -> tuple[Axes, ...]:
 
 
 def frame_at(one: softkin.Mechanism, axes: Axes) -> Frame:
-    """The frame at axis values."""
     return one.forward(axes)[0]
 
 

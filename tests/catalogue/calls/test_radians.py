@@ -29,7 +29,6 @@ def same(robot: softkin.Mechanism, own: Any, degrees: Any) -> bool:
 
 
 def outcome(call: Any, *arguments: Any, **given: Any) -> Any:
-    """The result, or the refusal."""
     try:
         return call(*arguments, **given)
     except KinematicsError as error:
@@ -90,7 +89,6 @@ def said(robot: softkin.Mechanism, error: KinematicsError) -> str:
 @pytest.mark.long("Ac6")
 @pytest.mark.parametrize("name", NAMES)
 def test_batches(name: str) -> None:
-    """The same of batches."""
     for number, one in enumerate(robots(name)):
         chosen = np.array(poses(name, number, 3))
         made, own = one.made, one.made.in_radians()

@@ -38,7 +38,6 @@ def test_the_inclination_moves_the_tool_to_x(side: int, height: float) -> None:
 
 
 def test_the_roll_axis_offset_is_seen_behind_the_yaw() -> None:
-    """The offset of the roll axis turns with the yaw axis."""
     robot = softkin.Wrist2(tool_length=90.0, roll_axis_offset_x=12.0, roll_axis_offset_y=-7.0, roll_axis_offset_z=-40.0)
     assert frame_of(robot, 90.0, 0.0)[0] == pytest.approx((7.0, 12.0, 50.0), abs=1e-12)
 
@@ -82,14 +81,3 @@ def test_a_tool_on_a_c_axis_is_parallel_to_the_flange_at_zero() -> None:
     assert frame_of(robot, 90.0)[0] == pytest.approx((8.0, 15.0, -60.0), abs=1e-12)
     still = softkin.Tool(tool_x=15.0, tool_y=-8.0, tool_z=-60.0)
     assert frame_of(still)[0] == pytest.approx((15.0, -8.0, -60.0)) and frame_of(still)[1] == pytest.approx(np.eye(3))
-
-
-def test_a_scara_takes_a_tool_along_z_only() -> None:
-    """Kin_Scara2_Z alone takes "only a pure Z offset"."""
-    scara = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0)
-    position, _ = frame_of(softkin.Coupled(scara, softkin.Tool(tool_z=-60.0)), 30.0, 40.0, 100.0)
-    assert position[2] == pytest.approx(40.0)
-    for offset in ({"tool_x": 5.0}, {"tool_y": 5.0}):
-        with pytest.raises(softkin.KinematicsError) as refusal:
-            softkin.Coupled(scara, softkin.Tool(**offset))
-        assert refusal.value.status.softmotion == "SMC_TRAFO_INVALID_COUPLING"

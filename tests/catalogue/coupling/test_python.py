@@ -13,12 +13,10 @@ ARM = {"d1": 350.0, "a2": 310.0, "d4": 290.0}
 
 
 def scara_with_c(**given: float) -> softkin.Coupled:
-    """A SCARA with a C axis."""
     return softkin.Coupled(softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0), softkin.CAxis(**given))
 
 
 def refused(status: Status, call: object, *arguments: object, **given: object) -> str:
-    """The message of a refusal."""
     with pytest.raises(KinematicsError) as refusal:
         call(*arguments, **given)  # type: ignore[operator]
     assert refusal.value.status is status, refusal.value
@@ -66,7 +64,6 @@ def test_the_image() -> None:
 
 
 def test_parts_of_the_wrong_kind() -> None:
-    """A coupling refuses parts of the wrong kind."""
     scara, wrist = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0), softkin.Wrist3()
     whole = softkin.Kin5Axes()
     for first, second, place in (
@@ -114,7 +111,6 @@ def test_a_tool_that_points_the_opposite_way() -> None:
 
 
 def test_limits_are_those_of_the_parts() -> None:
-    """A coupling refuses poses beyond the limits of its parts."""
     robot = scara_with_c(lower_c=-10.0, upper_c=10.0)
     for c, allowed in ((5.0, True), (15.0, False)):
         axes = (10.0, 20.0, 30.0, c)
@@ -198,7 +194,6 @@ def test_an_automatic_choice_where_only_slides_tell() -> None:
 
 
 def test_a_diagnosis_names_the_part_that_refuses() -> None:
-    """The diagnosis of a coupling names the part that refuses."""
     robot = softkin.Coupled(
         softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0, lower_z=-50.0, upper_z=80.0),
         softkin.CAxis(lower_c=-90.0, upper_c=90.0),

@@ -11,5 +11,4 @@ OTHERS = ("inch", "lopsided", "hanging, with a tool", "sideways")
 
 @pytest.fixture(params=[pytest.param(name, marks=pytest.mark.long if name in OTHERS else ()) for name in NAMES])
 def machine(request: pytest.FixtureRequest) -> Machine:
-    """A hexapod by its label."""
     return machines()[request.param]

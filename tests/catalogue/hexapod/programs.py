@@ -20,7 +20,6 @@ Statuses = NDArray[np.object_]
 
 
 def kinematics() -> Kinematics:
-    """All programs."""
     return kinematics_of(named("Kin_Hexapod"))
 
 

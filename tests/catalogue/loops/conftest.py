@@ -10,7 +10,6 @@ from tests.catalogue.loop_machines import LOOPS, LoopMachine, loop_machines_of
 
 @pytest.fixture(params=LOOPS, ids=lambda m: m.name)
 def mechanism(request: pytest.FixtureRequest) -> Mechanism:
-    """A mechanism with rods."""
     return request.param
 
 

@@ -38,7 +38,6 @@ class Crossing:
     """The place of the singularity on the line, from 0 to 1, where the assembly mode changes."""
 
     def positions(self, shares: Array) -> Array:
-        """Points of the line."""
         return self.start + (self.end - self.start) * np.asarray(shares)[:, None]
 
 

@@ -36,7 +36,6 @@ class Fault:
 
 
 def mechanism_named(name: str) -> Mechanism:
-    """The loop of that name."""
     (found,) = (m for m in LOOPS if m.name == name)
     return found
 

@@ -137,7 +137,6 @@ def test_the_ends_of_what_is_possible(what: str) -> None:
 
 
 def test_steep_rails_can_be_as_far_apart_as_they_like() -> None:
-    """Steep rails may have any distance from each other."""
     softkin.TripodLinear(
         outer_radius=4000.0, inner_radius=60.0, arm_length=400.0, rail_angle=30.0, max_angle_ball_joint=45.0
     )

@@ -17,7 +17,6 @@ LEG, PLATE, BOUND = range(3)
 
 
 def matrices(machine: LoopMachine, axes: Array) -> tuple[Array, Array]:
-    """A and B."""
     joints, positions = machine.closure.joints(axes), machine.closure.poses(axes)[0]
     return machine.closure.by_position(joints, positions), machine.closure.by_joints(joints, positions)
 

@@ -52,7 +52,6 @@ def crossings_given_to(machines: tuple[LoopMachine, ...]) -> list[Crossing]:
 
 @pytest.mark.parametrize("what", FAULTS)
 def test_a_wrong_formula_is_noticed(what: str) -> None:
-    """A test fails for each wrong formula."""
     machines = FAULTS[what].machines()
     with pytest.raises((AssertionError, KinematicsError)):
         the_test(FAULTS[what])(machines)

@@ -12,7 +12,6 @@ from tests.catalogue.turning_machines import TURNING, TurningMachine, turning_ma
 
 @pytest.fixture(params=[m for m in TURNING if m.name != "Kin_Hexapod"], ids=lambda m: m.name)
 def mechanism(request: pytest.FixtureRequest) -> Mechanism:
-    """A mechanism with rods."""
     return request.param
 
 

@@ -39,7 +39,6 @@ class TurningAxis:
 
     @property
     def joint(self) -> Joint:
-        """The joint of the axis."""
         return self.mechanism.joints[self.index]
 
     @property

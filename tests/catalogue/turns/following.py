@@ -95,7 +95,6 @@ def _check_refusal(axis: TurningAxis, limits: Range, caller: Caller, at: float, 
 
 
 def _answered(axis: TurningAxis, caller: Caller, asked: Asked, turn: int, value: float | None) -> None:
-    """With the turn named."""
     named = (*asked.configuration[: axis.byte], turn, *asked.configuration[axis.byte + 1 :])
     found = caller.inverse(replace(asked, configuration=named))
     assert found is not None, f"{axis}: turn {turn} is refused"

@@ -36,7 +36,6 @@ class Range:
         return self.width <= 360.0 - GAP_THAT_NO_STEP_CROSSES + self.tolerance
 
     def has(self, value: float) -> bool:
-        """Whether a value is inside."""
         return self.lower - self.tolerance <= value <= self.upper + self.tolerance
 
     def is_sharp(self, value: float) -> bool:
