@@ -29,8 +29,6 @@ SCARA = description("scara.py", "MyScara")
 
 @dataclass(frozen=True)
 class Said:
-    """What a command said."""
-
     status: int
     out: str
     err: str
@@ -44,14 +42,12 @@ class Folder:
     capsys: pytest.CaptureFixture[str]
 
     def write(self, name: str, text: str) -> Path:
-        """A file in the folder."""
         path = self.path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
         return path
 
     def run(self, *arguments: object) -> Said:
-        """A command in the folder."""
         status = main([str(a) for a in arguments])
         said = self.capsys.readouterr()
         return Said(status, said.out, said.err)

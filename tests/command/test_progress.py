@@ -29,8 +29,6 @@ class Terminal(StringIO):
 
 @dataclass
 class Clock:
-    """A clock that is set by hand."""
-
     now: float = 0.0
 
     def __call__(self) -> float:
@@ -53,7 +51,6 @@ class Watched:
 
 
 def test_a_terminal_shows_a_bar_and_the_time_left() -> None:
-    """On a terminal the progress is a bar with the time left."""
     stream, clock = Terminal(), Clock()
     progress = Progress(4, stream, clock)
     for clock.now, line in ((5.0, "first"), (10.0, "second")):
@@ -69,7 +66,6 @@ def test_a_terminal_shows_a_bar_and_the_time_left() -> None:
 
 
 def test_a_file_gets_lines_alone() -> None:
-    """In a file the progress consists of plain lines."""
     stream = StringIO()
     progress = Progress(2, stream)
     progress.step("first", took_time=False)

@@ -54,7 +54,6 @@ def test_a_disk_that_takes_nothing(
 
 
 def test_a_description_with_a_byte_that_is_0(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Its line is named."""
     path = tmp_path / "arm.py"
     path.write_bytes(b"# one\n# two\nx = 1\0\n")
     assert main(["explain", str(path)]) == 2

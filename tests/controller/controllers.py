@@ -38,7 +38,6 @@ def authority() -> trustme.CA:
 
 @cache
 def another_authority() -> trustme.CA:
-    """And another one."""
     return trustme.CA()
 
 
@@ -78,7 +77,6 @@ class Plc:
 
     @property
     def address(self) -> str:
-        """Where it listens."""
         return f"opc.tcp://{HOST}:{self.port}"
 
     async def start(self) -> None:
@@ -135,7 +133,6 @@ class Ctrlx:
 
     @property
     def address(self) -> str:
-        """Where it listens."""
         return f"https://{HOST}:{self.port}"
 
     async def start(self) -> None:

@@ -18,7 +18,6 @@ from tests.controller.pages import GANTRY, PATIENCE, Served, message_where, page
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with a machine and a page."""
     (tmp_path / "machine.json").write_text(json.dumps({**GANTRY, "source": "-"}), encoding="utf-8")
     (tmp_path / "page.html").write_text("<p>viewer</p>", encoding="utf-8")
     monkeypatch.chdir(tmp_path)

@@ -34,7 +34,6 @@ COMMANDS = [
 
 
 def parser() -> argparse.ArgumentParser:
-    """That of `softkin live`."""
     found = argparse.ArgumentParser()
     live.add_arguments(found)
     return found

@@ -37,7 +37,6 @@ def test_a_reading_is_a_finite_number_or_has_a_reason(raw: object, scale: float)
 
 
 def written(folder: Path, text: str) -> Path:
-    """A table."""
     path = folder / "table.csv"
     path.write_text(text, encoding="utf-8")
     return path

@@ -23,7 +23,6 @@ _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.]*\w)")
 
 
 def answer(one: Robot, question: Question) -> Answer:
-    """What the package says to a question."""
     return _CALLS[question["call"]](one, question)
 
 

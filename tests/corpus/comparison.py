@@ -28,7 +28,6 @@ Ask = Callable[[Robot, Question], Answer]
 
 
 def differences(one: Robot, asked: list[Question], recorded: list[Answer], ask: Ask = answer) -> Iterator[str]:
-    """Every difference, in words."""
     for question, old in zip(asked, recorded, strict=True):
         new = ask(one, question)
         is_singular = question["kind"] == "singular"

@@ -28,7 +28,6 @@ class Limited:
 
     @property
     def calls(self) -> list[Any]:
-        """The calls of the inverse."""
         return [["inverse", {"position": f.position, "rotation": f.rotation}, c, axes] for f, c, axes in self.asked]
 
     def confirm(self, answers: Sequence[Mapping[str, Any]]) -> int:

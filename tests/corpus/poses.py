@@ -76,7 +76,6 @@ def ends(one: Robot, count: int, rng: np.random.Generator) -> list[Axes]:
 
 
 def margins(one: Robot, axes: Axes) -> Array:
-    """The margins at axis values."""
     return np.array(list(one.made.singularity(axes).margins.values()), dtype=float)
 
 

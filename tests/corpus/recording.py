@@ -22,7 +22,6 @@ Recording = list[dict[str, Any]]
 
 
 def read(name: str, folder: Path = RECORDED) -> Recording:
-    """The recording of a mechanism."""
     found: Recording = json.loads(lzma.decompress((folder / f"{name}.json.xz").read_bytes()))
     return found
 

@@ -60,14 +60,12 @@ def dropped(found: Answer) -> None:
 
 
 def reworded(found: Answer) -> None:
-    """Another reason."""
     for named in found.get("named", []):
         if named["why"].get("reason"):
             named["why"]["reason"] = named["why"]["reason"].upper()
 
 
 def turned(found: Answer) -> None:
-    """Another turn that is inside."""
     for named in found.get("named", []):
         if named["why"].get("turn"):
             named["why"]["turn"] += 1

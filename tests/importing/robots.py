@@ -16,8 +16,6 @@ XACRO = Path(rtbdata.__file__).parent / "xacro"
 
 @dataclass(frozen=True)
 class File:
-    """A robot file with its ends."""
-
     path: Path
     base: str
     tip: str

@@ -60,7 +60,6 @@ def loop(name: str) -> str:
 
 
 def toml(name: str) -> str:
-    """The same as a table."""
     rows = (("revolute", 0.3), ("revolute", 0.2), ("prismatic", 0))
     told = "".join(
         f'[[joints]]\nname = {json.dumps(f"{name} moving {k}")}\ntype = "{kind}"\na = {shift}\n'

@@ -63,7 +63,6 @@ def _file(name: str, folder: Path) -> File:
 
 
 def _turned(rng: np.random.Generator) -> Array:
-    """Any rotation."""
     rotation, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     return np.asarray(rotation * np.sign(np.linalg.det(rotation)))
 

@@ -9,7 +9,6 @@ from softkin import Frame, KinematicsError, Mechanism, Scara4ZCcoupledType1
 
 
 def by_name(name: str) -> Mechanism:
-    """A machine of the catalogue, by its name."""
     return softkin.catalogue()[name](
         link_length_1=325.0, link_length_2=225.0, limits={"A1": (-170.0, None), "A3": None}
     )
