@@ -1,7 +1,5 @@
 """What the README shows of generated code stands in the generated files."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

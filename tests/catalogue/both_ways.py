@@ -1,7 +1,5 @@
 """Batch calls whose rows are compared with scalar calls: at every boundary both must decide the same."""
 
-from __future__ import annotations
-
 import numpy as np
 import softkin
 from numpy.typing import ArrayLike

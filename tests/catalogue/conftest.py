@@ -4,8 +4,6 @@ Tests marked `serial` know a shape of serial arms (an elbow's sine, a hole in th
 tests of the same thing in `loops`. The hexapod, which has no branches, has `hexapod`.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,8 +1,6 @@
 """The machines of the tests of corners: special dimensions with coinciding singularities, random ones, both assembly
 modes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import cache
 

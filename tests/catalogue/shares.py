@@ -3,8 +3,6 @@
 Both answer by the same program, which the tests of the native half show.
 """
 
-from __future__ import annotations
-
 import os
 
 MOST = 4000 if os.environ["SOFTKIN_CORE"] == "native" else 600

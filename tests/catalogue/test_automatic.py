@@ -1,7 +1,5 @@
 """What the reference decides, and what it does not: open branches and open periods."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

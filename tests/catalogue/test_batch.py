@@ -1,7 +1,5 @@
 """Batches: row by row what the scalar calls do, and nothing happens between the rows."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

@@ -1,7 +1,5 @@
 """The edge of the workspace belongs to it: reach, the hole in the middle, the plane, and the wrong side of a tool."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

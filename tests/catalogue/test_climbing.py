@@ -1,7 +1,5 @@
 """A helical axis moves a linear one along by its pitch: then it has no period, and is always limited."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import Status

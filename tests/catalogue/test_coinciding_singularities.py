@@ -5,8 +5,6 @@ pose of a grid of right angles: with dimensions of arms that are sold, and with 
 once.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from itertools import product
 

@@ -1,7 +1,5 @@
 """The configuration that forward kinematics writes, and that the inverse reads."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import Status

@@ -1,7 +1,5 @@
 """Forward kinematics is the closure: for every machine, scalar and batch."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

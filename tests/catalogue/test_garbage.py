@@ -1,7 +1,5 @@
 """Invalid poses, axes and numbers: a status and one clear message; in a batch the other rows are unaffected."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import inf, nan
 

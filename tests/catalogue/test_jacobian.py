@@ -1,7 +1,5 @@
 """The Jacobian against the derivative of the closure; its determinant against the margins."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from derive.description.mechanism import Mechanism, Turning

@@ -1,7 +1,5 @@
 """Limits of axes and of other quantities: tested last, with a tolerance; they never choose another solution."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The offset interface: the position of a point off the flange is commanded, without the orientation."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A commanded rotation that the flange cannot take: it takes the nearest one, tool direction first."""
 
-from __future__ import annotations
-
 import numpy as np
 import softkin
 from softkin import Status

@@ -1,7 +1,5 @@
 """The package as a whole: its names, the time of its import, and the properties of its classes."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Pairs of singular factors close to zero, at every decade of distance: no pose is lost, and every answer is right."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

@@ -1,7 +1,5 @@
 """Impossible machines: one clear message that names the parameter, and no robot."""
 
-from __future__ import annotations
-
 from math import inf, nan
 
 import pytest

@@ -1,7 +1,5 @@
 """Five thousand small steps, each with the last result as reference: continuous until a status, never a jump."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

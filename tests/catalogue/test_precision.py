@@ -4,8 +4,6 @@ The error of an answer may be a small multiple of the change that the last digit
 formula that squares lengths and then subtracts loses the square of their ratio, a thousand times as much and more.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import cache, cached_property
 from itertools import islice

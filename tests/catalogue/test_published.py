@@ -1,7 +1,5 @@
 """Numbers that others computed: with compiled LinuxCNC kinematics, in a manual's sample, or by hand."""
 
-from __future__ import annotations
-
 from math import cos, radians, sin, sqrt
 
 import numpy as np

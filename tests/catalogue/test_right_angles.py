@@ -1,7 +1,5 @@
 """A grid of all axis values at multiples of 90 degrees: where formulas that look right divide by zero."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

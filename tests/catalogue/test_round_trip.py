@@ -1,7 +1,5 @@
 """Inverse of forward, and forward of inverse: on every branch, over several turns."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -3,8 +3,6 @@
 What is met is the repaired frame, as NumPy makes it. A mechanism that does not follow the rotation never looks at it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import KinematicsError, Status

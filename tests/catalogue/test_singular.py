@@ -1,7 +1,5 @@
 """Singular poses: an answer and no error, and a free angle that stays at its reference."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

@@ -1,7 +1,5 @@
 """The slots hold all solutions: as many as a search over the whole joint space finds, and the same ones."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import Status

@@ -3,8 +3,6 @@
 The units are powers of two apart. Rounding is then the same in both, and so every digit of every answer.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

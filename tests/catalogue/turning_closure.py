@@ -4,8 +4,6 @@ Nothing here knows a derived formula: Newton's method on the stated equations, w
 the pose from the home pose and the joints from many starts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import cache, cached_property
 

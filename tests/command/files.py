@@ -1,7 +1,5 @@
 """A folder of a user: description files, and commands that run in it."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What a command prints while it works: lines, on a terminal a running line, and what takes long."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """What the system refuses is told in one sentence with the file and what to do, and what was there stays."""
 
-from __future__ import annotations
-
 import errno
 import os
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Tests of this folder may be coroutines."""
 
-from __future__ import annotations
-
 import asyncio
 from inspect import iscoroutinefunction
 

@@ -1,7 +1,5 @@
 """Controllers on loopback: an OPC UA server, and a small one of the data layer's REST interface, over TLS."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import socket

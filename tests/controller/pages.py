@@ -1,7 +1,5 @@
 """A live connection as a page sees it, by a WebSocket client, in the same process."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 from collections.abc import AsyncIterator, Callable, Mapping

@@ -1,7 +1,5 @@
 """`softkin live` as a user has it: a process of its own, from the address that it prints to the values on the page."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

@@ -1,7 +1,5 @@
 """The ctrlX data layer, against a small server of its REST interface over TLS: tokens, nodes, certificates, losses."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 from pathlib import Path

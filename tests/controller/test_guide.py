@@ -1,7 +1,5 @@
 """docs/LIVE.md: its files and commands are read, its messages are those that arrive, its tables name what there is."""
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import json

@@ -1,7 +1,5 @@
 """OPC UA, against a real server on loopback: values, qualities, scales, losses, certificates, users."""
 
-from __future__ import annotations
-
 import asyncio
 import math
 import time

@@ -1,7 +1,5 @@
 """The server: who is let in, what is served, and what pages are told; with a source that the test is."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import socket

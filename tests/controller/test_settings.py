@@ -1,7 +1,5 @@
 """What a live connection is told: machines of every origin, nodes, scales, addresses; and that no password is taken."""
 
-from __future__ import annotations
-
 import json
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Tables and lines: what each says about an axis, and a table that is replayed at its own times."""
 
-from __future__ import annotations
-
 import asyncio
 import math
 import os

@@ -4,8 +4,6 @@ A call that raises answers with its status and its message, in which numbers are
 are axes.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable
 from math import isfinite

@@ -1,7 +1,5 @@
 """Limits of a SCARA on several turns: what is asked in a language other than Python, and what Python says to that."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Axis values to ask about: all over the workspace, at right angles, where margins vanish, and where assembly ends."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import combinations
 from typing import Any

@@ -1,7 +1,5 @@
 """The questions of the corpus: drawn with seeds from what a package can reach, and recorded to the last bit."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import inf, nan
 from typing import Any

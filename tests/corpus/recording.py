@@ -1,7 +1,5 @@
 """Recordings: a file for a mechanism, compressed, with every real as the shortest text that gives it back."""
 
-from __future__ import annotations
-
 import json
 import lzma
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The generated package answers as it did when the corpus was recorded, and a package that does not is found out."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Forward kinematics of a description that was written, and of robot files by independent readers."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Files of MJCF and tables that an import refuses, and what it says of each."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from derive.importing.importing import Options

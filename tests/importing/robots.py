@@ -1,7 +1,5 @@
 """Robot files: those of `rtb-data`, and some written here from published dimensions, with a rounded pi."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Which of seven joints an import holds: one without which the rest has a closed form; and joints that are not read."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

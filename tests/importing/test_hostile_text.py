@@ -1,7 +1,5 @@
 """Names in a robot file are data: whatever they hold, the description is the same program, and tells them in a line."""
 
-from __future__ import annotations
-
 import ast
 import json
 from pathlib import Path

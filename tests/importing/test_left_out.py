@@ -1,7 +1,5 @@
 """What kinematics does not need is a line of the report; a loop that binds the arm is a refusal."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Files that are broken in any way: a sentence about the file, or a description that Python reads; never a crash."""
 
-from __future__ import annotations
-
 import ast
 import random
 import re

@@ -1,7 +1,5 @@
 """MJCF: forward kinematics of the description is that of MuJoCo, in every way in which a file can say it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Files as nobody would write them: axes of every direction, rounded turns, joints in any order, followers."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

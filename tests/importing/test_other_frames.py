@@ -1,7 +1,5 @@
 """The same machine in a file with other frames of its links: the description is the same."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from math import cos, sin
 from pathlib import Path

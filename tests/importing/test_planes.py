@@ -1,7 +1,5 @@
 """Robot files whose tip moves in some of x, y and z alone."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What an import refuses: one sentence that names the file, the thing, and what helps."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

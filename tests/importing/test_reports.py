@@ -1,7 +1,5 @@
 """What an import tells, and what it makes of names, limits and joints that follow others."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """MJCF: loops whose rods meet in the tip. Every solution of the derived inverse closes the loops as MuJoCo has them."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Angles that a file has rounded, by the decimals that it writes: in every format, and never one that is none."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -3,8 +3,6 @@
 Forward kinematics of the description is that of a reader that shares nothing with ours, and the description is derived.
 """
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Mapping
 from pathlib import Path

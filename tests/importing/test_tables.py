@@ -1,7 +1,5 @@
 """Tables of Denavit-Hartenberg parameters: the product of the matrices of the textbooks, both conventions and files."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 

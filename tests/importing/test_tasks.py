@@ -1,7 +1,5 @@
 """The task that an import chooses: the one that a user of such an arm wants, and that all its axes move well."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

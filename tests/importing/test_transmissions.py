@@ -1,7 +1,5 @@
 """Transmissions of a URDF: forward kinematics is in joint values all the same, and the report tells them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """URDF: forward kinematics of the description is that of the file, by a reader that shares nothing with ours."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Machines whose chains state angles and lengths as numbers, in millimetres and in metres."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from sympy import Rational, cos, pi, sin

@@ -1,7 +1,5 @@
 """One machine in Python and in Structured Text: both give the same answers, or both refuse."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Serial chains of few axes: an arm without length in some poses, arms without a closed form, and held joints."""
 
-from __future__ import annotations
-
 import sympy as sp
 from sympy import pi
 

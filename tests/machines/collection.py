@@ -1,7 +1,5 @@
 """Machines that are in no catalogue, by the rule that each needs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from sympy import Integer, cos, pi, sin

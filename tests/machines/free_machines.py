@@ -1,7 +1,5 @@
 """Machines with an angle that the pose may leave free, while a later joint has solutions for some values only."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from sympy import pi

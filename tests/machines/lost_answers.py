@@ -1,7 +1,5 @@
 """Poses at and next to many right angles at once, machines of several kinds, and the poses that these refuse."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 Each has a twin: the same machine with names that nothing else has.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

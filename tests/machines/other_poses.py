@@ -3,8 +3,6 @@
 The Jacobian is that of the inverse by central differences: the inverse knows the pose, and iterates nothing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property

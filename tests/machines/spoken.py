@@ -1,7 +1,5 @@
 """What a machine of a user's own is asked in a language other than Python, and what its answers are held against."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache

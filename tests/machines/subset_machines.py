@@ -1,7 +1,5 @@
 """Machines that command some of x, y and z alone: upright planes, slides, lifts that turn."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import partial
 

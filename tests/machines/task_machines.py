@@ -1,7 +1,5 @@
 """Machines whose task or whose drives need a rule of their own: pitch, pitch and roll, gears, belts, differentials."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from sympy import cos, sin

@@ -1,7 +1,5 @@
 """Loops whose plate carries a joint that turns the tool: counted, both ways, in both languages, where they end."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from itertools import product

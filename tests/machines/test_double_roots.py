@@ -4,8 +4,6 @@ With some shifts zero, the residual depends on the elbow by its cosine alone: ne
 whose joints agree in all digits but the last, one on each side. The second arm also leaves an axis nearly free there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is no gear is refused: in a description, and when a machine is set up."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

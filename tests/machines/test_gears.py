@@ -1,7 +1,5 @@
 """Axes with gears, belts and differentials: their turns are those of the joints that they move."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 

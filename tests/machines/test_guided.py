@@ -1,7 +1,5 @@
 """Platforms that planes hold: what the task does not command follows from the planes, in both languages."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 

@@ -1,7 +1,5 @@
 """A tool of the user's own that is inclined, as an orientation kinematics: coupled, and mounted behind that."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

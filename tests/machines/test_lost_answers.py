@@ -5,8 +5,6 @@ have none. A later step would then refuse poses that the machine has: of the arm
 twentieth.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

@@ -1,7 +1,5 @@
 """Every machine of the collection: no solution is wrong, none is lost, and both languages say the same."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 

@@ -5,8 +5,6 @@ told by few entries of the rotation, which near one have lost the digits of its 
 free moves to where the later joints have solutions, however far the reference is.
 """
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a user calls a parameter, a joint or a branch is never refused because something inside is called so."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache

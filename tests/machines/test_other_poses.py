@@ -2,8 +2,6 @@
 would not find again.
 """
 
-from __future__ import annotations
-
 import re
 import sys
 from typing import Any

@@ -1,7 +1,5 @@
 """Arms that follow the pitch, and the roll, of the commanded rotation: what of it they reach is the nearest."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

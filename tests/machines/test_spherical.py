@@ -1,7 +1,5 @@
 """Loops that only turn their platform: in both languages their equations hold, and the commanded rotation is met."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from typing import Any

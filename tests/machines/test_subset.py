@@ -1,7 +1,5 @@
 """Tasks that command some of x, y and z alone: what is not commanded has to be where the machine has it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

@@ -1,7 +1,5 @@
 """The verdict finds nothing in a faultless record, and every fault that is planted in one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Uses of the package, as a strict type checker reads them. `test_uses.py` checks and runs this file."""
 
-from __future__ import annotations
-
 from typing import assert_type
 
 import softkin

@@ -1,7 +1,5 @@
 """Robots of the whole catalogue, couplings among them, with poses that they reach and limits."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cache
 

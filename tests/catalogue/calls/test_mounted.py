@@ -3,8 +3,6 @@
 The truth is the machine without both: the frame of its flange is base^-1 * frame * tool^-1.
 """
 
-from __future__ import annotations
-
 import copy
 import json
 import pickle

@@ -1,7 +1,5 @@
 """Configurations by names, and back."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 from itertools import product

@@ -1,7 +1,5 @@
 """The nearest solution inside the limits, against every slot on every turn."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 

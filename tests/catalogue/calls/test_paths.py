@@ -1,7 +1,5 @@
 """Lines and paths: on the line, on one branch, without a jump, and stopped where and for the reason that is true."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

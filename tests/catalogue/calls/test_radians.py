@@ -1,7 +1,5 @@
 """A machine in radians: every call of the machine in degrees, with converted angles."""
 
-from __future__ import annotations
-
 import copy
 import math
 import pickle

@@ -1,7 +1,5 @@
 """A machine is a value: written down and read again, equal, hashed, copied, and never changed."""
 
-from __future__ import annotations
-
 import copy
 import json
 import pickle

@@ -1,7 +1,5 @@
 """Couplings against mechanisms of their own that are the same machine."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

@@ -1,7 +1,5 @@
 """Every position kinematics with every orientation kinematics: round trips, or a refusal for the stated reason."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

@@ -1,7 +1,5 @@
 """What CODESYS documents of its orientation kinematics and of the machines made with them (GEOMETRY 7, CONTRACT 5)."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

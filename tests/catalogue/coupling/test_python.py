@@ -1,7 +1,5 @@
 """A coupling in Python: what it says about itself, and what it refuses."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

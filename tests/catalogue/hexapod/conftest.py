@@ -1,7 +1,5 @@
 """Every test of this folder that asks for a machine runs for each of them."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.catalogue.hexapod.machines import NAMES, Machine, machines

@@ -1,7 +1,5 @@
 """Hexapods, symmetric and not, with what the tests know of them by definition alone."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

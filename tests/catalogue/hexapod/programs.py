@@ -1,7 +1,5 @@
 """The programs of the hexapod as the build gives them, run by the reference semantics."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Machines of any size, likely and absurd: no call faults, Structured Text ends as Python does, and home is found."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 

@@ -1,7 +1,5 @@
 """A batch answers as the calls one by one do, to the last digit and in every status."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

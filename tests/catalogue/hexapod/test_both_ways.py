@@ -1,8 +1,6 @@
 """There and back: the inverse in closed form, forward kinematics from the home pose, from a start, and without
 memory."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose

@@ -1,7 +1,5 @@
 """Lengths that others compute: LinuxCNC, genhexkins, its default geometry; its own functions gave these numbers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

@@ -1,7 +1,5 @@
 """Refusals: invalid numbers, machines that cannot work, legs beyond their limits, joints beyond their cones."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import Hexapod, KinematicsError, Status

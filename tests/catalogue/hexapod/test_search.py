@@ -1,7 +1,5 @@
 """Newton's iteration: the number of its passes, its end, and the singularity of roll, pitch and yaw."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,8 +1,6 @@
 """A platform whose commanded frame is a rotation to a few digits: the lengths of its legs are those of the repaired
 frame."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import Status

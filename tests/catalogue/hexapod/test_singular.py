@@ -1,7 +1,5 @@
 """The Jacobian and its normalised determinant: they are what a twist says, and Fichter's singularity is where it is."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose

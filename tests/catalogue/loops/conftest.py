@@ -1,7 +1,5 @@
 """Every test that asks for a mechanism or its machines runs for every closed loop."""
 
-from __future__ import annotations
-
 import pytest
 
 from derive.description.mechanism import Mechanism

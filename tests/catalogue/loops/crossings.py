@@ -1,8 +1,6 @@
 """Straight lines of the plate through a type 2 singularity: in one working mode, from one assembly mode into the
 other."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

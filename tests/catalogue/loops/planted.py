@@ -1,7 +1,5 @@
 """Packages with one wrong formula: the text of a generated module, changed and loaded, and the test that must fail."""
 
-from __future__ import annotations
-
 import re
 import sys
 from dataclasses import dataclass, replace

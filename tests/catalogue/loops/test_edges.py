@@ -1,7 +1,5 @@
 """Boundaries of a loop: rods that meet flat, rods that do not meet, centres that coincide, legs without a direction."""
 
-from __future__ import annotations
-
 import pytest
 import softkin
 from softkin import Status

@@ -1,7 +1,5 @@
 """Dimensions that cannot form a machine are refused, in Python and by Initialize; just inside, they are not."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

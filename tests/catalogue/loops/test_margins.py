@@ -1,8 +1,6 @@
 """Margins against the matrices of the closure, A x' + B q' = 0, differentiated numerically; nothing of the derivation
 is read."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import KinematicsError, Status

@@ -1,7 +1,5 @@
 """Planted faults: each makes the test fail that is named for it, and the unchanged text does not."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Closed loops against numbers that others computed: LinuxCNC, Klipper, Newton's method on the closure."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

@@ -1,7 +1,5 @@
 """What can be reached, leg by leg: the equation of a leg has a root in its own joint, or every slot is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 from softkin import Status
 

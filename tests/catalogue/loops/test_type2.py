@@ -1,7 +1,5 @@
 """Type 2 singularities: poses are refused at the least margin, and no step leads into the other assembly mode."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

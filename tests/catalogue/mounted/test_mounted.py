@@ -1,7 +1,5 @@
 """A base and a tool around every machine: the truth is its equations, and the product of three matrices."""
 
-from __future__ import annotations
-
 import copy
 import math
 import pickle

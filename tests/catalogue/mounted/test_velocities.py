@@ -1,7 +1,5 @@
 """Velocities, Jacobians and singularities, bare and mounted: the truth is differences of forward kinematics."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

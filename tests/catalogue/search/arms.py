@@ -1,7 +1,5 @@
 """Arms whose last axis stands beside the wrist centre, and independent truth about them: the chain multiplied out."""
 
-from __future__ import annotations
-
 from functools import reduce
 
 import numpy as np

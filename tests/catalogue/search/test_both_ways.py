@@ -1,7 +1,5 @@
 """Forward and inverse kinematics of arms with a root scan, on every branch, and the number of solutions."""
 
-from __future__ import annotations
-
 from itertools import combinations, product
 
 import numpy as np

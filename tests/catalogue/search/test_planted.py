@@ -1,7 +1,5 @@
 """No solution is lost at common poses: near A4 = 0 and 180 degrees and near a straight elbow, and on paths there."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

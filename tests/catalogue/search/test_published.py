@@ -1,7 +1,5 @@
 """Published poses and the published determinant, in which the margins do not factor."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The arm that is searched, with frames that are rotations to a few digits: the chain reaches the repaired frame."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import Status

@@ -2,8 +2,6 @@
 ends of its rods. The hexapod, whose legs are joints, has `hexapod`.
 """
 
-from __future__ import annotations
-
 import pytest
 
 from derive.description.mechanism import Mechanism

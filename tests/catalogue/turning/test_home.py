@@ -1,7 +1,5 @@
 """The home pose: where forward kinematics starts, and what it tells of the assembly mode."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import Status

@@ -1,8 +1,6 @@
 """Calls on a turning axis, each against what its range allows: never a jump, and a refusal that says whether the turn
 refuses."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 

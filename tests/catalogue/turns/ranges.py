@@ -1,7 +1,5 @@
 """Ranges of axes, and what the inverse must answer in them: found here by counting turns, not by its formula."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,8 +1,6 @@
 """Ranges around one turn, in both languages: a path is refused at their ends and never jumps; a turn inside can be
 named."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
