@@ -190,9 +190,11 @@ def _machines() -> frozenset[str]:
     """The names of the machines that are derived once a process, which several files ask."""
     from tests.machines.carried import CARRIED
     from tests.machines.collection import MACHINES
+    from tests.machines.free_machines import FREED
     from tests.machines.guided import GUIDED
+    from tests.machines.parallel_machines import PARALLEL
 
-    return frozenset({**MACHINES, **CARRIED, **GUIDED})
+    return frozenset({**MACHINES, **CARRIED, **GUIDED, **FREED, **PARALLEL})
 
 
 @cache

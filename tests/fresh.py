@@ -1,7 +1,5 @@
 """One fresh generation for all tests of a process."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import subprocess

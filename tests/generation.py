@@ -3,8 +3,6 @@
 The JavaScript of the same machines is kept, too: it was written with them, and `generated/` does not hold it.
 """
 
-from __future__ import annotations
-
 import pickle
 import sys
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """The catalogue, loaded once for all tests of a process, and its mechanisms, each built once."""
 
-from __future__ import annotations
-
 from functools import cache
 
 from derive.description import catalogue as description

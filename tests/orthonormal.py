@@ -1,7 +1,5 @@
 """Matrices that are rotations but for an error, and the rotation that is meant: by NumPy, from the definition alone."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import combinations
 

@@ -1,8 +1,6 @@
 """The cache of `generate`: what is kept is the same, what changed is derived anew, and what is damaged is never
 believed."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

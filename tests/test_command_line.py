@@ -1,7 +1,5 @@
 """`python -m derive`: what it writes, and what it says about a file that is wrong."""
 
-from __future__ import annotations
-
 import pickle
 import re
 import subprocess

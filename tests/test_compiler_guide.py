@@ -1,7 +1,5 @@
 """docs/COMPILER.md: every change that it shows is made in a copy of the source, and what comes of it works."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

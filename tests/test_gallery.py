@@ -1,7 +1,5 @@
 """The gallery: every program runs, prints what docs/GALLERY.md shows, and draws the pictures that stand there."""
 
-from __future__ import annotations
-
 import ast
 import os
 import re

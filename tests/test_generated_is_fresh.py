@@ -3,8 +3,6 @@
 The generation asks the witness about every mechanism; what it found is held against the description here.
 """
 
-from __future__ import annotations
-
 import pytest
 
 from derive.command.catalogue import OUTPUT

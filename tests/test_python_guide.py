@@ -1,7 +1,5 @@
 """The listings of the guide to the Python package: executed, with the output that the text shows."""
 
-from __future__ import annotations
-
 import doctest
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The pages: what the README shows of generated code stands in the generated files, and all links lead somewhere."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -2,8 +2,6 @@
 name what there is.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Batch calls whose rows are compared with scalar calls: at every boundary both must decide the same."""
 
-from __future__ import annotations
-
 import numpy as np
 import softkin
 from numpy.typing import ArrayLike
@@ -14,9 +12,10 @@ SAME = 1e-4
 
 
 def forward(robot: softkin.Mechanism, axes: Array) -> tuple[Array, Array, Array, Array]:
-    """`forward_batch`; positions, configurations and statuses are those of the scalar calls."""
+    """`forward_batch`; frames, configurations and statuses are those of the scalar calls, and so are orientations."""
     positions, rotations, configurations, statuses = robot.forward_batch(axes)
     single, said, written = np.full(positions.shape, np.nan), statuses.tolist(), configurations.tolist()
+    turned = np.full(rotations.shape, np.nan)
     for row, values in enumerate(axes.tolist()):
         try:
             frame, configuration = robot.forward(values)
@@ -25,9 +24,12 @@ def forward(robot: softkin.Mechanism, axes: Array) -> tuple[Array, Array, Array,
         else:
             assert said[row] == Status.OK
             assert list(configuration) == written[row]
-            single[row] = frame.position
+            single[row], turned[row] = frame
+            assert robot.orientation(values) == frame.rotation
     answered = statuses == Status.OK
-    assert np.allclose(single[answered], positions[answered], rtol=1e-12, atol=1e-9)
+    size = 1e-14 * (np.abs(axes).max(initial=0.0) + np.abs(positions[answered]).max(initial=0.0) + 1000.0)
+    assert np.allclose(single[answered], positions[answered], rtol=0.0, atol=size)
+    assert np.allclose(turned[answered], rotations[answered], rtol=0.0, atol=1e-14)
     return positions, rotations, configurations, statuses
 
 

@@ -191,7 +191,6 @@ class Closure:
         return self._evaluate(self._formulas.indicators, joints)
 
     def positive(self, joints: Array) -> Array:
-        """The quantities that are positive in this machine."""
         return self._evaluate(self._formulas.positive, joints)
 
     def limited(self, joints: Array) -> Array:
@@ -252,7 +251,6 @@ class Formulas:
 
     @cached_property
     def positive(self) -> Formula:
-        """What is positive."""
         return self.at_joints(tuple(self._mechanism.positive))
 
     @cached_property

@@ -4,8 +4,6 @@ Tests marked `serial` know a shape of serial arms (an elbow's sine, a hole in th
 tests of the same thing in `loops`. The hexapod, which has no branches, has `hexapod`.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -26,7 +24,6 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 @pytest.fixture
 def machines(mechanism: Mechanism) -> tuple[Machine, ...]:
-    """Its machines."""
     if mechanism.is_platform:
         return turning_machines_of(mechanism)
     return loop_machines_of(mechanism) if mechanism.rods else machines_of(mechanism)

@@ -1,8 +1,6 @@
 """The machines of the tests of corners: special dimensions with coinciding singularities, random ones, both assembly
 modes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import cache
 
@@ -53,7 +51,6 @@ PAIRED = tuple(m for m in CANDIDATES if softkin.catalogue()[m.name].MARGINS and 
 
 
 def robots(mechanism: Mechanism) -> Iterator[Machine]:
-    """Machines of one mechanism."""
     if mechanism.rods:
         yield from loop_machines_of(mechanism)[1:3]
         return

@@ -6,8 +6,6 @@ takes roots. Here they are functions of axis values whose zeros Newton's method 
 answer is right.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache, partial

@@ -1,7 +1,5 @@
 """Dimensions that no machine has: as small, as large and as unequal as the ranges permit, and beyond them."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Iterator
 

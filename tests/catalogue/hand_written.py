@@ -4,8 +4,6 @@ Each function takes parameters and motor values (axis value less offset, in radi
 x, y, z and the turn of the flange about z, or its whole rotation, entry by entry.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The singular loci of a mechanism, from its description: zeros of branch indicators and of positive quantities."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property

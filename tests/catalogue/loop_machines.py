@@ -1,7 +1,5 @@
 """Closed loops: their closure with positions as unknowns, machines of each, and poses of those."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property

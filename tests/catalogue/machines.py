@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
+from typing import TypeVar
 
 import numpy as np
 import softkin
@@ -30,6 +31,7 @@ REGULAR = 0.05
 """Branch indicators (those that are lengths: per their largest) and positive quantities (per reach) are at least
 this."""
 UNEQUAL = (320.0, 80.0, 20.0)
+M = TypeVar("M")
 LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH)
 """What must be given; a distance need not be."""
 
@@ -184,6 +186,11 @@ class Machine:
             size = 180.0 if joint.is_angle else self.reach
         low, high = joint.domain or (-size, size)
         return max(low, -size), min(high, size)
+
+
+def few(machines: tuple[M, ...]) -> tuple[M, ...]:
+    """Half of the machines of a mechanism, the plain and the strange among them: where each is asked the same."""
+    return (*machines[:-1:3], machines[-1])
 
 
 def is_spatial(mechanism: Mechanism) -> bool:

@@ -1,7 +1,5 @@
 """Execute a program with any number of digits: the values of its formulas without the rounding of doubles."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any

@@ -1,7 +1,5 @@
 """Long continuous motions of a machine, away from its singularities."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The references of calls: what is held stays where the pose has it, everything else is as far away as a test likes."""
 
-from __future__ import annotations
-
 import numpy as np
 import softkin
 from numpy.typing import ArrayLike

@@ -1,7 +1,5 @@
 """Dimensions of robots as their makers publish them, by the mechanism that they are."""
 
-from __future__ import annotations
-
 UR5 = {"d1": 89.159, "a2": -425.0, "a3": -392.25, "d4": 109.15, "d5": 94.65, "d6": 82.3}
 UR10 = {"d1": 127.3, "a2": -612.0, "a3": -572.3, "d4": 163.941, "d5": 115.7, "d6": 92.2}
 KR6_R900 = {"d1": 400.0, "a1": 25.0, "a2": 455.0, "a3": 35.0, "d4": 420.0, "d6": 80.0}

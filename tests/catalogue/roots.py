@@ -1,7 +1,5 @@
 """All solutions of a closure by brute force: Newton's method from many starts, whatever the mechanism."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,8 +1,6 @@
 """What a singular pose allows: a self-motion under which nothing of the pose changes, or a fold where the workspace
 ends."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from tests.catalogue.closure import Array

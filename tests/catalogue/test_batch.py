@@ -1,7 +1,5 @@
 """Batches: row by row what the scalar calls do, and nothing happens between the rows."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin
@@ -9,7 +7,7 @@ from numpy.random import Generator
 from softkin import KinematicsError, Status, _batch
 
 from tests.catalogue.closure import Array
-from tests.catalogue.machines import Machine
+from tests.catalogue.machines import Machine, few
 from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal
 
@@ -35,8 +33,7 @@ def mixed(machine: Machine, rng: Generator) -> tuple[Array, Array, Array, Array]
 
 
 def test_mixed_rows_are_the_scalar_calls(machines: tuple[Machine, ...]) -> None:
-    """A batch with good and bad rows gives the axes and statuses of single calls."""
-    for number, machine in enumerate(machines):
+    for number, machine in enumerate(few(machines)):
         positions, rotations, configurations, references = mixed(machine, np.random.default_rng(number))
         found, statuses = machine.robot.inverse_batch(positions, rotations, configurations, references)
         assert found.shape == (ROWS, len(machine.mechanism.joints)) and statuses.dtype == np.uint8
@@ -51,24 +48,6 @@ def test_mixed_rows_are_the_scalar_calls(machines: tuple[Machine, ...]) -> None:
                 assert statuses[row] == Status.OK
                 assert np.abs(np.subtract(scalar, found[row])).max() < 1e-9
         assert {int(Status.OK), int(Status.BAD_INPUT)} <= set(statuses.tolist())
-
-
-def test_a_row_that_is_refused_leaves_the_others_alone(machines: tuple[Machine, ...]) -> None:
-    """Named branches and commanded turns that differ from row to row; then garbage in every fourth row."""
-    for number, machine in enumerate(machines):
-        rng = np.random.default_rng(number)
-        axes = machine.draw(48, rng)
-        positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
-        named = configurations.astype(int)
-        named[:, : machine.robot.BRANCHES] = rng.integers(1, 3, (48, machine.robot.BRANCHES))
-        before, statuses = machine.robot.inverse_batch(positions, rotations, named, axes)
-        spoiled = np.arange(48) % 4 == 3
-        positions[spoiled] = [np.nan, 0.0, np.inf]
-        named[spoiled & (rng.random(48) < 0.5)] = 300
-        after, found = machine.robot.inverse_batch(positions, rotations, named, axes)
-        assert (found[spoiled] == Status.BAD_INPUT).all() and np.isnan(after[spoiled]).all()
-        assert (found[~spoiled] == statuses[~spoiled]).all()
-        assert np.array_equal(after[~spoiled], before[~spoiled], equal_nan=True)
 
 
 def test_a_batch_is_its_parts(machines: tuple[Machine, ...]) -> None:
@@ -86,7 +65,6 @@ def test_a_batch_is_its_parts(machines: tuple[Machine, ...]) -> None:
 
 
 def test_no_rows(machines: tuple[Machine, ...]) -> None:
-    """A batch without rows gives arrays without rows."""
     robot = machines[0].robot
     width, size = len(robot.AXES), len(robot.CONFIGURATION)
     shapes = [part.shape for part in robot.forward_batch(np.zeros((0, width)))]
@@ -98,7 +76,6 @@ def test_no_rows(machines: tuple[Machine, ...]) -> None:
 
 
 def test_one_row_may_stand_for_all(machines: tuple[Machine, ...]) -> None:
-    """One configuration and one reference may stand for all rows."""
     for machine in machines[:2]:
         axes = machine.draw(30, np.random.default_rng(2))
         axes = held_at(machine.robot, np.tile(axes[0], (30, 1)), axes)
@@ -122,13 +99,13 @@ def test_one_configuration_may_leave_branches_open_in_many_rows(
     monkeypatch.setattr(_batch, "EVERY_SLOT", 24)
     for machine in machines[:2]:
         rng = np.random.default_rng(5)
-        axes = machine.draw(60, rng)
+        axes = machine.draw(40, rng)
         positions, rotations, _, _ = machine.robot.forward_batch(axes)
-        for _ in range(3):
+        for _ in range(2):
             one = np.zeros(len(machine.robot.CONFIGURATION), int)
             one[: machine.robot.BRANCHES] = rng.integers(0, 4, machine.robot.BRANCHES)
             for configuration in (one, one * 0):
-                rows = np.tile(configuration, (60, 1))
+                rows = np.tile(configuration, (40, 1))
                 rows[0] = 1  # the rows then differ
                 found, statuses = machine.robot.inverse_batch(positions, rotations, configuration, axes)
                 own, expected = machine.robot.inverse_batch(positions, rotations, rows, axes)
@@ -139,7 +116,6 @@ def test_one_configuration_may_leave_branches_open_in_many_rows(
 
 
 def test_inputs_are_left_alone(machines: tuple[Machine, ...]) -> None:
-    """A batch does not change its input arrays."""
     machine = machines[1]
     axes = machine.draw(30, np.random.default_rng(3))
     positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
@@ -181,7 +157,6 @@ def wrong_calls(robot: softkin.Mechanism) -> list[tuple[object, ...]]:
 
 
 def test_wrong_shapes_and_types(machines: tuple[Machine, ...]) -> None:
-    """A batch with a wrong shape or type raises BAD_INPUT."""
     robot = machines[0].robot
     for arguments in wrong_calls(robot):
         assert refusal(robot.inverse_batch, *arguments) is Status.BAD_INPUT
@@ -192,11 +167,10 @@ def test_wrong_shapes_and_types(machines: tuple[Machine, ...]) -> None:
 
 
 def test_several_threads_may_share_a_robot(machines: tuple[Machine, ...]) -> None:
-    """Several threads may call one mechanism at the same time."""
     from concurrent.futures import ThreadPoolExecutor
 
     machine = machines[1]
-    axes = machine.draw(3000, np.random.default_rng(4))
+    axes = machine.draw(1000, np.random.default_rng(4))
     expected = machine.robot.forward_batch(axes)[0]
     with ThreadPoolExecutor(4) as pool:
         for found in pool.map(lambda _: machine.robot.forward_batch(axes)[0], range(8)):

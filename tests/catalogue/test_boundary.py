@@ -1,7 +1,5 @@
 """The edge of the workspace belongs to it: reach, the hole in the middle, the plane, and the wrong side of a tool."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np
@@ -12,7 +10,7 @@ from derive.description.mechanism import Mechanism, Role, Turning
 from tests.catalogue.both_ways import inverse
 from tests.catalogue.closure import Array
 from tests.catalogue.loci import Locus, loci
-from tests.catalogue.machines import LENGTHS, Machine
+from tests.catalogue.machines import LENGTHS, Machine, few
 from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal
 from tests.catalogue.self_motion import inward, is_free, twisted
@@ -73,7 +71,7 @@ def squared_sine(machine: Machine, position: Array, rotation: Array) -> Fraction
 def test_reach_and_hole(machines: tuple[Machine, ...]) -> None:
     """Stretched and folded, exactly and beside: refused where the squared sine is below -1e-12, and only there."""
     outcomes = set()
-    for machine in machines:
+    for machine in few(machines):
         if machine.robot.BRANCHES == 0 or machine.is_spatial:
             continue
         first, second = lengths(machine)[:2]
@@ -155,7 +153,7 @@ def test_the_plane_of_a_planar_machine(mechanism: Mechanism, machines: tuple[Mac
     """Met within 1e-6 of the sum of the lengths; a machine without lengths has one user's unit."""
     if mechanism.rods and "z" in mechanism.task.position:
         return  # another height is another pose
-    for machine in machines:
+    for machine in few(machines):
         axes = machine.draw(40, np.random.default_rng(3))
         positions, rotations = machine.closure.poses(axes)
         own = machine.robot.forward_batch(axes)[2]

@@ -1,13 +1,11 @@
 """A helical axis moves a linear one along by its pitch: then it has no period, and is always limited."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import Status
 
 from derive.description.mechanism import Kind, Mechanism
-from tests.catalogue.machines import Machine
+from tests.catalogue.machines import Machine, few
 from tests.catalogue.machines import machine as machine_of
 from tests.catalogue.references import held_at
 from tests.catalogue.test_limits import fitting, one_pose, outcome
@@ -26,7 +24,7 @@ def test_an_axis_that_carries_another_is_always_limited(mechanism: Mechanism, ma
     """To two turns either way where no limit is given; without a pitch it turns without end, as any other axis."""
     helical = [i for i, j in enumerate(mechanism.joints) if j.kind is Kind.HELICAL]
     assert bool(helical) == mechanism.name.endswith(("ZCcoupled", "ZCcoupled_Type1"))
-    chosen = list(machines)
+    chosen = list(few(machines))
     if "gear_coupling" in machines[0].robot.parameters:
         chosen.append(machine_of(mechanism, "geared", {**machines[0].given, "gear_coupling": -0.05}))
     limited = set()
@@ -50,7 +48,6 @@ def test_an_axis_that_carries_another_is_always_limited(mechanism: Mechanism, ma
 
 
 def test_limits_of_its_own_replace_the_two_turns(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """Limits of a helical axis replace its default range of two turns."""
     for machine in fitting(machines):
         for i, joint in enumerate(mechanism.joints):
             if joint.kind is not Kind.HELICAL:

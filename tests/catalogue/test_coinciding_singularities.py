@@ -5,8 +5,6 @@ pose of a grid of right angles: with dimensions of arms that are sold, and with 
 once.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from itertools import product
 
@@ -43,14 +41,12 @@ CASES = [(m, label) for m in SPATIAL for label in (*ROBOTS.get(m.name, {}), "bar
 
 @pytest.fixture(params=CASES, ids=lambda c: f"{c[0].name}-{c[1]}")
 def one(request: pytest.FixtureRequest) -> Machine:
-    """A robot of the catalogue."""
     mechanism, label = request.param
     return robot_of(mechanism, label)
 
 
 @cache
 def robot_of(mechanism: Mechanism, label: str) -> Machine:
-    """One of them."""
     if label in ("bare", "random"):
         return bare_machine(mechanism) if label == "bare" else machines_of(mechanism)[-1]
     return machine(mechanism, label, ROBOTS[mechanism.name][label])
@@ -124,7 +120,6 @@ def test_every_pose_of_the_grid(one: Machine, around: str) -> None:
 
 
 def test_singularities_that_coincide(one: Machine) -> None:
-    """Poses at which singularities coincide are solved."""
     axes = np.concatenate(list(coinciding(one)))
     near = np.abs(one.closure.indicators(one.closure.joints(axes))) < CLOSEST * one.largest
     assert near.any(axis=0).all()  # every branch, and several at once

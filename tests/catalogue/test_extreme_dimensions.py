@@ -1,7 +1,5 @@
 """Whatever the dimensions are, every call ends in an answer or in a `KinematicsError`, never in a division by zero."""
 
-from __future__ import annotations
-
 import contextlib
 
 import pytest

@@ -1,7 +1,5 @@
 """Forward kinematics is the closure: for every machine, scalar and batch."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin
@@ -17,7 +15,6 @@ ROUNDING = 1e-13
 
 
 def test_forward_satisfies_the_closure(machines: tuple[Machine, ...]) -> None:
-    """The frames of forward kinematics satisfy the closure equations."""
     for machine in machines:
         axes = machine.draw(1000, np.random.default_rng(1))
         positions, rotations, _, statuses = machine.robot.forward_batch(axes)
@@ -25,24 +22,7 @@ def test_forward_satisfies_the_closure(machines: tuple[Machine, ...]) -> None:
         assert machine.error(axes, positions, rotations).max() < ROUNDING
 
 
-@pytest.mark.long("Pos_RRR", "Scara4")
-def test_scalar_and_batch_agree(machines: tuple[Machine, ...]) -> None:
-    """Single calls and batches of forward kinematics agree."""
-    for machine in machines:
-        axes = machine.draw(100, np.random.default_rng(2))
-        positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
-        for row, values in enumerate(axes):
-            frame, configuration = machine.robot.forward(values)
-            assert np.allclose(
-                frame.position, positions[row], rtol=0, atol=1e-14 * (machine.reach + np.abs(values).max())
-            )
-            assert np.allclose(frame.rotation, rotations[row], rtol=0, atol=1e-14)
-            assert configuration == tuple(configurations[row])
-            assert machine.robot.orientation(values) == frame.rotation
-
-
 def test_the_frame_is_plain_tuples(machines: tuple[Machine, ...]) -> None:
-    """A frame consists of tuples of floats."""
     axes = machines[0].draw(1, np.random.default_rng(3))[0]
     frame, configuration = machines[0].robot.forward(axes)
     assert isinstance(frame, softkin.Frame)
@@ -53,13 +33,11 @@ def test_the_frame_is_plain_tuples(machines: tuple[Machine, ...]) -> None:
 
 
 def test_every_mechanism_has_a_formula_of_its_own() -> None:
-    """Every serial mechanism has a published formula to compare with."""
     assert set(FORMULAS) == {m.name for m in MECHANISMS}
 
 
 @pytest.mark.parametrize("name", FORMULAS)
 def test_forward_is_what_the_literature_prints(name: str) -> None:
-    """Forward kinematics agrees with the published formula."""
     (mechanism,) = (m for m in MECHANISMS if m.name == name)
     for machine in machines_of(mechanism):
         axes = machine.draw(300, np.random.default_rng(4))

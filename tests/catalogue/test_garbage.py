@@ -1,11 +1,9 @@
 """Invalid poses, axes and numbers: a status and one clear message; in a batch the other rows are unaffected."""
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from math import inf, nan
 
 import numpy as np
-import pytest
 from softkin import Status
 
 from tests.catalogue.closure import Array
@@ -48,7 +46,6 @@ def some(machines: tuple[Machine, ...]) -> tuple[Machine, Array, Array, Array]:
 
 
 def test_axis_values_that_are_no_numbers_of_reasonable_size(machines: tuple[Machine, ...]) -> None:
-    """Axis values that are no numbers of reasonable size are refused."""
     machine, axes, _, _ = some(machines)
     robot = machine.robot
     for i in range(axes.shape[1]):
@@ -68,7 +65,6 @@ def test_axis_values_that_are_no_numbers_of_reasonable_size(machines: tuple[Mach
 
 
 def test_too_few_or_too_many_axes(machines: tuple[Machine, ...]) -> None:
-    """A wrong number of axis values raises BAD_INPUT."""
     machine, axes, positions, rotations = some(machines)
     robot = machine.robot
     frame = positions[0], rotations[0]
@@ -81,7 +77,6 @@ def test_too_few_or_too_many_axes(machines: tuple[Machine, ...]) -> None:
 
 
 def test_positions_and_references_of_no_reasonable_size(machines: tuple[Machine, ...]) -> None:
-    """Positions and references that are no numbers of reasonable size are refused, row by row."""
     machine, axes, positions, rotations = some(machines)
     robot = machine.robot
     own, near = machine.own(axes), held_at(robot, axes, 0.0 * axes)
@@ -110,20 +105,24 @@ def test_positions_and_references_of_no_reasonable_size(machines: tuple[Machine,
                 assert refusal(robot.inverse, (positions[4], rotations[4]), None, references[4]) is Status.BAD_INPUT
 
 
-@pytest.mark.parametrize("what", [*NO_ROTATIONS, *(f"{n}" for n in NUMBERS)])
-def test_frames_that_are_no_rotation(machines: tuple[Machine, ...], what: str) -> None:
+def no_rotations(rotation: Array) -> Iterator[Array]:
+    """Matrices that are none; then an entry that is no number, each in its turn."""
+    for factor in NO_ROTATIONS.values():
+        yield factor @ rotation
+    for i in range(9):
+        for number in (nan, NUMBERS[1 + i % 5]):
+            entries = rotation.copy()
+            entries.flat[i] = number
+            yield entries
+
+
+def test_frames_that_are_no_rotation(machines: tuple[Machine, ...]) -> None:
     """Refused where the rotation is read; accepted where it is not."""
     machine, axes, positions, rotations = some(machines)
     robot, own = machine.robot, machine.own(axes)
     near = held_at(robot, axes, 0.0 * axes)
-    wrongs = [NO_ROTATIONS[what] @ rotations[3]] if what in NO_ROTATIONS else []
-    if not wrongs:
-        for i in range(9):
-            entries = rotations[3].copy()
-            entries.flat[i] = float(what)
-            wrongs.append(entries)
     clean = robot.inverse_batch(positions, rotations, own, near)[0]
-    for wrong in wrongs:
+    for wrong in no_rotations(rotations[3]):
         table = rotations.copy()
         table[3] = wrong
         got, statuses = robot.inverse_batch(positions, table, own, near)
@@ -142,7 +141,6 @@ def test_frames_that_are_no_rotation(machines: tuple[Machine, ...], what: str) -
 
 
 def test_whether_the_rotation_is_read_is_said(machines: tuple[Machine, ...]) -> None:
-    """`READS_ROTATION` says whether the inverse reads the commanded rotation."""
     machine, axes, positions, rotations = some(machines)
     robot, own = machine.robot, machine.own(axes)
     assert machine.closure.follows_rotation == robot.READS_ROTATION
@@ -157,7 +155,6 @@ def test_whether_the_rotation_is_read_is_said(machines: tuple[Machine, ...]) -> 
 
 
 def test_what_has_not_the_form_of_a_frame(machines: tuple[Machine, ...]) -> None:
-    """An argument without the form of a frame raises BAD_INPUT."""
     machine, axes, positions, rotations = some(machines)
     robot, near = machine.robot, axes[0]
     p, r = positions[0], rotations[0]

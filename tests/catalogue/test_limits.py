@@ -1,7 +1,5 @@
 """Limits of axes and of other quantities: tested last, with a tolerance; they never choose another solution."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -12,7 +10,8 @@ from softkin import KinematicsError, Status
 from derive.description.mechanism import Mechanism
 from tests.catalogue.closure import Array
 from tests.catalogue.loci import loci
-from tests.catalogue.machines import Machine
+from tests.catalogue.machines import Machine, few
+from tests.catalogue.refusals import refusal
 
 RELATIVE = 1e-9
 INSIDE, OUTSIDE = 0.5, 3.0
@@ -82,8 +81,7 @@ def check_both_ends(machine: Machine, axes: Array, key: str, value: float) -> No
 @pytest.mark.slow("Hexaglide")
 @pytest.mark.long
 def test_every_axis_has_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """Both limits of every axis refuse poses beyond them."""
-    for machine in fitting(machines):
+    for machine in fitting(machines)[::2]:
         axes = one_pose(machine, 1)
         for i, joint in enumerate(mechanism.joints):
             check_both_ends(machine, axes, joint.key, float(axes[i]))
@@ -91,7 +89,7 @@ def test_every_axis_has_limits(mechanism: Mechanism, machines: tuple[Machine, ..
 
 def test_quantities_that_no_axis_sees_have_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     """The relative elbow of an arm driven from its base, the joints of a coupled arm, the carriage of a belt gantry."""
-    for machine in machines:
+    for machine in few(machines):
         axes = one_pose(machine, 2)
         values = machine.closure.limited(machine.closure.joints(axes[None]))[0]
         for quantity, value in zip(mechanism.limited, values, strict=True):
@@ -103,7 +101,6 @@ def test_quantities_that_no_axis_sees_have_limits(mechanism: Mechanism, machines
 
 
 def test_forward_does_not_test_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """Forward kinematics answers beyond the limits, too."""
     for machine in fitting(machines):
         axes = machine.draw(20, np.random.default_rng(3))
         limits = {
@@ -116,7 +113,7 @@ def test_forward_does_not_test_limits(mechanism: Mechanism, machines: tuple[Mach
 
 def test_both_zero_is_no_limit(machines: tuple[Machine, ...]) -> None:
     """One zero alone is a limit."""
-    for machine in fitting(machines):
+    for machine in fitting(machines)[::2]:
         axes = one_pose(machine, 4)
         for i, joint in enumerate(machine.mechanism.joints):
             key = joint.key
@@ -131,7 +128,7 @@ def test_both_zero_is_no_limit(machines: tuple[Machine, ...]) -> None:
 @pytest.mark.long("Pos_RRR")
 def test_a_range_of_less_than_a_turn_takes_its_value_inside(machines: tuple[Machine, ...]) -> None:
     """Up to 350 degrees, wherever the reference is; a named period still rules, and is refused where it is outside."""
-    for machine in fitting(machines):
+    for machine in fitting(machines)[::2]:
         turning = [i for i, j in enumerate(machine.mechanism.joints) if j.multi_turn]
         axes = one_pose(machine, 5)
         positions, rotations = machine.closure.poses(axes[None])
@@ -156,14 +153,12 @@ def test_a_range_of_less_than_a_turn_takes_its_value_inside(machines: tuple[Mach
                     assert abs(scalar[i] - axes[i]) < 1e-9
                 named = list(robot.forward(axes)[1])
                 named[robot.BRANCHES + robot.PERIOD_AXES.index(i)] = 3
-                with pytest.raises(KinematicsError) as refused:
-                    robot.inverse((positions[0], rotations[0]), named, axes)
-                assert refused.value.status is Status.UNREACHABLE
+                assert refusal(robot.inverse, (positions[0], rotations[0]), named, axes) is Status.UNREACHABLE
 
 
 def test_a_wider_range_refuses_and_does_not_choose_again(machines: tuple[Machine, ...]) -> None:
     """The value nearest to the reference is outside, one a turn away is inside: refused."""
-    for machine in fitting(machines):
+    for machine in fitting(machines)[::2]:
         axes = one_pose(machine, 6)
         for i, joint in enumerate(machine.mechanism.joints):
             if not joint.multi_turn or joint.coupling != 0 or joint.limit_range is not None:
@@ -193,9 +188,7 @@ def test_an_open_branch_is_chosen_before_limits(machines: tuple[Machine, ...]) -
         frame = positions[0], rotations[0]
         periods = (0,) * len(robot.PERIOD_AXES)
         for automatic in ((0,) * robot.BRANCHES + periods, (3,) * robot.BRANCHES + periods):
-            with pytest.raises(KinematicsError) as refused:
-                robot.inverse(frame, automatic, axes)
-            assert refused.value.status is Status.UNREACHABLE
+            assert refusal(robot.inverse, frame, automatic, axes) is Status.UNREACHABLE
             assert robot.inverse_batch(positions, rotations, automatic, axes)[1][0] == Status.UNREACHABLE
         named = [s.axes for s in robot.inverse_all(frame, axes) if s.status is Status.OK]
         assert other.tolist() in [pytest.approx(a) for a in named]

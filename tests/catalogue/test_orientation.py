@@ -1,7 +1,5 @@
 """A commanded rotation that the flange cannot take: it takes the nearest one, tool direction first."""
 
-from __future__ import annotations
-
 import numpy as np
 import softkin
 from softkin import Status
@@ -43,7 +41,6 @@ def turning(machines: tuple[Machine, ...]) -> list[Machine]:
 
 
 def test_it_is_offered_where_the_machine_chooses_the_twist(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """Exactly the mechanisms that follow one turn of the rotation offer `project`."""
     for machine in machines:
         assert hasattr(machine.robot, "project") == (mechanism.task.turning is Turning.ABOUT_Z)
 
@@ -61,7 +58,7 @@ def test_it_is_the_nearest_in_the_frobenius_norm(machines: tuple[Machine, ...]) 
     """Nearer than every rotation of a fine turn of the flange."""
     angles = np.linspace(-np.pi, np.pi, 7201)
     for machine in turning(machines)[1:4]:
-        rotations = some_rotations(COUNT, 3)
+        rotations = some_rotations(COUNT // 3, 3)
         flange = machine.closure.poses(machine.draw(1, np.random.default_rng(4)))[1][0]
         candidates = about_z(angles) @ flange
         for rotation, found in zip(rotations, projected(machine, rotations), strict=True):
@@ -71,7 +68,6 @@ def test_it_is_the_nearest_in_the_frobenius_norm(machines: tuple[Machine, ...]) 
 
 
 def test_projecting_again_changes_nothing(machines: tuple[Machine, ...]) -> None:
-    """Projecting a projected rotation does not change it."""
     for machine in turning(machines):
         once = projected(machine, some_rotations(COUNT, 5))
         assert np.abs(projected(machine, once) - once).max() < 1e-14

@@ -1,7 +1,5 @@
 """The package as a whole: its names, the time of its import, and the properties of its classes."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path
@@ -55,7 +53,6 @@ def test_import_is_cheap_and_needs_no_numpy() -> None:
 
 
 def test_the_catalogue_is_the_descriptions() -> None:
-    """The package has a class for every description."""
     assert set(softkin.catalogue()) == {m.name for _, m in catalogue()}
     assert "Kin_Scara4_ZCCC" in softkin.catalogue()
     assert len(softkin.catalogue()) == 52
@@ -74,7 +71,6 @@ def test_everything_that_is_offered_is_there() -> None:
 
 
 def test_an_alias_is_a_class_of_its_own_with_the_same_kinematics() -> None:
-    """An alias is a class with its own name and the same kinematics."""
     given = {"link_length_1": 300.0, "link_length_2": 250.0, "link_length_3": 80.0}
     alias, original = (softkin.catalogue()[n](**given) for n in ("Kin_Scara4_ZCCC", "Kin_Scara3_ZCCC"))
     assert type(alias) is not type(original)
@@ -84,7 +80,6 @@ def test_an_alias_is_a_class_of_its_own_with_the_same_kinematics() -> None:
 
 
 def test_the_example_of_the_documentation() -> None:
-    """The example of the documentation runs, and leads back to its axes."""
     robot = softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0, pitch_zc=20.0)
     frame, configuration = robot.forward((10.0, 20.0, 5.0, 30.0))
     axes = robot.inverse(frame, configuration, reference=(0, 0, 0, 0))
@@ -97,7 +92,6 @@ def test_the_example_of_the_documentation() -> None:
 
 
 def test_axes_are_those_of_the_description(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    """The class lists the axes of the description."""
     robot = machines[0].robot
     assert mechanism.name == robot.NAME
     described = [
@@ -135,7 +129,6 @@ def test_parameters_are_those_of_the_description(mechanism: Mechanism, machines:
 
 
 def test_every_public_thing_is_documented(machines: tuple[Machine, ...]) -> None:
-    """Every public method and attribute has a docstring."""
     robot_class = type(machines[0].robot)
     public = [n for n in dir(robot_class) if not n.startswith("_")]
     methods = [getattr(robot_class, n) for n in public if callable(getattr(robot_class, n))]

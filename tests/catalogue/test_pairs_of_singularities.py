@@ -1,7 +1,5 @@
 """Pairs of singular factors close to zero, at every decade of distance: no pose is lost, and every answer is right."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin
@@ -30,7 +28,6 @@ def paired(request: pytest.FixtureRequest) -> Mechanism:
 
 @pytest.mark.parametrize("candidate", CANDIDATES, ids=lambda m: m.name)
 def test_every_mechanism_with_pairs_is_here(candidate: Mechanism) -> None:
-    """Every mechanism with more than one singularity is tested."""
     assert (candidate in PAIRED) == (len(factor_program(candidate).outputs) > 1)
 
 
@@ -43,7 +40,6 @@ def test_corners_are_found(paired: Mechanism) -> None:
 
 
 def test_no_pose_is_lost(paired: Mechanism) -> None:
-    """Where two singularities coincide every pose is reached."""
     rng = np.random.default_rng(8)
     for one in {one: None for one, _ in places(paired)}:
         everywhere = np.concatenate([poses(one, corner) for own, corner in places(paired) if own is one])

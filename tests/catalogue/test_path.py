@@ -1,7 +1,5 @@
 """Five thousand small steps, each with the last result as reference: continuous until a status, never a jump."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin
@@ -9,7 +7,7 @@ from softkin import KinematicsError, Status
 
 from derive.description.mechanism import Mechanism
 from tests.catalogue.closure import Array
-from tests.catalogue.machines import Machine
+from tests.catalogue.machines import Machine, few
 from tests.catalogue.paths import straight, tour
 from tests.catalogue.references import held_at
 
@@ -48,7 +46,6 @@ def follow(
 
 
 def chosen(machines: tuple[Machine, ...], label: str) -> Machine:
-    """The machine with that label."""
     (found,) = (m for m in machines if m.label == label)
     return found
 
@@ -69,8 +66,7 @@ def test_many_turns(machines: tuple[Machine, ...]) -> None:
 
 @pytest.mark.long
 def test_an_automatic_branch_stays_on_a_regular_way(machines: tuple[Machine, ...]) -> None:
-    """On a regular path an automatic choice stays on its branch."""
-    for machine in machines[::2]:
+    for machine in few(machines)[:2]:
         axes = tour(machine, 1200, turns=-1)
         found, answered = follow(machine.robot, machine, axes, (0,) * machine.robot.BRANCHES)
         assert answered.all()

@@ -1,7 +1,5 @@
 """Numbers that others computed: with compiled LinuxCNC kinematics, in a manual's sample, or by hand."""
 
-from __future__ import annotations
-
 from math import cos, radians, sin, sqrt
 
 import numpy as np
@@ -23,7 +21,6 @@ SIX_DIGITS = 1e-5
 
 
 def about_z(degrees: float) -> tuple[tuple[float, ...], ...]:
-    """A rotation about z."""
     c, s = cos(radians(degrees)), sin(radians(degrees))
     return ((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))
 
@@ -31,7 +28,6 @@ def about_z(degrees: float) -> tuple[tuple[float, ...], ...]:
 @pytest.mark.parametrize("name", ["Kin_Scara4_ZCcoupled_Type1", "Kin_Scara4_CCZC_ZCcoupled"])
 @pytest.mark.parametrize(("angles", "position", "turn"), LINUXCNC)
 def test_scara_of_linuxcnc(name: str, angles: tuple[float, ...], position: tuple[float, ...], turn: float) -> None:
-    """The SCARA has the poses that LinuxCNC computes."""
     robot = softkin.catalogue()[name](link_length_1=340.0, link_length_2=250.0)
     axes = (angles[0], angles[1], 37.0, angles[2])
     frame, configuration = robot.forward(axes)
@@ -58,7 +54,6 @@ def sample() -> softkin.Mechanism:
 
 
 def test_sample_of_the_manual() -> None:
-    """The sample of the manual has the published pose and configuration."""
     frame, configuration = sample().forward(SAMPLE)
     assert frame.position == pytest.approx(SAMPLE_POSITION, abs=SIX_DIGITS)
     assert np.allclose(frame.rotation, about_z(-129.963889 - 42.330798 - 496.124887), rtol=0, atol=1e-14)
@@ -66,7 +61,6 @@ def test_sample_of_the_manual() -> None:
 
 
 def test_way_back_of_the_sample() -> None:
-    """The inverse leads from the published pose to the axes of the sample."""
     rotation = about_z(-129.963889 - 42.330798 - 496.124887)
     axes = sample().inverse((SAMPLE_POSITION, rotation), (2, -1, 1, 1))
     assert axes == pytest.approx(SAMPLE, abs=1e-6)
@@ -83,7 +77,6 @@ def test_the_period_of_a4_moves_a3() -> None:
 
 
 def test_the_zero_pose_is_stretched_along_x() -> None:
-    """In its zero pose the SCARA is stretched along X."""
     frame, configuration = softkin.Scara4ZCcoupledType1(
         link_length_1=325.0, link_length_2=225.0, pitch_zc=20.0
     ).forward((0,) * 4)
@@ -113,7 +106,6 @@ def test_directions_of_the_belt_gantries() -> None:
 
 
 def test_spherical_crane_by_hand() -> None:
-    """The crane has a pose that was computed by hand."""
     robot = softkin.Crane()
     frame, configuration = robot.forward((2.0, 30.0, 60.0))
     assert frame.position == pytest.approx((1.5, sqrt(3) / 2, 1.0), abs=1e-15)
@@ -134,15 +126,13 @@ def test_belt_arm_with_motors_in_the_base() -> None:
 
 
 def test_parallel_arm_by_hand() -> None:
-    """The parallel arm has a pose that was computed by hand."""
     frame, configuration = softkin.PCC(link_length_1=300.0, link_length_2=250.0).forward((90.0, 180.0))
     assert frame.position == pytest.approx((-250.0, 300.0, 0.0), abs=1e-12)
     assert configuration == (1, 1, 2)
 
 
 @pytest.mark.parametrize(
-    ("dimensions", "position"),
-    [(UR5, (-817.25, -191.45, -5.491)), (UR10, (-1184.3, -256.141, 11.6))],
+    ("dimensions", "position"), [(UR5, (-817.25, -191.45, -5.491)), (UR10, (-1184.3, -256.141, 11.6))]
 )
 def test_zero_pose_of_arms_with_three_parallel_axes(dimensions: dict[str, float], position: tuple[float, ...]) -> None:
     """As their controllers show it: stretched to the back, the flange turned to the side."""

@@ -1,7 +1,5 @@
 """A grid of all axis values at multiples of 90 degrees: where formulas that look right divide by zero."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np
@@ -55,7 +53,6 @@ def possible(chosen: Machine, axes: Array) -> Array:
 
 
 def test_forward_answers_where_there_is_a_pose(grid: tuple[Machine, Array]) -> None:
-    """At right angles forward kinematics answers wherever there is a pose."""
     chosen, axes = grid
     positions, rotations, _, statuses = chosen.robot.forward_batch(axes)
     inside = possible(chosen, axes)
@@ -74,7 +71,7 @@ def test_every_pose_goes_round(grid: tuple[Machine, Array]) -> None:
     frames = chosen.closure.poses(axes)
     configurations = chosen.robot.forward_batch(axes)[2]
     found, statuses = chosen.robot.inverse_batch(*frames, configurations, axes)
-    some = slice(None, None, 1 + len(axes) // 60)
+    some = slice(None, None, 1 + len(axes) // 25)
     inverse(chosen.robot, frames[0][some], frames[1][some], configurations[some], axes[some])
     assert (statuses == Status.OK).all()
     regular = chosen.is_regular(axes)

@@ -1,7 +1,5 @@
 """A short link on a long one: stretched and folded poses have rounding of the long one, and are reached."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import Status

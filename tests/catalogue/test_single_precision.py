@@ -3,17 +3,15 @@
 What is met is the repaired frame, as NumPy makes it. A mechanism that does not follow the rotation never looks at it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import KinematicsError, Status
 
 from tests.catalogue.closure import Array
-from tests.catalogue.machines import Machine
+from tests.catalogue.machines import Machine, few
 from tests.orthonormal import mirrored, repaired, single, slightly_off, too_far_off
 
-COUNT = 12
+COUNT = 9
 
 
 def some(machine: Machine) -> tuple[Array, Array, Array]:
@@ -24,7 +22,7 @@ def some(machine: Machine) -> tuple[Array, Array, Array]:
 
 def test_a_frame_in_single_precision_is_answered(machines: tuple[Machine, ...]) -> None:
     """Scalar and batch alike, as the repaired frame is, and the closure holds there."""
-    for machine in machines[:3]:
+    for machine in few(machines)[-2:]:
         robot = machine.robot
         axes, positions, rotations = some(machine)
         rounded = rotations.astype(np.float32)
@@ -53,7 +51,6 @@ def test_a_frame_in_single_precision_is_answered(machines: tuple[Machine, ...]) 
 
 
 def test_every_small_error_is_repaired_and_every_larger_one_refused(machines: tuple[Machine, ...]) -> None:
-    """A rotation with a small error is repaired, and one with a larger error is refused."""
     machine = machines[-1]
     robot = machine.robot
     axes, positions, rotations = some(machine)

@@ -1,7 +1,5 @@
 """Singular poses: an answer and no error, and a free angle that stays at its reference."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin
@@ -80,7 +78,6 @@ def test_a_singular_pose_is_an_answer(machines: tuple[Machine, ...]) -> None:
 
 
 def test_regular_poses_are_met_to_rounding(machines: tuple[Machine, ...]) -> None:
-    """At regular poses the inverse reaches the frame to rounding."""
     for machine in machines:
         axes = machine.draw(2000, np.random.default_rng(4))
         frames = machine.closure.poses(axes)

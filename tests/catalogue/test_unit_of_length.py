@@ -3,8 +3,6 @@
 The units are powers of two apart. Rounding is then the same in both, and so every digit of every answer.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np
@@ -135,7 +133,7 @@ def test_without_a_length_a_distance_has_no_margin(name: str) -> None:
 def test_every_margin_is_of_the_order_of_one() -> None:
     """Whatever the dimensions are: of a machine a thousand times as large, and a thousand times as small."""
     for mechanism in CATALOGUE:
-        given = given_to(mechanism)
+        given, most = given_to(mechanism), 2.0 + 1e-9 if mechanism.assembly is not None else 4.0
         plain = softkin.catalogue()[mechanism.name](**given)
         scale = sum(abs(given[p.name]) for p in mechanism.parameters if p.role in (*LENGTHS, Role.DISTANCE)) or 1.0
         for size in (1e-3, allowed(plain, given, 1e3)):
@@ -143,4 +141,4 @@ def test_every_margin_is_of_the_order_of_one() -> None:
             slides = np.array([1.0 if axis.unit == "deg" else size for axis in robot.AXES])
             for row in axes_of(mechanism, plain, scale):
                 found = robot.singularity(row * slides).margins
-                assert all(abs(m) <= 4.0 for m in found.values()), (mechanism.name, found)
+                assert all(abs(m) <= most for m in found.values()), (mechanism.name, found)

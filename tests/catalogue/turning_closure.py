@@ -4,8 +4,6 @@ Nothing here knows a derived formula: Newton's method on the stated equations, w
 the pose from the home pose and the joints from many starts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import cache, cached_property
 
@@ -112,7 +110,6 @@ class TurningClosure(Closure):
         return np.array([[float(s in v.free_symbols) for s in own] for v in self.mechanism.positive])
 
     def around_home(self, count: int, rng: Generator, size: float = 1.0) -> tuple[Array, Array]:
-        """Poses around home."""
         twist = rng.uniform(-1.0, 1.0, (count, len(self.task) + len(self.axes_of_turn))) * size
         twist *= [SHIFT * self.reach] * len(self.task) + [TURN] * len(self.axes_of_turn)
         positions, rotations = np.tile(self.home_position, (count, 1)), np.tile(self.home_rotation, (count, 1, 1))
@@ -233,7 +230,6 @@ def _limited(step: Array, width: int, reach: float) -> Array:
 
 
 def _about(axis: int, angle: Array) -> Array:
-    """Turns about a coordinate axis."""
     matrix = np.zeros((len(angle), 3, 3), dtype=np.asarray(angle).dtype)
     first, second = (axis + 1) % 3, (axis + 2) % 3
     matrix[:, axis, axis] = 1.0

@@ -1,7 +1,5 @@
 """Loops that turn their platform: machines of each, and poses around home."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property

@@ -1,7 +1,5 @@
 """The folder of a user, in which commands run."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

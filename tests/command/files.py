@@ -1,7 +1,5 @@
 """A folder of a user: description files, and commands that run in it."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -29,8 +27,6 @@ SCARA = description("scara.py", "MyScara")
 
 @dataclass(frozen=True)
 class Said:
-    """What a command said."""
-
     status: int
     out: str
     err: str
@@ -44,14 +40,12 @@ class Folder:
     capsys: pytest.CaptureFixture[str]
 
     def write(self, name: str, text: str) -> Path:
-        """A file in the folder."""
         path = self.path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
         return path
 
     def run(self, *arguments: object) -> Said:
-        """A command in the folder."""
         status = main([str(a) for a in arguments])
         said = self.capsys.readouterr()
         return Said(status, said.out, said.err)

@@ -1,7 +1,5 @@
 """docs/OWN_MACHINE.md, taken apart: its machines, its commands, and the refusals that it lists."""
 
-from __future__ import annotations
-
 import re
 
 from tests.command.files import ROOT

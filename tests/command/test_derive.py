@@ -1,7 +1,5 @@
 """`softkin derive`, `check` and `new`: one file in, a package and a block out; no file stands in the way of another."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

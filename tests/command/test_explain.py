@@ -1,7 +1,5 @@
 """`softkin explain`: the steps of a derivation in plain text, and the branches that nobody named."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """Every Python listing of the guides and the README runs: as a program, or in the context that the guide gives."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from pathlib import Path

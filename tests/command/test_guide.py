@@ -1,7 +1,5 @@
 """The guide for authors: its machines are derived and used, its walk is walked, its refusals are those that come."""
 
-from __future__ import annotations
-
 import importlib
 import re
 from collections.abc import Callable, Mapping, Sequence

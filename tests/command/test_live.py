@@ -1,7 +1,5 @@
 """`compile_mechanism`: a description becomes a class of `softkin` at once, the generated one in all but name."""
 
-from __future__ import annotations
-
 import importlib.util
 import inspect
 import pickle

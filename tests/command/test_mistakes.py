@@ -1,7 +1,5 @@
 """A mistake of the compiler is told as one: no remedy for the description, what to report, a status of its own."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """`softkin explain --html` and `report`: pages for machines of the user's own, and for a catalogue."""
 
-from __future__ import annotations
-
 import re
 from xml.etree import ElementTree as ET
 

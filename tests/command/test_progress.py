@@ -1,7 +1,5 @@
 """What a command prints while it works: lines, on a terminal a running line, and what takes long."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import dataclass, field
@@ -28,8 +26,6 @@ class Terminal(StringIO):
 
 @dataclass
 class Clock:
-    """A clock that is set by hand."""
-
     now: float = 0.0
 
     def __call__(self) -> float:
@@ -52,7 +48,6 @@ class Watched:
 
 
 def test_a_terminal_shows_a_bar_and_the_time_left() -> None:
-    """On a terminal the progress is a bar with the time left."""
     stream, clock = Terminal(), Clock()
     progress = Progress(4, stream, clock)
     for clock.now, line in ((5.0, "first"), (10.0, "second")):
@@ -68,7 +63,6 @@ def test_a_terminal_shows_a_bar_and_the_time_left() -> None:
 
 
 def test_a_file_gets_lines_alone() -> None:
-    """In a file the progress consists of plain lines."""
     stream = StringIO()
     progress = Progress(2, stream)
     progress.step("first", took_time=False)

@@ -1,7 +1,5 @@
 """What the system refuses is told in one sentence with the file and what to do, and what was there stays."""
 
-from __future__ import annotations
-
 import errno
 import os
 from pathlib import Path
@@ -54,7 +52,6 @@ def test_a_disk_that_takes_nothing(
 
 
 def test_a_description_with_a_byte_that_is_0(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Its line is named."""
     path = tmp_path / "arm.py"
     path.write_bytes(b"# one\n# two\nx = 1\0\n")
     assert main(["explain", str(path)]) == 2

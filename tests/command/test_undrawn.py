@@ -1,7 +1,5 @@
 """A drawing that cannot be made is a warning with its reason: package and block are written, and proven."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

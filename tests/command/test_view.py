@@ -1,7 +1,5 @@
 """`view`: what is refused before anything is derived."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

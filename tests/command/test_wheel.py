@@ -1,7 +1,5 @@
 """The wheel of the compiler: what `setup.py` puts into it is enough to derive machines, far from the source tree."""
 
-from __future__ import annotations
-
 import runpy
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """For every refusal that the guide lists, a description that is refused so: a machine of the guide, changed."""
 
-from __future__ import annotations
-
 from derive.command.new import description
 from tests.command.files import RAIL
 from tests.command.guide import MACHINES

@@ -1,7 +1,5 @@
 """Controllers on loopback: an OPC UA server, and a small one of the data layer's REST interface, over TLS."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import socket
@@ -38,7 +36,6 @@ def authority() -> trustme.CA:
 
 @cache
 def another_authority() -> trustme.CA:
-    """And another one."""
     return trustme.CA()
 
 
@@ -78,7 +75,6 @@ class Plc:
 
     @property
     def address(self) -> str:
-        """Where it listens."""
         return f"opc.tcp://{HOST}:{self.port}"
 
     async def start(self) -> None:
@@ -135,7 +131,6 @@ class Ctrlx:
 
     @property
     def address(self) -> str:
-        """Where it listens."""
         return f"https://{HOST}:{self.port}"
 
     async def start(self) -> None:

@@ -1,7 +1,5 @@
 """A live connection as a page sees it, by a WebSocket client, in the same process."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 from collections.abc import AsyncIterator, Callable, Mapping
@@ -37,18 +35,15 @@ class Served:
 
     @property
     def token(self) -> str:
-        """The token of this run."""
         return self.said[0].partition("#live=")[2]
 
     @property
     def origin(self) -> str:
-        """The origin of its own page."""
         parts = urlsplit(self.url)
         return f"{parts.scheme}://{parts.netloc}"
 
 
 def settings(folder: Path, given: Mapping[str, Any], security: Security | None = None, *nodes: str) -> Settings:
-    """The settings of a file with this content."""
     path = folder / "machine.json"
     path.write_text(json.dumps(given), encoding="utf-8")
     return settings_of(path, nodes, None, security)

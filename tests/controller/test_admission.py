@@ -1,7 +1,5 @@
 """Who may connect, by the headers of a handshake: at loopback, in a network, by names and addresses of both kinds."""
 
-from __future__ import annotations
-
 import socket
 
 import pytest

@@ -1,7 +1,5 @@
 """`softkin live` as a user has it: a process of its own, from the address that it prints to the values on the page."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os
@@ -18,7 +16,6 @@ from tests.controller.pages import GANTRY, PATIENCE, Served, message_where, page
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with a machine and a page."""
     (tmp_path / "machine.json").write_text(json.dumps({**GANTRY, "source": "-"}), encoding="utf-8")
     (tmp_path / "page.html").write_text("<p>viewer</p>", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
@@ -26,35 +23,31 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.slow
-def test_from_standard_input_to_the_page(folder: Path) -> None:
+async def test_from_standard_input_to_the_page(folder: Path) -> None:
     """The address stands in the first line; what is written into it arrives, scaled; the end of the input is told."""
-
-    async def run() -> None:
-        options = ["--machine", "machine.json", "--page", "page.html", "--axis", "Y=Y*0.5"]
-        process = await asyncio.create_subprocess_exec(
-            *(sys.executable, "-m", "derive", "live", *options),
-            cwd=folder,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])},
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-        )
-        try:
-            assert process.stdin is not None and process.stdout is not None
-            first = (await asyncio.wait_for(process.stdout.readline(), 60)).decode().strip()
-            assert first.startswith("http://127.0.0.1:") and "/#live=" in first
-            running = Served(asyncio.create_task(process.wait()), [first])  # type: ignore[arg-type]
-            async with page_of(running) as page:
-                process.stdin.write(b"1,2\n")
-                assert (await message_where(page, lambda m: m["complete"]))["axes"] == [1.0, 1.0]
-                process.stdin.close()
-                await message_where(page, lambda m: m["status"] == "ended")
-            said = [(await asyncio.wait_for(process.stdout.readline(), PATIENCE)).decode().strip() for _ in range(3)]
-            assert said == ["connecting", "live", "ended: the values are over"]
-        finally:
-            process.kill()
-            await process.wait()
-
-    asyncio.run(run())
+    options = ["--machine", "machine.json", "--page", "page.html", "--axis", "Y=Y*0.5"]
+    process = await asyncio.create_subprocess_exec(
+        *(sys.executable, "-m", "derive", "live", *options),
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+    )
+    try:
+        assert process.stdin is not None and process.stdout is not None
+        first = (await asyncio.wait_for(process.stdout.readline(), 60)).decode().strip()
+        assert first.startswith("http://127.0.0.1:") and "/#live=" in first
+        running = Served(asyncio.create_task(process.wait()), [first])  # type: ignore[arg-type]
+        async with page_of(running) as page:
+            process.stdin.write(b"1,2\n")
+            assert (await message_where(page, lambda m: m["complete"]))["axes"] == [1.0, 1.0]
+            process.stdin.close()
+            await message_where(page, lambda m: m["status"] == "ended")
+        said = [(await asyncio.wait_for(process.stdout.readline(), PATIENCE)).decode().strip() for _ in range(3)]
+        assert said == ["connecting", "live", "ended: the values are over"]
+    finally:
+        process.kill()
+        await process.wait()
 
 
 @pytest.mark.parametrize(

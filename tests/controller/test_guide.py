@@ -1,7 +1,5 @@
 """docs/LIVE.md: its files and commands are read, its messages are those that arrive, its tables name what there is."""
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import json
@@ -34,7 +32,6 @@ COMMANDS = [
 
 
 def parser() -> argparse.ArgumentParser:
-    """That of `softkin live`."""
     found = argparse.ArgumentParser()
     live.add_arguments(found)
     return found
@@ -69,24 +66,20 @@ def test_the_commands_can_be_asked(line: str, tmp_path: Path, monkeypatch: pytes
     assert len(found.channels) == 4
 
 
-def test_the_messages_are_those_that_arrive(tmp_path: Path) -> None:
+async def test_the_messages_are_those_that_arrive(tmp_path: Path) -> None:
     """The first in every word; of the others the names, the order, and what does not depend on time."""
     about_machine, about_axes = FILES[2:]
     given = {**GANTRY, "source": "-", "axes": {"Y": {"scale": 0.5}}}
-
-    async def run() -> None:
-        source = Given()
-        async with served(settings(tmp_path, given), source=source) as running, page_of(running) as page:
-            assert await message(page) == about_machine
-            source.queue.put_nowait({"X": 12.5, "Y": float("nan")})
-            found = await message_where(page, lambda m: m["status"] == "live")
-            assert list(found) == list(about_axes)
-            timed = ("number", "time", "ages")
-            assert {k: v for k, v in found.items() if k not in timed} == {
-                k: v for k, v in about_axes.items() if k not in timed
-            }
-
-    asyncio.run(run())
+    source = Given()
+    async with served(settings(tmp_path, given), source=source) as running, page_of(running) as page:
+        assert await message(page) == about_machine
+        source.queue.put_nowait({"X": 12.5, "Y": float("nan")})
+        found = await message_where(page, lambda m: m["status"] == "live")
+        assert list(found) == list(about_axes)
+        timed = ("number", "time", "ages")
+        assert {k: v for k, v in found.items() if k not in timed} == {
+            k: v for k, v in about_axes.items() if k not in timed
+        }
 
 
 def test_the_tables_name_what_there_is() -> None:

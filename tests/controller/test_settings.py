@@ -1,7 +1,5 @@
 """What a live connection is told: machines of every origin, nodes, scales, addresses; and that no password is taken."""
 
-from __future__ import annotations
-
 import json
 import sys
 from pathlib import Path
@@ -27,7 +25,6 @@ NODES = {"X": "ns=2;s=x", "Y": "ns=2;s=y"}
 
 
 def refusal(folder: Path, given: Any, *nodes: str, **source: Any) -> str:
-    """Why settings are refused."""
     path = folder / "machine.json"
     path.write_text(given if isinstance(given, str) else json.dumps(given), encoding="utf-8")
     with pytest.raises(Refused) as problem:
@@ -168,7 +165,6 @@ def test_the_source_and_what_is_told_about_it(tmp_path: Path) -> None:
     ],
 )
 def test_a_file_that_is_wrong(given: Any, said: str, tmp_path: Path) -> None:
-    """One sentence with what is wrong."""
     assert said in refusal(tmp_path, given)
 
 
@@ -233,7 +229,6 @@ def test_a_file_with_a_password_is_refused(name: str, tmp_path: Path) -> None:
     ],
 )
 def test_addresses_that_are_none(text: str, said: str) -> None:
-    """Each with what it should be."""
     with pytest.raises(Refused, match=said):
         address_of(text, Path())
 

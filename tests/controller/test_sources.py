@@ -1,7 +1,5 @@
 """Tables and lines: what each says about an axis, and a table that is replayed at its own times."""
 
-from __future__ import annotations
-
 import asyncio
 import math
 import os
@@ -37,7 +35,6 @@ def test_a_reading_is_a_finite_number_or_has_a_reason(raw: object, scale: float)
 
 
 def written(folder: Path, text: str) -> Path:
-    """A table."""
     path = folder / "table.csv"
     path.write_text(text, encoding="utf-8")
     return path
@@ -170,30 +167,26 @@ def test_no_line_stops_the_reader(line: str) -> None:
     assert set(Reader(XY).answers(line)) <= {"X", "Y"}
 
 
-def test_input_arrives_and_ends(tmp_path: Path) -> None:
+async def test_input_arrives_and_ends(tmp_path: Path) -> None:
     """Lines in pieces, one that is too long, and one without an end; then the input is over."""
     told = settings(tmp_path, {**GANTRY, "source": "-"})
-
-    async def run() -> None:
-        reading, writing = os.pipe()
-        async with served(told, source=Input(told.channels, reading)) as running, page_of(running) as page:
-            os.write(writing, b"1,2\n3,")
-            assert (await message_where(page, lambda m: m["complete"]))["axes"] == [1.0, 2.0]
-            os.write(writing, b"4\n")
-            await message_where(page, lambda m: m["axes"] == [3.0, 4.0])
-            long = asyncio.create_task(asyncio.to_thread(os.write, writing, b"5" * 200_000 + b"\n"))
-            bad = await message_where(page, lambda m: not m["complete"])
-            assert bad["axes"] == [None, None]
-            await long
-            os.write(writing, b'{"X": NaN, "Y": 1}\n')
-            await message_where(page, lambda m: m["reasons"][0] == "not finite: nan")
-            os.write(writing, b"6,7")
-            os.close(writing)
-            over = await message_where(page, lambda m: m["status"] == "ended")
-            assert over["axes"] == [6.0, 7.0]
-        os.close(reading)
-
-    asyncio.run(run())
+    reading, writing = os.pipe()
+    async with served(told, source=Input(told.channels, reading)) as running, page_of(running) as page:
+        os.write(writing, b"1,2\n3,")
+        assert (await message_where(page, lambda m: m["complete"]))["axes"] == [1.0, 2.0]
+        os.write(writing, b"4\n")
+        await message_where(page, lambda m: m["axes"] == [3.0, 4.0])
+        long = asyncio.create_task(asyncio.to_thread(os.write, writing, b"5" * 200_000 + b"\n"))
+        bad = await message_where(page, lambda m: not m["complete"])
+        assert bad["axes"] == [None, None]
+        await long
+        os.write(writing, b'{"X": NaN, "Y": 1}\n')
+        await message_where(page, lambda m: m["reasons"][0] == "not finite: nan")
+        os.write(writing, b"6,7")
+        os.close(writing)
+        over = await message_where(page, lambda m: m["status"] == "ended")
+        assert over["axes"] == [6.0, 7.0]
+    os.close(reading)
 
 
 def test_the_end_of_a_line_that_is_too_long_is_no_line() -> None:
@@ -219,20 +212,16 @@ def test_the_end_of_a_line_that_is_too_long_is_no_line() -> None:
     ]
 
 
-def test_a_pace_does_not_hurry_to_catch_up() -> None:
+async def test_a_pace_does_not_hurry_to_catch_up() -> None:
     """Moments at equal distances; after a pause the next one is at once, and then one at a time again."""
-
-    async def run() -> None:
-        clock = asyncio.get_running_loop().time
-        pace, start = Pace(100.0), clock()
-        for _ in range(10):
-            await pace.next()
-        assert clock() - start >= 0.099
-        await asyncio.sleep(0.1)
+    clock = asyncio.get_running_loop().time
+    pace, start = Pace(100.0), clock()
+    for _ in range(10):
         await pace.next()
-        late = clock()
-        for _ in range(3):
-            await pace.next()
-        assert clock() - late >= 0.029
-
-    asyncio.run(run())
+    assert clock() - start >= 0.099
+    await asyncio.sleep(0.1)
+    await pace.next()
+    late = clock()
+    for _ in range(3):
+        await pace.next()
+    assert clock() - late >= 0.029

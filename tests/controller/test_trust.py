@@ -1,7 +1,5 @@
 """Whom OPC UA trusts: by the certificate itself or by its authority, now, for this host; nobody else."""
 
-from __future__ import annotations
-
 import datetime
 
 import trustme

@@ -4,8 +4,6 @@ A call that raises answers with its status and its message, in which numbers are
 are axes.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable
 from math import isfinite
@@ -23,7 +21,6 @@ _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.]*\w)")
 
 
 def answer(one: Robot, question: Question) -> Answer:
-    """What the package says to a question."""
     return _CALLS[question["call"]](one, question)
 
 

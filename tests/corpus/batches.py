@@ -1,7 +1,5 @@
 """The batch calls of a package held against the recorded answers of its scalar calls: one meaning, two texts."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -4,8 +4,6 @@ A package is held against what is recorded; or, with another package, against th
 questions.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tempfile

@@ -5,8 +5,6 @@ Axes: within 1e-9 of scale (180 degrees; the reach) over the smallest margin of 
 statuses, reasons, turns, bytes; reals of frames, Jacobians and amounts within the digits that their margin leaves.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from math import isfinite
 from typing import Any
@@ -28,7 +26,6 @@ Ask = Callable[[Robot, Question], Answer]
 
 
 def differences(one: Robot, asked: list[Question], recorded: list[Answer], ask: Ask = answer) -> Iterator[str]:
-    """Every difference, in words."""
     for question, old in zip(asked, recorded, strict=True):
         new = ask(one, question)
         is_singular = question["kind"] == "singular"

@@ -1,7 +1,5 @@
 """The machines that are asked: dimensions (millimetres, degrees) of every mechanism, and pairs that are coupled."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 _TRIANGLE = {

@@ -1,7 +1,5 @@
 """Limits of a SCARA on several turns: what is asked in a language other than Python, and what Python says to that."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -28,7 +26,6 @@ class Limited:
 
     @property
     def calls(self) -> list[Any]:
-        """The calls of the inverse."""
         return [["inverse", {"position": f.position, "rotation": f.rotation}, c, axes] for f, c, axes in self.asked]
 
     def confirm(self, answers: Sequence[Mapping[str, Any]]) -> int:

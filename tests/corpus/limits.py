@@ -1,7 +1,5 @@
 """Questions about limits: an axis just inside and just outside, another turn inside, limits that are not tested."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Which package `softkin` is asked: found before anything imports it."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

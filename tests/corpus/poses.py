@@ -1,7 +1,5 @@
 """Axis values to ask about: all over the workspace, at right angles, where margins vanish, and where assembly ends."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import combinations
 from typing import Any
@@ -76,7 +74,6 @@ def ends(one: Robot, count: int, rng: np.random.Generator) -> list[Axes]:
 
 
 def margins(one: Robot, axes: Axes) -> Array:
-    """The margins at axis values."""
     return np.array(list(one.made.singularity(axes).margins.values()), dtype=float)
 
 

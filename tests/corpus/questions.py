@@ -1,7 +1,5 @@
 """The questions of the corpus: drawn with seeds from what a package can reach, and recorded to the last bit."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import inf, nan
 from typing import Any
@@ -46,7 +44,6 @@ def _fewer(one: Robot) -> int:
 
 
 def inverse(one: Robot, frame: Any, reference: Any, configurations: Any, kind: str, trusted: bool = True) -> Question:
-    """A question about the inverse."""
     given = [list(frame[0]), [list(row) for row in frame[1]]]
     asked = {"call": "inverse", "kind": kind, "frame": given, "reference": reference}
     return asked | {"configurations": [list(c) for c in configurations], "trusted": trusted}
@@ -173,7 +170,6 @@ def _held_at(one: Robot, axes: Axes) -> Axes | None:
 
 
 def _parameters(one: Robot) -> Iterator[Question]:
-    """Parameters that are refused."""
     for p in type(one.made).PARAMETERS:
         given = one.made.parameters[p.name]
         for value in (0.0, -given, nan, inf, 1e10, p.low, p.high):

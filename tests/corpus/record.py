@@ -1,7 +1,5 @@
 """Record what a package answers: `python -m tests.corpus.record [--anew] [--package DIR] [--output DIR] [NAME ...]`."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from tests.corpus.packages import options, use

@@ -1,7 +1,5 @@
 """Recordings: a file for a mechanism, compressed, with every real as the shortest text that gives it back."""
 
-from __future__ import annotations
-
 import json
 import lzma
 from collections.abc import Iterator
@@ -22,7 +20,6 @@ Recording = list[dict[str, Any]]
 
 
 def read(name: str, folder: Path = RECORDED) -> Recording:
-    """The recording of a mechanism."""
     found: Recording = json.loads(lzma.decompress((folder / f"{name}.json.xz").read_bytes()))
     return found
 

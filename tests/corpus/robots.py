@@ -29,7 +29,6 @@ class Robot:
 
     @property
     def is_angle(self) -> np.ndarray:
-        """Which axes are in degrees."""
         return np.array([axis.unit == "deg" for axis in self.made.AXES], dtype=bool)
 
     def changed(self, **parameters: float) -> Robot:

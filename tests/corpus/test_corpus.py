@@ -1,7 +1,5 @@
 """The generated package answers as it did when the corpus was recorded, and a package that does not is found out."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -60,14 +58,12 @@ def dropped(found: Answer) -> None:
 
 
 def reworded(found: Answer) -> None:
-    """Another reason."""
     for named in found.get("named", []):
         if named["why"].get("reason"):
             named["why"]["reason"] = named["why"]["reason"].upper()
 
 
 def turned(found: Answer) -> None:
-    """Another turn that is inside."""
     for named in found.get("named", []):
         if named["why"].get("turn"):
             named["why"]["turn"] += 1

@@ -1,12 +1,11 @@
 """Forward kinematics of a description that was written, and of robot files by independent readers."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 
 import numpy as np
+import pytest
 import sympy as sp
 from numpy.typing import NDArray
 
@@ -14,6 +13,7 @@ from derive.description.catalogue import load
 from derive.description.mechanism import Mechanism
 from derive.geometry.frames import Motion
 from derive.importing.importing import Imported, Options, import_robot
+from derive.importing.robot import UnreadableRobot
 from derive.ir.constants import DEGREE
 
 Array = NDArray[np.float64]
@@ -33,6 +33,27 @@ def described(imported: Imported, folder: Path) -> Mechanism:
 def imported(path: Path, base: str | None = None, tip: str | None = None, **options: object) -> Imported:
     """A robot file, imported."""
     return import_robot(path, Options(base, tip, **options))  # type: ignore[arg-type]
+
+
+def imported_text(
+    path: Path, text: str, base: str | None = None, tip: str | None = None, **options: object
+) -> Imported:
+    """A robot file with this text, imported."""
+    path.write_text(text, encoding="utf-8")
+    return imported(path, base, tip, **options)
+
+
+def refused(
+    path: Path, text: str | bytes | None, options: Options | None = None, *, is_of_the_file: bool = True
+) -> str:
+    """The one line in which a file is refused. text: what it holds; None where nothing is written."""
+    if text is not None:
+        path.write_bytes(text.encode() if isinstance(text, str) else text)
+    with pytest.raises(UnreadableRobot) as refusal:
+        import_robot(path, options or Options())
+    said = str(refusal.value)
+    assert "\n" not in said and said.startswith(str(path)) == is_of_the_file
+    return said
 
 
 @cache
@@ -109,3 +130,14 @@ def differences(found: Imported, mechanism: Mechanism, pose: Pose, unit: float =
         positions.append(float(np.linalg.norm(ours[:3, 3] - unit * theirs[:3, 3])))
         rotations.append(float(np.linalg.norm(ours[:3, :3] - theirs[:3, :3], 2)))
     return max(positions), max(rotations)
+
+
+def assert_is(found: Imported, folder: Path, pose: Pose, away: float = 1e-9, turned: float = 1e-12) -> Mechanism:
+    """Forward kinematics of the description is that of the pose, but for what the import says that it has moved.
+
+    away, turned: what rounding may add, in the unit of the description and in radians.
+    """
+    mechanism = described(found, folder)
+    position, rotation = differences(found, mechanism, pose)
+    assert position <= found.bounds.position + away and rotation <= found.bounds.rotation + turned
+    return mechanism

@@ -1,7 +1,5 @@
 """Robot files: those of `rtb-data`, and some written here from published dimensions, with a rounded pi."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,8 +14,6 @@ XACRO = Path(rtbdata.__file__).parent / "xacro"
 
 @dataclass(frozen=True)
 class File:
-    """A robot file with its ends."""
-
     path: Path
     base: str
     tip: str

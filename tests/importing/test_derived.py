@@ -1,7 +1,5 @@
 """Imported robots are derived: every solution of the inverse stands where an independent reader has the tip."""
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp

@@ -1,12 +1,10 @@
 """Which of seven joints an import holds: one without which the rest has a closed form; and joints that are not read."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
 
-from tests.importing.kinematics import described, imported
+from tests.importing.kinematics import described, imported_text
 from tests.importing.robots import joint, urdf
 from tests.machines.made import built_of
 
@@ -25,16 +23,10 @@ PANDA = urdf(
 """Franka Emika Panda, from the Denavit-Hartenberg parameters that the maker publishes."""
 
 
-def _file(folder: Path, text: str) -> Path:
-    path = folder / "robot.urdf"
-    path.write_text(text, encoding="utf-8")
-    return path
-
-
 @pytest.mark.slow
 def test_an_arm_whose_wrist_axes_miss_each_other_holds_its_last_joint(tmp_path: Path) -> None:
     """Its shoulder is a point, and the axes of A5 and A6 meet; with any other joint held no closed form is known."""
-    found = imported(_file(tmp_path, PANDA))
+    found = imported_text(tmp_path / "robot.urdf", PANDA)
     assert "held=(A7,)" in found.text and "Held where the reference has it: A7" in found.report
     evidence = built_of(described(found, tmp_path)).evidence
     assert evidence is not None and evidence.inverted is not None and evidence.inverted.solutions == 8
@@ -50,5 +42,5 @@ def test_a_mimic_of_nothing_that_no_joint_of_the_chain_follows_is_not_read(tmp_p
         joint("end", "fixed", "0.2 0 0"),
         fingers,
     )
-    found = imported(_file(tmp_path, text), tip="link3")
+    found = imported_text(tmp_path / "robot.urdf", text, tip="link3")
     assert found.axes == ("A1", "A2") and "finger" in found.text

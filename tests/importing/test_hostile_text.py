@@ -1,7 +1,5 @@
 """Names in a robot file are data: whatever they hold, the description is the same program, and tells them in a line."""
 
-from __future__ import annotations
-
 import ast
 import json
 from pathlib import Path
@@ -10,7 +8,7 @@ from xml.sax.saxutils import quoteattr
 import pytest
 
 from derive.description.validate import validate
-from tests.importing.kinematics import described, imported
+from tests.importing.kinematics import described, imported_text
 from tests.machines.hostile import MARKS, UNPRINTED
 
 HOSTILE = [name.replace("${", "$ {") for name in (" ".join(MARKS), *MARKS)]  # an unexpanded macro is refused
@@ -60,7 +58,6 @@ def loop(name: str) -> str:
 
 
 def toml(name: str) -> str:
-    """The same as a table."""
     rows = (("revolute", 0.3), ("revolute", 0.2), ("prismatic", 0))
     told = "".join(
         f'[[joints]]\nname = {json.dumps(f"{name} moving {k}")}\ntype = "{kind}"\na = {shift}\n'
@@ -78,9 +75,7 @@ def test_names_of_a_file(kind: str, tmp_path: Path) -> None:
     write, ending = FORMATS[kind]
 
     def shape(name: str, file: str) -> str:
-        path = tmp_path / f"{file}{ending}"
-        path.write_text(write(name), encoding="utf-8")
-        found = imported(path, tip="tip" if kind == "loop" else None)
+        found = imported_text(tmp_path / f"{file}{ending}", write(name), tip="tip" if kind == "loop" else None)
         mechanism = validate(described(found, tmp_path))
         assert mechanism.summary.isprintable() and mechanism.source.isprintable()
         tree = ast.parse(found.text)

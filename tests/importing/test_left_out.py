@@ -1,14 +1,13 @@
 """What kinematics does not need is a line of the report; a loop that binds the arm is a refusal."""
 
-from __future__ import annotations
-
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
-from derive.importing.robot import UnreadableRobot
-from tests.importing.kinematics import imported
+from derive.importing.importing import Options
+from tests.importing.kinematics import imported_text, refused
 from tests.importing.robots import joint, urdf
 
 PLAIN = urdf(
@@ -38,20 +37,16 @@ MACROS: Mapping[str, tuple[str, tuple[str | None, str | None], str]] = {
 @pytest.mark.parametrize("file", ["arm.urdf", "arm.xacro", "arm.urdf.xacro"])
 def test_a_macro_that_the_chain_does_not_need_is_told(name: str, file: str, tmp_path: Path) -> None:
     macro, ends, told = MACROS[name]
-    (tmp_path / "plain.urdf").write_text(PLAIN, encoding="utf-8")
-    (tmp_path / file).write_text(XACRO.replace("</robot>", f"{macro}</robot>"), encoding="utf-8")
-    found = imported(tmp_path / file, *ends)
+    found = imported_text(tmp_path / file, XACRO.replace("</robot>", f"{macro}</robot>"), *ends)
     assert f"Not read, because nothing between base and tip needs them: macros ({told}" in found.report
     chain = found.text.split("chain=")[1].split("\n")[0]
-    assert chain == imported(tmp_path / "plain.urdf").text.split("chain=")[1].split("\n")[0]
+    assert chain == imported_text(tmp_path / "plain.urdf", PLAIN).text.split("chain=")[1].split("\n")[0]
 
 
 def test_expressions_in_masses_and_meshes_are_not_read(tmp_path: Path) -> None:
-    path = tmp_path / "arm.urdf"
     shape = '<visual><origin xyz="${x} 0 0"/><geometry><mesh filename="$(find p)/a.stl"/></geometry></visual>'
     text = XACRO.replace('<link name="link1"/>', f'<link name="link1">{shape}</link>')
-    path.write_text(text.replace('effort="1"', 'effort="${e}"'), encoding="utf-8")
-    assert imported(path).axes == ("A1", "A2", "A3")
+    assert imported_text(tmp_path / "arm.urdf", text.replace('effort="1"', 'effort="${e}"')).axes == ("A1", "A2", "A3")
 
 
 ACTUATORS = '<actuator><position joint="m1"/><motor joint="m2"/></actuator>'
@@ -79,34 +74,24 @@ OPEN: Mapping[str, str] = {
 def test_a_loop_that_binds_the_arm_is_refused(name: str, tmp_path: Path) -> None:
     """The rods meet beside the tip (`test_rods` has those that meet in it)."""
     closed, sentence = BOUND[name]
-    path = tmp_path / "r.xml"
-    path.write_text(LEGS.format("", closed, ACTUATORS), encoding="utf-8")
-    with pytest.raises(UnreadableRobot) as refusal:
-        imported(path, tip="r1")
-    said = str(refusal.value)
+    said = refused(tmp_path / "r.xml", LEGS.format("", closed, ACTUATORS), Options(tip="r1"))
     assert sentence in said and "describe it with rods" in said
     assert ("'p1', 'p2' are passive" if "'r2'" in sentence else "passive") in said or "end" in sentence
 
 
 @pytest.mark.parametrize("name", OPEN)
 def test_a_loop_that_does_not_bind_it_is_not(name: str, tmp_path: Path) -> None:
-    path = tmp_path / "r.xml"
-    path.write_text(LEGS.format("", OPEN[name], ACTUATORS), encoding="utf-8")
-    found = imported(path, tip="end1")
+    found = imported_text(tmp_path / "r.xml", LEGS.format("", OPEN[name], ACTUATORS), tip="end1")
     assert ("closes a loop" in found.report) == name.startswith("a loop")
 
 
 def test_a_loop_whose_joints_follow_each_other_is_that_of_the_arm(tmp_path: Path) -> None:
     """A parallelogram, with its equality, and the bar that a simulator closes."""
-    path = tmp_path / "r.xml"
-    path.write_text(
-        """<mujoco><worldbody><body name="k"><joint name="m0"/><body name="l" pos="0.3 0 0"><joint name="m1"/>
+    text = """<mujoco><worldbody><body name="k"><joint name="m0"/><body name="l" pos="0.3 0 0"><joint name="m1"/>
         <body name="r" pos="0.4 0 0"><joint name="p"/><site name="end" pos="0.1 0 0"/></body></body></body></worldbody>
         <equality><joint joint1="p" joint2="m1" polycoef="0 -1 0 0 0"/><connect body1="k" body2="r" anchor="0 0.1 0"/>
-        </equality></mujoco>""",
-        encoding="utf-8",
-    )
-    found = imported(path, tip="end")
+        </equality></mujoco>"""
+    found = imported_text(tmp_path / "r.xml", text, tip="end")
     assert "Not read, because its joints follow each other: a connect of 'k' and 'r' closes a loop" in found.report
 
 
@@ -126,16 +111,15 @@ FINGER = "".join(
 @pytest.mark.parametrize("name", URDF_LOOPS)
 def test_a_loop_of_a_urdf_is_refused_and_told_where_it_is_beside_the_chain(name: str, tmp_path: Path) -> None:
     path = tmp_path / "r.urdf"
-    path.write_text(PLAIN.replace("</robot>", URDF_LOOPS[name].format("link2", "link0") + "</robot>"), encoding="utf-8")
-    with pytest.raises(UnreadableRobot, match=r"joint 'c'.* closes a loop of the joints '.*: as an open arm"):
-        imported(path, *ENDS)
+    said = refused(
+        path, PLAIN.replace("</robot>", URDF_LOOPS[name].format("link2", "link0") + "</robot>"), Options(*ENDS)
+    )
+    assert re.search(r"joint 'c'.* closes a loop of the joints '.*: as an open arm", said)
     beside = FINGER + URDF_LOOPS[name].format("nail", "link4")
-    path.write_text(PLAIN.replace("</robot>", f"{beside}</robot>"), encoding="utf-8")
-    assert "Not read, because no joint between base and tip is in it: " in imported(path, *ENDS).report
+    found = imported_text(path, PLAIN.replace("</robot>", f"{beside}</robot>"), *ENDS)
+    assert "Not read, because no joint between base and tip is in it: " in found.report
 
 
 def test_a_joint_of_gazebo_to_the_world_closes_nothing(tmp_path: Path) -> None:
-    path = tmp_path / "r.urdf"
     fixed = '<gazebo><joint name="c" type="fixed"><parent>world</parent><child>link0</child></joint></gazebo>'
-    path.write_text(PLAIN.replace("</robot>", f"{fixed}</robot>"), encoding="utf-8")
-    assert "loop" not in imported(path).report
+    assert "loop" not in imported_text(tmp_path / "r.urdf", PLAIN.replace("</robot>", f"{fixed}</robot>")).report

@@ -1,7 +1,5 @@
 """MJCF: forward kinematics of the description is that of MuJoCo, in every way in which a file can say it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -9,7 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from tests.importing.kinematics import Array, Pose, described, differences, imported
+from tests.importing.kinematics import Array, Pose, assert_is, described, imported_text
 
 MODELS = {
     "degrees, quaternions, a site": """
@@ -79,17 +77,13 @@ def by_mujoco(path: Path, base: str, tip: str) -> Pose:
 @pytest.mark.parametrize("snap", [0.0, 1e-6])
 def test_it_is_what_mujoco_says(name: str, base: str, snap: float, tmp_path: Path) -> None:
     path = tmp_path / "robot.xml"
-    path.write_text(MODELS[name], encoding="utf-8")
     base = base if 'name="base"' in MODELS[name] else "world"
-    found = imported(path, base, "tool", snap=snap)
-    position, rotation = differences(found, described(found, tmp_path), by_mujoco(path, base, "tool"))
-    assert position <= found.bounds.position + 1e-9
-    assert rotation <= found.bounds.rotation + 1e-12
+    found = imported_text(path, MODELS[name], base, "tool", snap=snap)
+    assert_is(found, tmp_path, by_mujoco(path, base, "tool"))
     assert (snap == 0.0) <= (found.bounds.position == found.bounds.rotation == 0.0)
 
 
 def test_limits_come_along_in_degrees(tmp_path: Path) -> None:
-    path = tmp_path / "robot.xml"
-    path.write_text(MODELS["degrees, quaternions, a site"], encoding="utf-8")
-    joints = described(imported(path, "base", "tool"), tmp_path).joints
+    found = imported_text(tmp_path / "robot.xml", MODELS["degrees, quaternions, a site"], "base", "tool")
+    joints = described(found, tmp_path).joints
     assert [j.limits for j in joints] == [(-170.0, 170.0), (-90.0, 90.0), *[(-170.0, 170.0)] * 4]

@@ -1,14 +1,12 @@
 """Files as nobody would write them: axes of every direction, rounded turns, joints in any order, followers."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.importing.kinematics import UNSNAPPED, by_yourdfpy, described, differences, imported
+from tests.importing.kinematics import UNSNAPPED, assert_is, by_yourdfpy, imported_text
 from tests.importing.robots import joint, urdf
 
 pytestmark = pytest.mark.slow
@@ -63,14 +61,11 @@ def shuffled(text: str, seed: int) -> str:
 @pytest.mark.parametrize("seed", range(SEEDS))
 def test_an_odd_file_is_what_it_says(seed: int, tmp_path: Path) -> None:
     path = tmp_path / "odd.urdf"
-    path.write_text(text := shuffled(odd(seed), seed), encoding="utf-8")
+    text = shuffled(odd(seed), seed)
     tip = f"link{text.count('<joint name')}"
     for snap in (0.0, 1e-4):
-        found = imported(path, "link0", tip, snap=snap)
-        pose = by_yourdfpy(path, "link0", tip)
-        position, rotation = differences(found, described(found, tmp_path), pose)
-        assert position <= found.bounds.position + 1e-8
-        assert rotation <= found.bounds.rotation + 1e-11
+        found = imported_text(path, text, "link0", tip, snap=snap)
+        assert_is(found, tmp_path, by_yourdfpy(path, "link0", tip), 1e-8, 1e-11)
         assert snap > 0.0 or found.bounds.rotation <= UNSNAPPED
         assert sum(len(name) > 3 for name in found.axes) == 0
 
@@ -78,7 +73,5 @@ def test_an_odd_file_is_what_it_says(seed: int, tmp_path: Path) -> None:
 def test_a_small_arm_far_from_its_base(tmp_path: Path) -> None:
     path = tmp_path / "far.urdf"
     arm = [joint("a", "revolute", "40 0 3"), joint("b", "revolute", "0.1 0 0"), joint("tip", "fixed", "0.1 0 0")]
-    path.write_text(urdf("far", *arm), encoding="utf-8")
-    found = imported(path)
-    position, rotation = differences(found, described(found, tmp_path), by_yourdfpy(path, "link0", "link3"))
-    assert position <= found.bounds.position + 1e-8 and rotation <= found.bounds.rotation + 1e-11
+    found = imported_text(path, urdf("far", *arm))
+    assert_is(found, tmp_path, by_yourdfpy(path, "link0", "link3"), 1e-8, 1e-11)

@@ -1,7 +1,5 @@
 """The same machine in a file with other frames of its links: the description is the same."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from math import cos, sin
 from pathlib import Path
@@ -13,7 +11,7 @@ from numpy.typing import NDArray
 from derive.description.joints import Kind
 from derive.importing.arms.lines import Arm, arm_of
 from derive.importing.formats.urdf import read_urdf
-from tests.importing.kinematics import imported
+from tests.importing.kinematics import imported_text
 from tests.importing.robots import COLLECTION, WRITTEN, File, joint, urdf, written
 
 pytestmark = pytest.mark.slow
@@ -63,7 +61,6 @@ def _file(name: str, folder: Path) -> File:
 
 
 def _turned(rng: np.random.Generator) -> Array:
-    """Any rotation."""
     rotation, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     return np.asarray(rotation * np.sign(np.linalg.det(rotation)))
 
@@ -98,7 +95,6 @@ def test_a_description_does_not_depend_on_the_frames_of_the_file(name: str, tmp_
     assert all(len(line.drives) == 1 and line.drives[0][1] == 1.0 for line in arm.lines)
     texts = set()
     for seed in range(SEEDS):
-        path = tmp_path / "arm.urdf"
-        path.write_text(urdf("arm", *_joints(arm, seed)), encoding="utf-8")
-        texts.add(imported(path).text.split('"""', 2)[2])
+        found = imported_text(tmp_path / "arm.urdf", urdf("arm", *_joints(arm, seed)))
+        texts.add(found.text.split('"""', 2)[2])
     assert len(texts) == 1

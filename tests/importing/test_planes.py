@@ -1,14 +1,12 @@
 """Robot files whose tip moves in some of x, y and z alone."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from derive.pipeline import derive_one
-from tests.importing.kinematics import by_yourdfpy, described, imported
+from tests.importing.kinematics import by_yourdfpy, described, imported_text
 from tests.importing.robots import joint, urdf
 from tests.machines.made import imported_class
 
@@ -26,9 +24,8 @@ FLAT = {
 @pytest.mark.parametrize("position", FLAT)
 def test_a_tip_that_moves_in_some_coordinates_commands_these(position: str, tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf"
-    path.write_text(FLAT[position], encoding="utf-8")
     base, tip = "link0", f"link{FLAT[position].count('<joint name')}"
-    mechanism = described(imported(path, base, tip), tmp_path)
+    mechanism = described(imported_text(path, FLAT[position], base, tip), tmp_path)
     assert mechanism.task.position == position
     robot = imported_class(mechanism, derive_one(mechanism))(check_limits=False)
     pose = by_yourdfpy(path, base, tip)

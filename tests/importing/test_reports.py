@@ -1,14 +1,12 @@
 """What an import tells, and what it makes of names, limits and joints that follow others."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from derive.mechanism import Turning
-from tests.importing.kinematics import by_yourdfpy, described, differences, imported
+from tests.importing.kinematics import by_yourdfpy, described, differences, imported, imported_text
 from tests.importing.robots import COLLECTION, joint, rounded, ur5e, urdf
 
 CLOSED = {
@@ -43,8 +41,7 @@ def test_neighbouring_axes_are_told_with_the_snap_that_they_need() -> None:
 def test_a_rounded_right_angle_is_put_back_and_told(tmp_path: Path) -> None:
     """1.5708 is 3.7e-6 off a right angle: more than `--snap`, but no more than four decimals are."""
     path = tmp_path / "ur.urdf"
-    path.write_text(ur5e(5), encoding="utf-8")
-    found = imported(path)
+    found = imported_text(path, ur5e(5))
     assert "A1-A2: distance 0 mm, angle 89.9998°; square, snapped; they meet" in found.report
     assert f"shoulder_lift_joint: {rounded(5)[0]} is 90° rounded, off by 3.7e-06 rad" in found.report
     assert "A closed form is likely: A2, A3, A4 are parallel." in found.report
@@ -53,8 +50,7 @@ def test_a_rounded_right_angle_is_put_back_and_told(tmp_path: Path) -> None:
 
 def test_what_is_no_rounding_is_told_and_put_back_by_the_snap_that_the_report_names(tmp_path: Path) -> None:
     path = tmp_path / "ur.urdf"
-    path.write_text(ur5e(5).replace("1.5708", "1.5711"), encoding="utf-8")
-    report = imported(path).report
+    report = imported_text(path, ur5e(5).replace("1.5708", "1.5711")).report
     assert "A1-A2: distance 0 mm, angle 89.9826°; nearly square: square with --snap 0.00031; they meet" in report
     snapped = imported(path, snap=3.1e-4)
     assert "A1-A2: their angle read as 90°, off by 0.0003 rad" in snapped.report
@@ -63,17 +59,14 @@ def test_what_is_no_rounding_is_told_and_put_back_by_the_snap_that_the_report_na
 
 def test_limits_that_are_none(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf"
-    path.write_text(
-        urdf(
-            "r",
-            joint("a", "continuous", limits=(-1.0, 1.0)),
-            joint("b", "revolute", "0.1 0 0", limits=(float("-inf"), float("inf"))),
-            joint("c", "revolute", "0.1 0 0", limits=(0.0, 0.0)),
-            joint("d", "prismatic", limits=(-0.25, 0.0)),
-        ),
-        encoding="utf-8",
+    text = urdf(
+        "r",
+        joint("a", "continuous", limits=(-1.0, 1.0)),
+        joint("b", "revolute", "0.1 0 0", limits=(float("-inf"), float("inf"))),
+        joint("c", "revolute", "0.1 0 0", limits=(0.0, 0.0)),
+        joint("d", "prismatic", limits=(-0.25, 0.0)),
     )
-    joints = described(imported(path), tmp_path).joints
+    joints = described(imported_text(path, text), tmp_path).joints
     assert [j.limits for j in joints] == [None, None, None, (-250.0, 0.0)]
     path.write_text(path.read_text(encoding="utf-8"), encoding="utf-16")  # XML says itself how it is written
     assert [j.limits for j in described(imported(path, unit="m"), tmp_path).joints][3] == (-0.25, 0.0)
@@ -86,7 +79,7 @@ def test_a_joint_may_follow_one_that_is_not_on_the_way(tmp_path: Path) -> None:
     text = """<joint name="{}" type="{}"><parent link="{}"/><child link="{}"/><origin xyz="{}"/><axis xyz="{}"/>
         <limit lower="-1" upper="1.5"/>{}</joint>"""
     follow = '<mimic joint="bar_joint" multiplier="{}" offset="{}"/>'
-    path.write_text(
+    robot = (
         "<robot name='r'>"
         + links
         + text.format("arm_joint", "revolute", "base", "arm", "0 0 0.3", "0 0 1", follow.format(-1, 0.3))
@@ -94,10 +87,9 @@ def test_a_joint_may_follow_one_that_is_not_on_the_way(tmp_path: Path) -> None:
         + text.format("hand_joint", "revolute", "arm", "hand", "0.4 0 0", "0 0 1", "")
         + text.format("palm_joint", "fixed", "hand", "palm", "0.2 0 0", "0 0 1", "")
         + text.format("finger_joint", "prismatic", "hand", "finger", "0.1 0 0", "1 0 0", follow.format(0.01, 0.0))
-        + "</robot>",
-        encoding="utf-8",
+        + "</robot>"
     )
-    found = imported(path, "base", "palm")
+    found = imported_text(path, robot, "base", "palm")
     assert [axis.name for axis in found.robot.axes] == ["bar_joint", "hand_joint"]
     assert "Left out, because they are not between base and tip: arm_joint, finger_joint." not in found.report
     assert "Left out, because they are not between base and tip: finger_joint." in found.report
@@ -138,6 +130,6 @@ def test_a_joint_that_moves_nothing_of_its_own_is_told(words: str, tmp_path: Pat
     """As a table typed by the other convention has one; an arm with a spherical wrist has none."""
     path = tmp_path / "arm.toml"
     wrist = [(0, 290, 0, 90), (0, 0, 0, -90), (0, 65, 0, 0)]
-    path.write_text(dh_table(REDUNDANT.get(words, [*ARM, *wrist])), encoding="utf-8")
-    told = [line for line in imported(path).report.splitlines() if "moves nothing of its own" in line]
+    found = imported_text(path, dh_table(REDUNDANT.get(words, [*ARM, *wrist])))
+    told = [line for line in found.report.splitlines() if "moves nothing of its own" in line]
     assert told == ([f"{words}: one of them moves nothing of its own."] if words else [])

@@ -1,7 +1,5 @@
 """Angles that a file has rounded, by the decimals that it writes: in every format, and never one that is none."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +11,16 @@ from derive.importing.arms.rounded import snapped_robot
 from derive.importing.formats.documents import rounding
 from derive.importing.importing import SNAP
 from derive.importing.robot import Robot, Step, Turned
-from tests.importing.kinematics import by_yourdfpy, chain_pose, described, differences, facing, imported
+from tests.importing.kinematics import (
+    assert_is,
+    by_yourdfpy,
+    chain_pose,
+    described,
+    differences,
+    facing,
+    imported,
+    imported_text,
+)
 from tests.importing.robots import joint, urdf
 from tests.importing.test_mjcf import by_mujoco
 
@@ -71,14 +78,13 @@ def test_a_table_in_radians_is_read_by_its_decimals(tmp_path: Path) -> None:
     head = "# convention: standard\n# angles: {}\n# lengths: m\ntheta,d,a,alpha\n"
     for half, quarter, is_read in (("1.5708", "0.7854", True), ("1.5712", "0.7856", False), ("1.57", "0.7860", False)):
         settings = 'convention = "standard"\nangles = "radians"\nlengths = "m"\n'
-        toml.write_text(settings + rows.format(half, quarter), encoding="utf-8")
-        cells = f"0,0.3,0,{half}\n0,0,0.4,0\n{quarter},0,0.3,{half}\n"
-        table.write_text(head.format("radians") + cells, encoding="utf-8")
-        texts = [imported(path).text for path in (toml, table)]
+        cells = head.format("radians") + f"0,0.3,0,{half}\n0,0,0.4,0\n{quarter},0,0.3,{half}\n"
+        written = ((toml, settings + rows.format(half, quarter)), (table, cells))
+        texts = [imported_text(*file).text for file in written]
         assert [("radians(" not in text) for text in texts] == [is_read, is_read]
         assert not is_read or all("pi/4" in text for text in texts)
-    table.write_text(head.format("degrees") + "0,0.3,0,89.9999\n0,0,0.4,0\n0,0,0.3,90\n", encoding="utf-8")
-    assert "radians(" in imported(table).text, "a file in degrees has no reason to round 90"
+    degrees = head.format("degrees") + "0,0.3,0,89.9999\n0,0,0.4,0\n0,0,0.3,90\n"
+    assert "radians(" in imported_text(table, degrees).text, "a file in degrees has no reason to round 90"
 
 
 MODEL = """<mujoco><compiler angle="radian"/><worldbody>
@@ -109,16 +115,13 @@ NOT_SIMPLE = (
 @pytest.mark.parametrize("given_", [*SQUARE, *INCLINED, *NOT_SIMPLE])
 def test_an_orientation_of_a_model_is_read_by_its_decimals(given_: str, tmp_path: Path) -> None:
     path = tmp_path / "model.xml"
-    path.write_text(MODEL.format(SQUARE[0], given_), encoding="utf-8")
-    found = imported(path, tip="d")
-    degrees = [p.nominal for p in described(found, tmp_path).parameters if p.unit == "deg"]
+    found = imported_text(path, MODEL.format(SQUARE[0], given_), tip="d")
+    pose = by_mujoco(path, "world", "d")
+    degrees = [p.nominal for p in assert_is(found, tmp_path, pose).parameters if p.unit == "deg"]
     if given_ in NOT_SIMPLE:
         assert any("d: " in m.what for m in found.moved) is False
     else:
         assert not degrees, "every turn is a multiple of 15 degrees"
-    pose = by_mujoco(path, "world", "d")
-    position, rotation = differences(found, described(found, tmp_path), pose)
-    assert position <= found.bounds.position + 1e-9 and rotation <= found.bounds.rotation + 1e-12
     exact = imported(path, tip="d", snap=0.0)
     position, rotation = differences(exact, described(exact, tmp_path), pose)
     assert position <= 1e-9 and rotation <= 1e-12
@@ -127,22 +130,18 @@ def test_an_orientation_of_a_model_is_read_by_its_decimals(given_: str, tmp_path
 def test_the_offset_of_a_joint_that_follows_is_put_back(tmp_path: Path) -> None:
     path = tmp_path / "r.urdf"
     mimic = '<mimic joint="j2" multiplier="-1" offset="1.5708"/>'
-    path.write_text(
-        urdf(
-            "r",
-            joint("j1", "revolute", "0 0 0.4"),
-            joint("j2", "revolute", "0.1 0 0", axis="0 1 0"),
-            joint("j3", "revolute", "0 0 0.5", axis="0 1 0", mimic=mimic),
-            joint("j4", "revolute", "0.4 0 0", axis="0 1 0"),
-            joint("tool", "fixed", "0 0 0.1"),
-        ),
-        encoding="utf-8",
+    text = urdf(
+        "r",
+        joint("j1", "revolute", "0 0 0.4"),
+        joint("j2", "revolute", "0.1 0 0", axis="0 1 0"),
+        joint("j3", "revolute", "0 0 0.5", axis="0 1 0", mimic=mimic),
+        joint("j4", "revolute", "0.4 0 0", axis="0 1 0"),
+        joint("tool", "fixed", "0 0 0.1"),
     )
-    found = imported(path)
+    found = imported_text(path, text)
     assert "j3, offset: 1.5708 is 90° rounded, off by 3.7e-06 rad" in found.report
     assert "radians(" not in found.text
-    position, rotation = differences(found, described(found, tmp_path), by_yourdfpy(path, "link0", "link5"))
-    assert position <= found.bounds.position + 1e-9 and rotation <= found.bounds.rotation + 1e-12
+    assert_is(found, tmp_path, by_yourdfpy(path, "link0", "link5"))
 
 
 def test_a_wide_limit_turns_axes_and_no_joint(tmp_path: Path) -> None:
@@ -153,8 +152,8 @@ def test_a_wide_limit_turns_axes_and_no_joint(tmp_path: Path) -> None:
     text = "".join(
         f"[[joints]]\ntheta = {theta}\nd = 100.0\na = {a}\nalpha = {alpha + tilt}\n" for theta, tilt, alpha, a in rows
     )
-    path.write_text(f'convention = "standard"\nangles = "degrees"\nlengths = "mm"\n{text}', encoding="utf-8")
-    found, exact = imported(path, snap=0.002), imported(path, snap=0.0)
+    text = f'convention = "standard"\nangles = "degrees"\nlengths = "mm"\n{text}'
+    found, exact = imported_text(path, text, snap=0.002), imported(path, snap=0.0)
     angles = [m.amount for m in found.moved if m.is_angle]
     assert np.allclose(sorted(angles), sorted(np.radians(np.abs(tilts))), rtol=1e-6, atol=0.0)
     assert found.text.count(" = angle(") == 3, "the offsets of A1, A3 and A4: a link is along x"

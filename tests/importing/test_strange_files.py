@@ -3,15 +3,13 @@
 Forward kinematics of the description is that of a reader that shares nothing with ours, and the description is derived.
 """
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
-from tests.importing.kinematics import UNSNAPPED, by_yourdfpy, described, differences, imported
+from tests.importing.kinematics import UNSNAPPED, assert_is, by_yourdfpy, described, imported
 from tests.importing.test_mjcf import by_mujoco
 from tests.machines.made import built_of
 
@@ -53,9 +51,7 @@ def test_it_is_what_the_other_reader_says(name: str, snap: float, tmp_path: Path
     plain.write_text(text, encoding="utf-8")
     reader = by_yourdfpy if plain.suffix == ".urdf" else by_mujoco
     pose = reader(plain, found.robot.base, found.robot.tip)
-    position, rotation = differences(found, described(found, tmp_path), pose)
-    assert position <= found.bounds.position + 1e-9
-    assert rotation <= found.bounds.rotation + 1e-12
+    assert_is(found, tmp_path, pose)
     assert snap > 0.0 or found.bounds.rotation <= UNSNAPPED
 
 

@@ -1,14 +1,11 @@
 """The task that an import chooses: the one that a user of such an arm wants, and that all its axes move well."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from derive.importing.importing import Imported
-from tests.importing.kinematics import by_yourdfpy, described, differences, imported
+from tests.importing.kinematics import assert_is, by_yourdfpy, described, imported, imported_text
 from tests.importing.robots import joint, urdf
 from tests.machines.made import built_of, imported_class
 
@@ -56,12 +53,6 @@ def _arm(name: str, folder: Path) -> Path:
     return path
 
 
-def _is_that_of_the_file(found: Imported, path: Path, folder: Path) -> None:
-    tip = by_yourdfpy(path, found.robot.base, found.robot.tip)
-    position, rotation = differences(found, described(found, folder), tip)
-    assert position <= found.bounds.position + 1e-9 and rotation <= found.bounds.rotation + 1e-11
-
-
 @pytest.mark.parametrize("name", CASES)
 def test_the_task_is_the_one_that_is_wanted(name: str, tmp_path: Path) -> None:
     *_, turning, facing, beside = CASES[name]
@@ -72,7 +63,7 @@ def test_the_task_is_the_one_that_is_wanted(name: str, tmp_path: Path) -> None:
     assert beside is None or np.allclose(found.task.beside, beside, rtol=0.0, atol=1e-9)
     assert ("The tip is moved by" in found.report) == (beside is not None)
     assert "hardly" not in found.report
-    _is_that_of_the_file(found, path, tmp_path)
+    assert_is(found, tmp_path, by_yourdfpy(path, found.robot.base, found.robot.tip), turned=1e-11)
 
 
 @pytest.mark.slow
@@ -99,8 +90,6 @@ def test_poses_near_those_that_are_reached_are_answered(name: str, tmp_path: Pat
 
 
 def test_an_axis_that_hardly_moves_what_is_commanded_is_told(tmp_path: Path) -> None:
-    path = tmp_path / "arm.urdf"
     elbow = [joint("a", "revolute"), joint("b", "revolute", "0.4 0 0"), joint("tip", "fixed", "0.003 0 0")]
-    path.write_text(urdf("arm", *elbow), encoding="utf-8")
-    report = imported(path).report
+    report = imported_text(tmp_path / "arm.urdf", urdf("arm", *elbow)).report
     assert "A2 hardly moves what is commanded: 0.00" in report and "A1 hardly" not in report

@@ -1,12 +1,10 @@
 """Transmissions of a URDF: forward kinematics is in joint values all the same, and the report tells them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
 
-from tests.importing.kinematics import by_yourdfpy, described, differences, imported
+from tests.importing.kinematics import assert_is, by_yourdfpy, described, imported_text
 from tests.importing.robots import joint, urdf
 
 ARM = urdf(
@@ -52,18 +50,14 @@ REPORTS = {
 def test_they_are_reported_and_change_nothing(name: str, tmp_path: Path) -> None:
     inside, lines = REPORTS[name]
     path, plain = tmp_path / "arm.urdf", tmp_path / "plain.urdf"
-    path.write_text(ARM.replace("</robot>", f"{inside}</robot>"), encoding="utf-8")
-    plain.write_text(ARM, encoding="utf-8")
-    found = imported(path)
+    chain = described(imported_text(plain, ARM), tmp_path).chain
+    found = imported_text(path, ARM.replace("</robot>", f"{inside}</robot>"))
     for line in lines:
         assert line in found.report + "\n"
-    mechanism = described(found, tmp_path)
-    position, rotation = differences(found, mechanism, by_yourdfpy(plain, "link0", "link4"))
-    assert position <= 1e-9 and rotation <= 1e-12
-    assert mechanism.chain == described(imported(plain), tmp_path).chain
+    assert found.bounds.position == found.bounds.rotation == 0.0
+    mechanism = assert_is(found, tmp_path, by_yourdfpy(plain, "link0", "link4"))
+    assert mechanism.chain == chain
 
 
 def test_that_of_a_gripper_is_not_told(tmp_path: Path) -> None:
-    path = tmp_path / "arm.urdf"
-    path.write_text(ARM.replace("</robot>", f"{OTHER}</robot>"), encoding="utf-8")
-    assert "ransmission" not in imported(path).report
+    assert "ransmission" not in imported_text(tmp_path / "arm.urdf", ARM.replace("</robot>", f"{OTHER}</robot>")).report

@@ -1,13 +1,11 @@
 """URDF: forward kinematics of the description is that of the file, by a reader that shares nothing with ours."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 
 import pytest
 
-from tests.importing.kinematics import UNSNAPPED, by_yourdfpy, described, differences, imported
+from tests.importing.kinematics import UNSNAPPED, assert_is, by_yourdfpy, imported
 from tests.importing.robots import COLLECTION, WRITTEN, File, written
 
 pytestmark = pytest.mark.slow
@@ -34,18 +32,10 @@ EVERY = pytest.mark.parametrize(
 )
 
 
-def size_of(found: object) -> float:
-    """The largest length of a description, as a scale."""
-    return max(1.0, *(p.nominal for p in found.parameters if p.unit == "u"))  # type: ignore[attr-defined]
-
-
 @EVERY
 def test_unsnapped_it_is_the_file(file: File, tmp_path: Path) -> None:
     found = imported(file.path, file.base, file.tip, snap=0.0)
-    mechanism = described(found, tmp_path)
-    position, rotation = differences(found, mechanism, by_yourdfpy(file.path, file.base, file.tip))
-    assert position <= found.bounds.position + EXACT * 1000.0
-    assert rotation <= found.bounds.rotation + EXACT
+    assert_is(found, tmp_path, by_yourdfpy(file.path, file.base, file.tip), EXACT * 1000.0, EXACT)
     assert found.bounds.rotation <= UNSNAPPED
     assert all("differences below 1e-9" in one.what for one in found.moved)
 
@@ -54,10 +44,7 @@ def test_unsnapped_it_is_the_file(file: File, tmp_path: Path) -> None:
 @pytest.mark.parametrize("snap", [1e-6, 1e-3])
 def test_snapped_it_differs_by_what_is_reported(file: File, snap: float, tmp_path: Path) -> None:
     found = imported(file.path, file.base, file.tip, snap=snap)
-    mechanism = described(found, tmp_path)
-    position, rotation = differences(found, mechanism, by_yourdfpy(file.path, file.base, file.tip))
-    assert position <= found.bounds.position + EXACT * 1000.0
-    assert rotation <= found.bounds.rotation + EXACT
+    assert_is(found, tmp_path, by_yourdfpy(file.path, file.base, file.tip), EXACT * 1000.0, EXACT)
     assert all(moved.amount <= (max(snap, ROUNDED) if moved.is_angle else snap * 1e4) for moved in found.moved)
 
 

@@ -1,7 +1,5 @@
 """Loops whose plate carries a joint that turns the tool: machines that are not in the catalogue."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from sympy import cos, sin

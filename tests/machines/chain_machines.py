@@ -1,7 +1,5 @@
 """Serial chains of few axes: an arm without length in some poses, arms without a closed form, and held joints."""
 
-from __future__ import annotations
-
 import sympy as sp
 from sympy import pi
 
@@ -72,7 +70,7 @@ LONG_LINKS = {
         Rz(A1) * Tx(UPPER) * Ry(A2) * Tx(Y) * Tx(SHORT) * Rz(A4) * Ry(A5) * Rz(A6) * Tx(TOOL),
         (UPPER, SHORT, TOOL),
         Task("xyz", Turning.FULL),
-    ),
+    )
 }
 """Determinants of two steps have one sign at all samples: with these dimensions signs alone tell no branch."""
 
@@ -177,7 +175,7 @@ THREE_PARALLEL = {
         * Tx(L4),
         (L1, L2, L3, L4, L5),
         Task("xyz", Turning.FULL),
-    ),
+    )
 }
 """With one joint known the rotation tells the sum of the parallel ones, before the position tells each."""
 
@@ -228,7 +226,7 @@ TOOL_ON_AXIS = {
         Ry(A1) * Tx(L1) * Rx(A2) * Tz(L2) * Rx(-A3) * Ty(L3) * Rx(A4) * Ry(A5) * Tz(L4) * Ty(L5),
         (L1, L2, L3, L4, L5),
         Task("xyz", Turning.DIRECTION),
-    ),
+    )
 }
 """The last shift is along the last axis: where this axis meets the line of the tool, the last joint moves nothing."""
 
@@ -264,30 +262,4 @@ CHAINS = {
     **MEETING_AXES,
     **SHORT_ARMS,
     **TOOL_ON_AXIS,
-}
-CHAIN_SOLUTIONS = {
-    "arm whose tool points across its last axis": 8,
-    "arm that rolls and bends where its shoulder is": 4,
-    "arm that rolls beside its elbow about an axis that leans": 4,
-    "arm with an elbow that is held, whose shoulder is beside its base": 8,
-    "arm with an elbow that is held, whose flange is beside its wrist": 8,
-    "arm that rolls before its elbow": 4,
-    "arm that rolls before its elbow, beside its base": 4,
-    "finger on a rocker on a slide": 4,
-    "arm whose wrist may lie on its second axis": 8,
-    "finger beside a rocker on a slide": 4,
-    "finger that two rockers in a row turn": 4,
-    "finger that folds onto the second of two parallel axes": 2,
-    "slide that a head points, beside its axis": 4,
-    "three axes with offsets everywhere": 4,
-    "three axes that lean by 60 degrees": 4,
-    "arm whose elbow rolls, with a wrist": 8,
-    "arm whose elbow goes across, with a wrist": 8,
-    "arm with three parallel axes, the last two beside each other": 8,
-    "six axes by a table with angles as numbers": 10,
-    "arm with a wrist that is bent by 60 degrees": 8,
-    "telescope between long links, with a wrist": 8,
-    "head whose second axis leans by 45 degrees": 2,
-    "seven axes by a table, the last held": 8,
-    "seven axes with an elbow and a wrist beside them, the last held": 8,
 }

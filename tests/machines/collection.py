@@ -1,7 +1,5 @@
 """Machines that are in no catalogue, by the rule that each needs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from sympy import Integer, cos, pi, sin
@@ -24,9 +22,9 @@ from derive.mechanism import (
 from tests.machines.angle_machines import NUMBERS
 from tests.machines.chain_machines import CHAINS
 from tests.machines.held_machines import FIRST_HELD, HELD
-from tests.machines.searched_machines import SEARCHED
+from tests.machines.searched_machines import POINTS, SEARCHED
 from tests.machines.subset_machines import SWEPT
-from tests.machines.task_machines import TASK_MACHINES
+from tests.machines.task_machines import TASK_MACHINES, UNNAMED
 from tests.machines.textbook import textbook as _machine
 
 X, Y, Z, R = (linear(name, f"slide {name}") for name in ("X", "Y", "Z", "R"))
@@ -299,7 +297,7 @@ TURNS_ABOUT_Y = {
         (HEIGHT, LEAN, L1),
         Task("xyz"),
         (branch("boom", cos(A1), forward=+1, backward=-1),),
-    ),
+    )
 }
 
 MACHINES: Mapping[str, Mechanism] = {
@@ -323,6 +321,14 @@ MACHINES: Mapping[str, Mechanism] = {
     **TASK_MACHINES,
     **SWEPT,
 }
+SOLUTIONS: Mapping[str, int] = {
+    **{name: 2 ** len(m.branches) for name, m in MACHINES.items()},
+    **dict.fromkeys((*CHAINS, *POINTS, "arm in metres with a held turn of its upper arm"), 4),
+    **{name: count for count, names in UNNAMED.items() for name in names},
+}
+"""The largest number of solutions: two a branch that a description states, else as a search of the closure from many
+starts finds them.
+"""
 COSTLY = (
     "an elbow that is held", "arm in metres", "arm of a URDF file", "arm with a wrist that is bent",
     "arm with three parallel axes", "across its last axis", "by a table with angles", "by a table, the last held",

@@ -1,7 +1,5 @@
 """Machines with an angle that the pose may leave free, while a later joint has solutions for some values only."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from sympy import pi
@@ -26,10 +24,7 @@ FREED: Mapping[str, Mechanism] = {
         "RockerSlides", (Y, C, B, A, Z), Ty(Y) * Rz(-C) * Tx(L1) * Ry(B) * Rz(A) * Tx(L2) * Tz(Z), (L1, L2)
     ),
     "arm on a rocker between slides, in metres, along other axes": _machine(
-        "RockerMetres",
-        (Z, A, C, B, X),
-        Tz(Z) * Rx(A) * Ty(M1) * Rz(C) * Rx(B) * Ty(M2) * Tx(X) * Ry(pi / 2),
-        (M1, M2),
+        "RockerMetres", (Z, A, C, B, X), Tz(Z) * Rx(A) * Ty(M1) * Rz(C) * Rx(B) * Ty(M2) * Tx(X) * Ry(pi / 2), (M1, M2)
     ),
     "head whose swivel makes its arm short": _machine(
         "ShortArmHead", (Z, Y, C, B, A), Tz(Z) * Ty(Y) * Tx(L1) * Rz(C) * Ry(-B) * Tz(L2) * Ry(A) * Tz(L3), (L1, L2, L3)
@@ -41,5 +36,3 @@ FREED: Mapping[str, Mechanism] = {
         (M1, M2, M3),
     ),
 }
-FREED_SOLUTIONS = dict.fromkeys(FREED, 4)
-"""The largest number of solutions, as a search of the closure from many starts finds them."""

@@ -1,7 +1,5 @@
 """Where machines are asked: at right angles, next to them, and anywhere; and what they must answer there."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

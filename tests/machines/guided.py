@@ -1,7 +1,5 @@
 """Loops whose platform is held in planes: tilting heads that move what the task does not command, and lifted plates."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from sympy import Expr, cos, pi, sin

@@ -1,7 +1,5 @@
 """Machines with a joint that is held: a rail under an arm, a turn within one."""
 
-from __future__ import annotations
-
 from sympy import cos, sin
 
 from derive.frames import Rx, Ry, Rz, Tx, Txyz, Tz

@@ -1,7 +1,5 @@
 """Machines whose texts hold what ends a comment, a text, an element or a line in some language; and plain twins."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import count
 

@@ -1,7 +1,5 @@
 """Machines with limits: one of the catalogue that is given them, one whose description states them, an imported one."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """Poses at and next to many right angles at once, machines of several kinds, and the poses that these refuse."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -130,7 +128,6 @@ class Sized:
 
 
 def sized(kind: Kind) -> Iterator[Sized]:
-    """The machines of a kind."""
     for label, sizes in kind.sizes.items():
         robot = class_of(kind)(**sizes, check_limits=False)
         yield Sized(label, robot, sum(map(abs, sizes.values())), kind.slides)

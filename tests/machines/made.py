@@ -1,7 +1,5 @@
 """A machine of the collection, made: derived with every check, its package imported, its block compiled."""
 
-from __future__ import annotations
-
 import ast
 from dataclasses import dataclass
 from functools import cache

@@ -3,8 +3,6 @@
 Each has a twin: the same machine with names that nothing else has.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -124,7 +122,6 @@ class Odd:
     title: str
 
     def mechanism(self) -> Mechanism:
-        """The machine."""
         return self.make(f"Odd{self.title}", lambda name: self.names.get(name, name))
 
     def twin(self) -> Mechanism:
@@ -149,11 +146,7 @@ ODD: Mapping[str, Odd] = {
         "Words",
     ),
     "constants called as words": Odd(
-        _scara,
-        _named("arm_1 arm_2 tip", "lambda np del"),
-        {"lambda": "lambda_", "del": "del_"},
-        {},
-        "Constants",
+        _scara, _named("arm_1 arm_2 tip", "lambda np del"), {"lambda": "lambda_", "del": "del_"}, {}, "Constants"
     ),
     "names of the derivation": Odd(
         _plane_arm,

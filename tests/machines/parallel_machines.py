@@ -1,7 +1,5 @@
 """Arms with six axes, three of them parallel: with links that happen to be of one length, and with the three last."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from derive.description.mechanism import Mechanism

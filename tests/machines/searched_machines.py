@@ -1,7 +1,5 @@
 """Arms without a closed form: the compiler finds the joint that is searched."""
 
-from __future__ import annotations
-
 from sympy import cos, sin
 
 from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz

@@ -1,7 +1,5 @@
 """Closed loops that only turn their platform, about a point that stays where it is."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import sympy as sp

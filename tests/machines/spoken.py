@@ -1,7 +1,5 @@
 """What a machine of a user's own is asked in a language other than Python, and what its answers are held against."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -13,8 +11,15 @@ import softkin
 
 from derive.description.mechanism import Mechanism
 from derive.description.validate import validate
+from derive.emit.c import package as in_c
+from derive.emit.javascript import package as in_javascript
+from tests.c.machine import ask as ask_c
+from tests.c.programs import compiled
+from tests.javascript.modules import written
+from tests.javascript.node import ask as ask_javascript
 from tests.machines.made import Made, made
 from tests.machines.odd_names import ODD
+from tests.mechanisms import kinematics_of
 
 Answer = dict[str, Any]
 Forward = Callable[[Mechanism, Sequence[list[float]]], tuple[list[str], list[Answer]]]
@@ -60,6 +65,14 @@ def spoken(name: str) -> Spoken:
     assert len(poses) > 10
     calls = [["inverseAll", {"position": f.position, "rotation": f.rotation}, axes] for axes, f in poses]
     return Spoken(machine, poses, calls)
+
+
+def asked_in(language: str, mechanism: Mechanism, asked: Sequence[Mapping[str, Any]]) -> list[Answer]:
+    """What a machine answers in C or JavaScript to machines with their calls."""
+    kinematics = kinematics_of(mechanism)
+    if language == "c":
+        return list(ask_c(compiled(in_c.part(kinematics)), list(asked)))
+    return list(ask_javascript(written(in_javascript.part(kinematics)), list(asked))["answers"])
 
 
 def _is_possible(robot: softkin.Mechanism, axes: tuple[float, ...]) -> bool:

@@ -1,7 +1,5 @@
 """Machines that command some of x, y and z alone: upright planes, slides, lifts that turn."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import partial
 
@@ -60,9 +58,7 @@ SUBSETS: Mapping[str, Mechanism] = {
         "TurningLift", (S1, C), Tx(BESIDE) * Tz(S1) * Rz(C) * Tz(L3), (BESIDE, L3), Task("z", Turning.ABOUT_Z)
     ),
 }
-SUBSET_SOLUTIONS = {"arm in an upright plane": 2, "lift that turns": 1}
-"""The largest number of solutions, as a search of the closure from many starts finds them."""
-SWEPT = {name: SUBSETS[name] for name in SUBSET_SOLUTIONS}
+SWEPT = {name: SUBSETS[name] for name in ("arm in an upright plane", "lift that turns")}
 """Those that the sweeps over all machines take."""
 
 _BASE = length("base", "distance between the motors", nominal=180.0)

@@ -1,7 +1,5 @@
 """Machines whose task or whose drives need a rule of their own: pitch, pitch and roll, gears, belts, differentials."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from sympy import cos, sin
@@ -115,12 +113,7 @@ WITH_GEARS = {
         _bent(G2 * A2),
     ),
     "SCARA whose gears stand at its joints": _machine(
-        "AtJoints",
-        (R1, R2, Z),
-        Rz(R1) * Tx(L1) * Rz(R2) * Tx(L2) * Tz(Z),
-        (L1, L2, G1, G2),
-        PLANE,
-        _bent(R2),
+        "AtJoints", (R1, R2, Z), Rz(R1) * Tx(L1) * Rz(R2) * Tx(L2) * Tz(Z), (L1, L2, G1, G2), PLANE, _bent(R2)
     ),
     "SCARA whose quill is geared": _machine(
         "GearedQuill",
@@ -196,24 +189,22 @@ WITH_ABSOLUTE_JOINTS = {
 
 DRIVEN: Mapping[str, Mechanism] = {**WITH_GEARS, **WITH_SHARED_MOTORS, **WITH_ABSOLUTE_JOINTS}
 TASK_MACHINES: Mapping[str, Mechanism] = {**WITH_PITCH, **WITH_PITCH_AND_ROLL, **DRIVEN}
-
-TASK_SOLUTIONS = {
-    "arm with four axes": 4,
-    "arm with four axes over its column": 4,
-    "slides and a tilting head": 1,
-    "arm with five axes": 4,
-    "arm with five axes, tool along x": 4,
-    "arm with five axes beside its column": 4,
-    "SCARA with gears": 2,
-    "SCARA with gears of any ratio": 2,
-    "SCARA whose gears stand at its joints": 2,
-    "SCARA whose quill is geared": 2,
-    "CoreXY with C": 1,
-    "head on a differential": 2,
-    "head on a differential without gears": 2,
-    "SCARA with a nut and a spline": 2,
-    "wrist with three motors": 2,
-    "SCARA with belts": 2,
-    "arm with its elbow motor on the base, and gears": 4,
+UNNAMED = {
+    10: ("six axes by a table with angles as numbers",),
+    8: (
+        "arm whose wrist goes sideways",
+        "arm whose tool points across its last axis",
+        "arm with an elbow that is held, whose shoulder is beside its base",
+        "arm with an elbow that is held, whose flange is beside its wrist",
+        "arm whose wrist may lie on its second axis",
+        "arm whose elbow rolls, with a wrist",
+        "arm whose elbow goes across, with a wrist",
+        "arm with three parallel axes, the last two beside each other",
+        "arm with a wrist that is bent by 60 degrees",
+        "telescope between long links, with a wrist",
+        "seven axes by a table, the last held",
+        "seven axes with an elbow and a wrist beside them, the last held",
+    ),
+    2: ("finger that folds onto the second of two parallel axes", "head whose second axis leans by 45 degrees"),
 }
-"""The largest number of solutions, as a search of the closure from many starts finds them."""
+"""By the number of solutions; all other machines whose branches the compiler names have 4."""

@@ -4,26 +4,16 @@ With some shifts zero, the residual depends on the elbow by its cosine alone: ne
 whose joints agree in all digits but the last, one on each side. The second arm also leaves an axis nearly free there.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
 import softkin
 
-from derive.emit.c import package as in_c
-from derive.emit.javascript import package as in_javascript
-from tests.c.machine import ask as ask_c
-from tests.c.programs import compiled as compiled_c
-from tests.javascript.modules import written
-from tests.javascript.node import ask as ask_javascript
-from tests.machines.made import Array, Made, made
+from tests.machines.made import Array, made
 from tests.machines.searched_machines import POINTS
-from tests.mechanisms import kinematics_of
-from tests.text.controller import OK, Controller
-from tests.text.units import compiled_text
+from tests.machines.spoken import asked_in
+from tests.text.controller import OK
 
 pytestmark = pytest.mark.slow
 
@@ -71,9 +61,7 @@ def test_every_planted_pose_is_answered_on_its_branch(name: str) -> None:
 @EVERY
 def test_the_block_answers_every_planted_pose(name: str) -> None:
     robot, axes, references = poses(name)
-    machine: Made = made(name)
-    text = compiled_text(f"{machine.mechanism.name}.st", machine.built.parts["st"]["text"])
-    block = Controller(text, machine.mechanism)
+    block = made(name).controller()
     assert block.initialise(robot.parameters) == OK
     for row, reference in zip(axes, references, strict=True):
         frame, configuration = robot.forward(tuple(row))
@@ -82,17 +70,8 @@ def test_the_block_answers_every_planted_pose(name: str) -> None:
         assert is_met(robot, answer[:3], frame)
 
 
-Ask = Callable[[Mapping[str, Any], list[Any]], Any]
-LANGUAGES: Mapping[str, Callable[[Made, Any], Any]] = {
-    "c": lambda machine, asked: ask_c(compiled_c(in_c.part(kinematics_of(machine.mechanism))), asked)[0],
-    "javascript": lambda machine, asked: ask_javascript(
-        written(in_javascript.part(kinematics_of(machine.mechanism))), asked
-    )["answers"][0],
-}
-
-
 @EVERY
-@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("language", ["c", "javascript"])
 def test_other_languages_answer_every_planted_pose(name: str, language: str) -> None:
     robot, axes, references = poses(name)
     asked = []
@@ -100,7 +79,7 @@ def test_other_languages_answer_every_planted_pose(name: str, language: str) -> 
         frame, configuration = robot.forward(tuple(row))
         pose = {"position": list(frame.position), "rotation": [list(r) for r in frame.rotation]}
         asked.append(["inverse", pose, list(configuration), reference])
-    answer = LANGUAGES[language](made(name), [{"parameters": dict(robot.parameters), "calls": asked}])
+    (answer,) = asked_in(language, made(name).mechanism, [{"parameters": dict(robot.parameters), "calls": asked}])
     for row, found in zip(axes, answer["found"], strict=True):
         assert found["status"] == 0, row.tolist()
         assert is_met(robot, found["axes"], robot.forward(tuple(row))[0])

@@ -1,7 +1,5 @@
 """Guides that do not hold a platform are refused; what the task does not command is explained step by step."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

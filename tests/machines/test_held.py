@@ -1,7 +1,5 @@
 """A joint that is held keeps the value of the reference: it is needed, tested, and left out of the margins."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

@@ -1,7 +1,5 @@
 """Text of a description is data: whatever it holds, every output is the same program as with a plain text."""
 
-from __future__ import annotations
-
 import ast
 import dataclasses
 import re

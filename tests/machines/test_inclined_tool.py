@@ -1,7 +1,5 @@
 """A tool of the user's own that is inclined, as an orientation kinematics: coupled, and mounted behind that."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
@@ -33,7 +31,6 @@ CARRIERS = {
 
 @cache
 def inclined() -> softkin.Mechanism:
-    """The tool, derived."""
     found: softkin.Mechanism = compile_mechanism(INCLINED)(beside=30.0, below=-50.0)
     return found
 

@@ -1,7 +1,5 @@
 """Limits are known by the machine's own list: a dimension may be called like one, `lower_arm` and `upper_arm`."""
 
-from __future__ import annotations
-
 import pytest
 from softkin import KinematicsError, Mechanism
 from sympy import sin

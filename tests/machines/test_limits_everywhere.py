@@ -5,8 +5,6 @@ same poses of a machine of the catalogue, whose limits are given, of a machine w
 imported one. Whoever takes another value for a limit that nobody gives answers for another machine.
 """
 
-from __future__ import annotations
-
 import json
 from functools import cache
 from typing import Any

@@ -1,7 +1,5 @@
 """A rod whose base end a joint moves that another rod solves for: in either order of the axes, the same answers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

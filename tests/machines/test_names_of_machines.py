@@ -1,7 +1,5 @@
 """Machines that are called like something of the Python package: both can be had, each by its own name."""
 
-from __future__ import annotations
-
 import ast
 import subprocess
 import sys

@@ -6,8 +6,6 @@ there was before: 19 of 1187 were refused, and of 100 poses from 1e-3 to 1e-4 de
 among all solutions.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The nearest solution of machines with gears, belts and differentials: their turns move several axes."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

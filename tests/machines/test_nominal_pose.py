@@ -1,7 +1,5 @@
 """A loop that closes at few of the sampled poses: with the pose that its refusal names as nominal values it derives."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

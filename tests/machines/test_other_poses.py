@@ -2,8 +2,6 @@
 would not find again.
 """
 
-from __future__ import annotations
-
 import re
 import sys
 from typing import Any
@@ -13,14 +11,9 @@ import pytest
 from numpy.testing import assert_allclose
 from softkin import Frame, KinematicsError, Status
 
-from derive.emit.c import package as c_package
-from derive.emit.javascript import package as javascript_package
-from tests.c import machine as c_machine
-from tests.c.programs import compiled
-from tests.javascript import modules as javascript
-from tests.javascript import node
+from tests.catalogue.refusals import refusal
 from tests.machines.other_poses import CATALOGUE, OWN, Platform, Solved, platform
-from tests.mechanisms import kinematics_of
+from tests.machines.spoken import asked_in
 from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.units import compiled_text, text_of
 
@@ -155,30 +148,15 @@ def test_a_rod_at_its_fold_is_kept() -> None:
 
 
 @EVERY
-def test_javascript(name: str) -> None:
+@pytest.mark.parametrize("language", ["c", "javascript"])
+def test_other_languages(name: str, language: str) -> None:
     """The Jacobian at the given pose, and the decision of the inverse."""
     one, lost, kept = lost_and_kept(name)
-    module = javascript.written(javascript_package.part(kinematics_of(one.mechanism)))
-    confirm_language(one, lost, kept, lambda machines: node.ask(module, machines)["answers"])
-
-
-@EVERY
-def test_c(name: str) -> None:
-    """The Jacobian at the given pose, and the decision of the inverse."""
-    one, lost, kept = lost_and_kept(name)
-    part = c_package.part(kinematics_of(one.mechanism))
-    assert part is not None
-    program = compiled(part)
-    confirm_language(one, lost, kept, lambda machines: c_machine.ask(program, machines))
-
-
-def confirm_language(one: Platform, lost: list[Solved], kept: list[Solved], ask: Any) -> None:
-    """Both machines in a language that is asked as `server.mjs` is."""
     frames = [{"position": s.frame.position, "rotation": s.frame.rotation} for s in lost + kept]
     calls = [["jacobian", s.axes, f] for s, f in zip(lost + kept, frames, strict=True)]
     asked = [["inverse", f, s.configuration, s.axes] for s, f in zip(lost + kept, frames, strict=True)]
-    machines = [{"parameters": made.parameters, "calls": calls + asked} for made in (one.open_robot, one.robot)]
-    for answer, is_open in zip(ask([m | {"parameters": dict(m["parameters"])} for m in machines]), (1, 0), strict=True):
+    machines = [{"parameters": dict(made.parameters), "calls": calls + asked} for made in (one.open_robot, one.robot)]
+    for answer, is_open in zip(asked_in(language, one.mechanism, machines), (True, False), strict=True):
         rows, found = answer["found"][: len(calls)], answer["found"][len(calls) :]
         for solved, told, inverse in zip(lost + kept, rows, found, strict=True):
             assert told["status"] == Status.OK
@@ -214,8 +192,6 @@ def test_a_start_that_is_none_is_refused() -> None:
     axes, frame = lost[0].axes, lost[0].frame
     stretched = tuple(tuple(2.0 * v for v in row) for row in frame.rotation)
     for start in ((frame.position, stretched), ((np.nan, 0.0, 0.0), frame.rotation)):
-        with pytest.raises(KinematicsError) as refused:
-            one.open_robot.jacobian(axes, start)
-        assert refused.value.status is Status.BAD_INPUT
+        assert refusal(one.open_robot.jacobian, axes, start) is Status.BAD_INPUT
         pair = [start[0], frame.position], [start[1], frame.rotation]
         assert one.open_robot.jacobian_batch([axes] * 2, pair)[1].tolist() == [Status.BAD_INPUT, Status.OK]

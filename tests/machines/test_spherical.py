@@ -1,7 +1,5 @@
 """Loops that only turn their platform: in both languages their equations hold, and the commanded rotation is met."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -15,6 +13,7 @@ from numpy.typing import NDArray
 from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, Turning
 from derive.description.validate import validate
 from derive.pipeline import derive_one
+from tests.machines.both import forward_in_both, inverse_in_both
 from tests.machines.made import built_of, imported_class
 from tests.machines.spherical_machines import A1, SPHERICAL
 from tests.text.controller import OK, Controller
@@ -71,21 +70,14 @@ def test_the_platform_is_turned_as_commanded(name: str) -> None:
     answered = 0
     for commanded in near_home(40, 0.6):
         rows = tuple(map(tuple, commanded.tolist()))
-        for solution in robot.inverse_all(((0.0, 0.0, 0.0), rows), [0.0] * len(mechanism.joints)):
-            status, found = controller.inverse((0.0, 0.0, 0.0), rows, solution.configuration, [0.0] * 3)
-            assert (status == OK) == (solution.axes is not None)
-            if solution.axes is None:
+        asked = softkin.Frame((0.0, 0.0, 0.0), rows)
+        for axes in inverse_in_both(controller, robot, asked, [0.0] * len(mechanism.joints), 1e-9):
+            there = forward_in_both(controller, robot, axes, 1e-3, 1e-9)
+            if there is None:  # a working mode that no home pose has
                 continue
-            assert found[: len(mechanism.joints)] == pytest.approx(solution.axes, abs=1e-9)
-            try:
-                frame, _ = robot.forward(solution.axes)
-            except softkin.KinematicsError:  # a working mode that no home pose has
-                assert controller.forward(solution.axes)[0] != OK
-                continue
-            status, (position, turned, _) = controller.forward(solution.axes)
-            assert status == OK and position == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
-            assert np.allclose(turned, frame.rotation, rtol=0.0, atol=1e-9)
-            assert missed(mechanism, robot, solution.axes, frame.rotation) < 1e-11
+            frame = there[0]
+            assert frame.position == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
+            assert missed(mechanism, robot, axes, frame.rotation) < 1e-11
             if np.allclose(np.array(frame.rotation)[:, columns], commanded[:, columns], rtol=0.0, atol=1e-9):
                 answered += 1
     assert answered >= 36

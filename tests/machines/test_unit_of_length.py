@@ -1,7 +1,5 @@
 """Loops of the catalogue in metres: the same programs, a drawing, and test vectors for the controller."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """How a machine of the tests is described, in one line where it is a chain."""
 
-from __future__ import annotations
-
 from derive.frames import Chain
 from derive.mechanism import Branch, Joint, Mechanism, Parameter, Task, Vendor
 

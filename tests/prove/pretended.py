@@ -1,7 +1,5 @@
 """A record as a faultless LinuxCNC would leave it, made by the Python package."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """The modules of the proof are those that the compiler writes now."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

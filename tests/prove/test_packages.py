@@ -1,7 +1,5 @@
 """Where the proof cannot be run it says why in one sentence, and does not claim anything."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import stat

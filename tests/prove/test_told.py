@@ -1,7 +1,5 @@
 """What is said of the proof: the table in docs/LINUXCNC.md is the printed one, and documents name what there is."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The verdict finds nothing in a faultless record, and every fault that is planted in one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -24,12 +22,10 @@ NAMED = {machine.mechanism: machine for machine in MACHINES}
 
 @cache
 def faultless(machine: str) -> Record:
-    """The record of a machine in which all is right."""
     return pretended(NAMED[machine])
 
 
 def changed(record: Record, name: str, change: Callable[[Stage], Stage]) -> Record:
-    """The record with one stage changed."""
     return replace(record, stages={**record.stages, name: change(record.stages[name])})
 
 

@@ -1,7 +1,5 @@
 """A file of uses is clean under mypy and pyright, strict both, and runs; mistakes are found."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """Uses of the package, as a strict type checker reads them. `test_uses.py` checks and runs this file."""
 
-from __future__ import annotations
-
 from typing import assert_type
 
 import numpy as np
@@ -10,7 +8,6 @@ from softkin import Frame, KinematicsError, Mechanism, Scara4ZCcoupledType1
 
 
 def by_name(name: str) -> Mechanism:
-    """A machine of the catalogue, by its name."""
     return softkin.catalogue()[name](
         link_length_1=325.0, link_length_2=225.0, limits={"A1": (-170.0, None), "A3": None}
     )

@@ -1,7 +1,5 @@
 """Mistakes that a type checker finds: each marked line has one."""
 
-from __future__ import annotations
-
 import softkin
 
 softkin.Scara2Z(arm_length_1=300.0)  # mistake

@@ -1,7 +1,5 @@
 """Machines of the whole catalogue on a base, with a tool that they can carry."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import softkin

@@ -1,7 +1,5 @@
 """Robots of the whole catalogue, couplings among them, with poses that they reach and limits."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cache
 
@@ -44,7 +42,6 @@ def poses(name: str, number: int, count: int) -> tuple[Axes, ...]:
 
 
 def frame_at(one: softkin.Mechanism, axes: Axes) -> Frame:
-    """The frame at axis values."""
     return one.forward(axes)[0]
 
 

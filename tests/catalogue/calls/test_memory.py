@@ -1,7 +1,5 @@
 """The memory of `inverse_all_batch`: from 100,000 rows on little more than its result."""
 
-from __future__ import annotations
-
 import tracemalloc
 
 import numpy as np

@@ -3,8 +3,6 @@
 The truth is the machine without both: the frame of its flange is base^-1 * frame * tool^-1.
 """
 
-from __future__ import annotations
-
 import copy
 import json
 import pickle
@@ -19,6 +17,7 @@ from softkin._start import IterativeForward
 
 from tests.catalogue.calls.mountings import BASE, EVERY, limited, machines, radian, tool_of
 from tests.catalogue.calls.robots import Axes, frame_at
+from tests.catalogue.refusals import refusal
 
 pytestmark = pytest.mark.broad
 
@@ -36,7 +35,6 @@ def apart(first: object, second: object) -> float:
 
 
 def answered(robot: Mechanism, frame: object, near: Axes) -> Axes | softkin.Diagnosis:
-    """What `nearest` answers, or its reason."""
     try:
         return robot.nearest(frame, near)  # type: ignore[arg-type]
     except KinematicsError as error:
@@ -193,9 +191,7 @@ def test_a_coupling_of_parts_in_radians() -> None:
         assert apart(found, radian(pair, expected)) < 1e-9
     assert own.in_degrees() == pair and own.in_radians() is own and Mechanism.from_json(own.to_json()) == own
     assert own.with_base(BASE) == pair.with_base(BASE).in_radians()
-    with pytest.raises(KinematicsError, match="same unit") as refused:
-        softkin.Coupled(scara.in_radians(), wrist)
-    assert refused.value.status is Status.INVALID_COUPLING
+    assert refusal(softkin.Coupled, scara.in_radians(), wrist, says="same unit") is Status.INVALID_COUPLING
 
 
 def test_what_a_dictionary_may_be() -> None:
@@ -209,9 +205,10 @@ def test_what_a_dictionary_may_be() -> None:
         {"bare": gantry, "tools": 1},
         {"bare": gantry, "tool": {"position": (0.0, 0.0, 0.0)}},
     ):
-        with pytest.raises(KinematicsError, match="Mounted: the entries") as refused:
-            Mechanism.from_dict({"mechanism": "Mounted", **given})
-        assert refused.value.status is Status.NOT_INITIALIZED
+        assert (
+            refusal(Mechanism.from_dict, {"mechanism": "Mounted", **given}, says="Mounted: the entries")
+            is Status.NOT_INITIALIZED
+        )
     arm = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0).to_dict()
     with pytest.raises(KinematicsError, match="cannot carry"):
         softkin.Mounted.from_dict({"bare": arm, "tool": ((30.0, 0.0, 0.0), np.eye(3))})

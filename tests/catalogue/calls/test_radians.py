@@ -1,7 +1,5 @@
 """A machine in radians: every call of the machine in degrees, with converted angles."""
 
-from __future__ import annotations
-
 import copy
 import math
 import pickle
@@ -29,7 +27,6 @@ def same(robot: softkin.Mechanism, own: Any, degrees: Any) -> bool:
 
 
 def outcome(call: Any, *arguments: Any, **given: Any) -> Any:
-    """The result, or the refusal."""
     try:
         return call(*arguments, **given)
     except KinematicsError as error:
@@ -90,7 +87,6 @@ def said(robot: softkin.Mechanism, error: KinematicsError) -> str:
 @pytest.mark.long("Ac6")
 @pytest.mark.parametrize("name", NAMES)
 def test_batches(name: str) -> None:
-    """The same of batches."""
     for number, one in enumerate(robots(name)):
         chosen = np.array(poses(name, number, 3))
         made, own = one.made, one.made.in_radians()

@@ -1,7 +1,5 @@
 """Whether a commanded frame determines the axes of a pair, found by a fit and by no formula of the product."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from derive.description.mechanism import Turning

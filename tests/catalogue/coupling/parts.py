@@ -1,7 +1,5 @@
 """The parts of couplings: every position and every orientation kinematics of the catalogue, and axis values of them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 

@@ -1,7 +1,5 @@
 """What CODESYS documents of its orientation kinematics and of the machines made with them (GEOMETRY 7, CONTRACT 5)."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -38,7 +36,6 @@ def test_the_inclination_moves_the_tool_to_x(side: int, height: float) -> None:
 
 
 def test_the_roll_axis_offset_is_seen_behind_the_yaw() -> None:
-    """The offset of the roll axis turns with the yaw axis."""
     robot = softkin.Wrist2(tool_length=90.0, roll_axis_offset_x=12.0, roll_axis_offset_y=-7.0, roll_axis_offset_z=-40.0)
     assert frame_of(robot, 90.0, 0.0)[0] == pytest.approx((7.0, 12.0, 50.0), abs=1e-12)
 
@@ -82,24 +79,3 @@ def test_a_tool_on_a_c_axis_is_parallel_to_the_flange_at_zero() -> None:
     assert frame_of(robot, 90.0)[0] == pytest.approx((8.0, 15.0, -60.0), abs=1e-12)
     still = softkin.Tool(tool_x=15.0, tool_y=-8.0, tool_z=-60.0)
     assert frame_of(still)[0] == pytest.approx((15.0, -8.0, -60.0)) and frame_of(still)[1] == pytest.approx(np.eye(3))
-
-
-def test_the_zero_pose_of_the_articulated_robot() -> None:
-    """(a1 + d4 + d6, -d3, d1 + a2 + a3), X of the tool = +Z, Y = -Y, Z = +X: position part and wrist together."""
-    arm = softkin.PosRRR(d1=350.0, a1=80.0, a2=310.0, d3=50.0, a3=30.0, d4=290.0)
-    robot = softkin.Coupled(arm, softkin.Wrist3(tool_offset_z=75.0))
-    position, rotation = frame_of(robot, *(0.0,) * 6)
-    assert position == pytest.approx((445.0, -50.0, 690.0), abs=1e-9)
-    assert rotation == pytest.approx(np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]]), abs=1e-12)
-    assert robot.singularity((0.0,) * 6).is_singular  # the zero pose is one of the wrist's
-
-
-def test_a_scara_takes_a_tool_along_z_only() -> None:
-    """Kin_Scara2_Z alone takes "only a pure Z offset"."""
-    scara = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0)
-    position, _ = frame_of(softkin.Coupled(scara, softkin.Tool(tool_z=-60.0)), 30.0, 40.0, 100.0)
-    assert position[2] == pytest.approx(40.0)
-    for offset in ({"tool_x": 5.0}, {"tool_y": 5.0}):
-        with pytest.raises(softkin.KinematicsError) as refusal:
-            softkin.Coupled(scara, softkin.Tool(**offset))
-        assert refusal.value.status.softmotion == "SMC_TRAFO_INVALID_COUPLING"

@@ -1,7 +1,5 @@
 """Every test of this folder that asks for a machine runs for each of them."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.catalogue.hexapod.machines import NAMES, Machine, machines
@@ -11,5 +9,4 @@ OTHERS = ("inch", "lopsided", "hanging, with a tool", "sideways")
 
 @pytest.fixture(params=[pytest.param(name, marks=pytest.mark.long if name in OTHERS else ()) for name in NAMES])
 def machine(request: pytest.FixtureRequest) -> Machine:
-    """A hexapod by its label."""
     return machines()[request.param]

@@ -1,7 +1,5 @@
 """Hexapods, symmetric and not, with what the tests know of them by definition alone."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
@@ -36,7 +34,6 @@ class Machine:
 
     @property
     def home_turn(self) -> Array:
-        """The rotation of the home pose."""
         return rotation(*self.home[3:])
 
     def poses(self, count: int, turn: float = 25.0) -> tuple[Array, Array]:
@@ -92,7 +89,6 @@ def rotation(roll: float, pitch: float, yaw: float) -> Array:
 
 
 def flat(points: tuple[tuple[float, float], ...]) -> Array:
-    """Points in a plane."""
     return np.array([(x, y, 0.0) for x, y in points])
 
 

@@ -1,7 +1,5 @@
 """The programs of the hexapod as the build gives them, run by the reference semantics."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
@@ -20,7 +18,6 @@ Statuses = NDArray[np.object_]
 
 
 def kinematics() -> Kinematics:
-    """All programs."""
     return kinematics_of(named("Kin_Hexapod"))
 
 

@@ -1,7 +1,5 @@
 """Machines of any size, likely and absurd: no call faults, Structured Text ends as Python does, and home is found."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 
@@ -39,7 +37,7 @@ def status_of(call: Callable[[], object]) -> str:
 def test_a_machine_of_any_shape(kind: str) -> None:
     """The block accepts exactly the dimensions that Python accepts, and both answer alike."""
     rng, started = np.random.default_rng(len(kind)), 0
-    for _ in range(40):
+    for _ in range(20):
         given = {n: v if n in ANGLES else KINDS[kind](rng, v) for n, v in machines()["nominal"].given.items()}
         given |= {n: float(rng.uniform(-360.0, 360.0)) for n in ANGLES if rng.random() < 0.3}
         block = Controller(compiled(MECHANISM), MECHANISM)
@@ -48,7 +46,7 @@ def test_a_machine_of_any_shape(kind: str) -> None:
         if status == OK:
             started += 1
             same_ends(block, Hexapod(**given), rng)
-    assert started >= {"disturbed": 35, "at the ends": 5}.get(kind, 0)
+    assert started >= {"disturbed": 17, "at the ends": 2}.get(kind, 0)
 
 
 @pytest.mark.parametrize("size", [1e-9, 1e-3, 1e3, 7e5])

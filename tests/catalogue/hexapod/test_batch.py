@@ -1,7 +1,5 @@
 """A batch answers as the calls one by one do, to the last digit and in every status."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -38,7 +36,6 @@ def spoiled(values: Array, *wrong: float) -> Array:
 
 @pytest.mark.long
 def test_forward(machine: Machine) -> None:
-    """Batch forward kinematics gives the frames and statuses of single calls."""
     far = machine.axes(*machine.poses(150, turn=150.0))
     axes = spoiled(np.concatenate([far, far[:10] * 0.1, machine.axes(*machine.poses(40))]), np.nan, np.inf, -2e9)
     robot = machine.robot
@@ -49,7 +46,6 @@ def test_forward(machine: Machine) -> None:
 
 
 def test_forward_from_starts(machine: Machine) -> None:
-    """Batch forward kinematics from given starts gives the frames and statuses of single calls."""
     positions, turns = machine.poses(120, turn=60.0)
     axes = spoiled(machine.axes(positions, turns), np.nan)
     positions, turns = np.roll(positions, 1, axis=0), spoiled(np.roll(turns, 1, axis=0), 0.3, np.nan, np.inf, 1e200)
@@ -63,7 +59,6 @@ def test_forward_from_starts(machine: Machine) -> None:
 
 
 def test_inverse(machine: Machine) -> None:
-    """Batch inverse kinematics gives the axes and statuses of single calls."""
     positions, turns = machine.poses(200, turn=110.0)
     positions, turns = spoiled(positions, np.nan, 2e9, np.inf), np.roll(spoiled(turns, 2.0, np.nan, 1e300), 5, axis=0)
     robot = machine.robot

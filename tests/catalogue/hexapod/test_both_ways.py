@@ -1,24 +1,23 @@
 """There and back: the inverse in closed form, forward kinematics from the home pose, from a start, and without
 memory."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from softkin import KinematicsError, Status
 
 from tests.catalogue.hexapod.machines import Machine, machines
+from tests.catalogue.refusals import refusal
 
 
 def test_all_over_a_realistic_workspace(machine: Machine) -> None:
     """Every pose within 25 degrees of home about each axis is found from home: its lengths have only one pose there."""
-    positions, turns = machine.poses(3000)
+    positions, turns = machine.poses(1500)
     axes, status = machine.robot.inverse_batch(positions, turns)
     assert not status.any()
     assert_allclose(axes, machine.axes(positions, turns), rtol=1e-13)
     back, turned, configurations, status = machine.robot.forward_batch(axes)
-    assert not status.any() and configurations.shape == (3000, 0)
+    assert not status.any() and configurations.shape == (1500, 0)
     assert_allclose(back, positions, atol=1e-11 * machine.shift)
     assert_allclose(turned, turns, atol=1e-11)
 
@@ -26,10 +25,10 @@ def test_all_over_a_realistic_workspace(machine: Machine) -> None:
 @pytest.mark.long
 def test_what_the_inverse_accepts_is_found_from_home(machine: Machine) -> None:
     """Up to 40 degrees about each axis: what the inverse refuses is in the other assembly mode, or nearly singular."""
-    positions, turns = machine.poses(1500, turn=40.0)
+    positions, turns = machine.poses(800, turn=40.0)
     axes, status = machine.robot.inverse_batch(positions, turns)
     accepted = status == Status.OK
-    assert accepted.sum() > 1400 and set(status[~accepted]) <= {Status.UNREACHABLE}
+    assert accepted.sum() > 740 and set(status[~accepted]) <= {Status.UNREACHABLE}
     side = machine.side(machine.home[:3], machine.home_turn)
     margins = side * np.array([machine.normalised(p, r) for p, r in zip(positions, turns, strict=True)])
     assert (accepted == (margins >= 1e-3)).all()
@@ -42,7 +41,7 @@ def test_what_the_inverse_accepts_is_found_from_home(machine: Machine) -> None:
 @pytest.mark.long
 def test_far_poses_are_found_or_refused_never_mistaken(machine: Machine) -> None:
     """Beyond the realistic: whatever answers has these lengths, in the machine's assembly mode."""
-    positions, turns = machine.poses(1500, turn=100.0)
+    positions, turns = machine.poses(700, turn=100.0)
     axes = machine.axes(positions, turns)
     back, turned, _, status = machine.robot.forward_batch(axes)
     assert set(status) == {Status.OK, Status.IMPOSSIBLE}
@@ -82,16 +81,11 @@ def test_the_answer_is_in_the_mode_of_the_machine_wherever_the_search_starts() -
     axes = machine.axes(*pose)
     assert_allclose(machine.axes(*below), axes, rtol=1e-14)
     assert_allclose(machine.robot.forward(axes)[0].position, pose[0], atol=1e-9)
-    with pytest.raises(KinematicsError) as refused:
-        machine.robot.forward(axes, start=below)
-    assert refused.value.status is Status.IMPOSSIBLE
-    with pytest.raises(KinematicsError) as refused:
-        machine.robot.inverse(below)
-    assert refused.value.status is Status.UNREACHABLE
+    assert refusal(machine.robot.forward, axes, start=below) is Status.IMPOSSIBLE
+    assert refusal(machine.robot.inverse, below) is Status.UNREACHABLE
 
 
 def test_the_home_pose_chooses_the_mode() -> None:
-    """The home pose decides the assembly mode in which forward kinematics answers."""
     machine = machines()["nominal"]
     hanging = Machine(machine.base, machine.platform, (0, 0, -600, 0, 0, 0), 180.0)
     positions, turns = hanging.poses(200)

@@ -1,7 +1,5 @@
 """The tests of this folder can fail: their comparisons notice a unit, or a program, with one fault."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

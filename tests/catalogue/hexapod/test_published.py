@@ -1,7 +1,5 @@
 """Lengths that others compute: LinuxCNC, genhexkins, its default geometry; its own functions gave these numbers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin
@@ -25,7 +23,6 @@ CASES = {
 
 @pytest.mark.parametrize("pose", CASES)
 def test_the_lengths_that_linuxcnc_computes(pose: tuple[float, ...]) -> None:
-    """The leg lengths are those of LinuxCNC, and forward kinematics leads back."""
     robot, turn = machines()["inch"].robot, rotation(*pose[3:])
     axes = robot.inverse((pose[:3], turn))
     assert_allclose(axes, CASES[pose], atol=5e-12)

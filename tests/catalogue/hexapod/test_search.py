@@ -1,13 +1,11 @@
 """Newton's iteration: the number of its passes, its end, and the singularity of roll, pitch and yaw."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from softkin import KinematicsError, Status
+from softkin import Status
 
 from derive.ir.program import Iterate, Statement
 from derive.ir.program import Status as Outcome
@@ -15,6 +13,7 @@ from derive.ir.symbols import real
 from derive.plate.newton import LIMIT
 from tests.catalogue.hexapod.machines import Machine, machines, rotation
 from tests.catalogue.hexapod.programs import bounded, found_from, search_changed
+from tests.catalogue.refusals import refusal
 from tests.text.controller import IMPOSSIBLE
 from tests.text.hexapod.blocks import controller
 
@@ -64,14 +63,10 @@ def test_lengths_that_no_pose_has(name: str, axes: tuple[float, ...]) -> None:
     robot = machines()[name].robot
     axes = tuple(np.array(axes) + machines()[name].offsets)
     for start in (None, ((0.0, 0.0, 600.0), np.eye(3)), ((1e9, -1e9, 1e9), np.eye(3))):
-        with pytest.raises(KinematicsError) as refused:
-            robot.forward(axes, start=start)
-        assert refused.value.status is Status.IMPOSSIBLE
+        assert refusal(robot.forward, axes, start=start) is Status.IMPOSSIBLE
     position, turn, _, status = robot.forward_batch([axes])
     assert status == [Status.IMPOSSIBLE] and np.isnan(position).all() and np.isnan(turn).all()
-    with pytest.raises(KinematicsError) as refused:
-        robot.jacobian(axes)
-    assert refused.value.status is Status.IMPOSSIBLE
+    assert refusal(robot.jacobian, axes) is Status.IMPOSSIBLE
     assert robot.singularity(axes).is_singular
     block = controller(name)
     assert block.forward(axes) == block.jacobian(axes) == (IMPOSSIBLE, None)
@@ -83,7 +78,7 @@ def test_wild_lengths_end_alike_in_every_language(machine: Machine) -> None:
     """Some have a pose, most do not: no call faults, and all give the same answer to the last digit."""
     generator = np.random.default_rng(3)
     home = machine.axes(machine.home[:3], machine.home_turn)
-    axes = home * generator.choice([0.6, 0.9, 1.0, 1.1, 1.5, 100.0], (60, 6), p=[0.05, 0.3, 0.2, 0.3, 0.1, 0.05])
+    axes = home * generator.choice([0.6, 0.9, 1.0, 1.1, 1.5, 100.0], (40, 6), p=[0.05, 0.3, 0.2, 0.3, 0.1, 0.05])
     position, turn, _, status = machine.robot.forward_batch(axes)
     assert set(status) == {Status.OK, Status.IMPOSSIBLE}
     block = controller(name_of(machine))
@@ -133,5 +128,4 @@ def test_a_quarter_turn_of_pitch_is_found(name: str) -> None:
 
 
 def name_of(machine: Machine) -> str:
-    """The name of a machine."""
     return next(name for name, one in machines().items() if one is machine)

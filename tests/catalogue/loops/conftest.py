@@ -1,7 +1,5 @@
 """Every test that asks for a mechanism or its machines runs for every closed loop."""
 
-from __future__ import annotations
-
 import pytest
 
 from derive.description.mechanism import Mechanism
@@ -10,7 +8,6 @@ from tests.catalogue.loop_machines import LOOPS, LoopMachine, loop_machines_of
 
 @pytest.fixture(params=LOOPS, ids=lambda m: m.name)
 def mechanism(request: pytest.FixtureRequest) -> Mechanism:
-    """A mechanism with rods."""
     return request.param
 
 

@@ -1,8 +1,6 @@
 """Straight lines of the plate through a type 2 singularity: in one working mode, from one assembly mode into the
 other."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,7 +36,6 @@ class Crossing:
     """The place of the singularity on the line, from 0 to 1, where the assembly mode changes."""
 
     def positions(self, shares: Array) -> Array:
-        """Points of the line."""
         return self.start + (self.end - self.start) * np.asarray(shares)[:, None]
 
 

@@ -1,8 +1,6 @@
 """Machines at the end of what can be assembled, by mechanism: their dimensions, and axis values where something
 ends."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from math import cos, radians, sin, sqrt
 

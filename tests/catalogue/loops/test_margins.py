@@ -1,8 +1,6 @@
 """Margins against the matrices of the closure, A x' + B q' = 0, differentiated numerically; nothing of the derivation
 is read."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import KinematicsError, Status
@@ -17,7 +15,6 @@ LEG, PLATE, BOUND = range(3)
 
 
 def matrices(machine: LoopMachine, axes: Array) -> tuple[Array, Array]:
-    """A and B."""
     joints, positions = machine.closure.joints(axes), machine.closure.poses(axes)[0]
     return machine.closure.by_position(joints, positions), machine.closure.by_joints(joints, positions)
 
@@ -51,41 +48,6 @@ def test_type_1_margins_are_those_of_b_and_type_2_of_a(machines: tuple[LoopMachi
 
 
 @pytest.mark.long
-def test_margins_have_no_unit(machines: tuple[LoopMachine, ...]) -> None:
-    """Of the order of one in size, and the same for a machine drawn in other units."""
-    for machine in machines:
-        axes = machine.draw(40, np.random.default_rng(2))
-        scaled = axes.copy()
-        scaled[:, ~machine.closure.angles] *= 25.4
-        lengths = {p.name for p in machine.robot.PARAMETERS if p.unit == "u"}
-        larger = machine.changed(**{n: 25.4 * v for n, v in machine.robot.parameters.items() if n in lengths})
-        for row, other in zip(axes, scaled, strict=True):
-            here, there = machine.robot.singularity(row).margins, larger.singularity(other).margins
-            assert max(abs(here[n] - there[n]) for n in here) < 1e-9
-            assert max(map(abs, here.values())) <= 2.0 + 1e-9
-
-
-def test_the_jacobian_is_that_of_the_closure_and_of_forward(machines: tuple[LoopMachine, ...]) -> None:
-    """-A^-1 B to rounding; central differences of the package's own forward kinematics to what they are worth."""
-    step = 1e-4
-    for machine in machines:
-        axes = machine.draw(40, np.random.default_rng(3))
-        a, b = matrices(machine, axes)
-        derived = np.array([machine.robot.jacobian(row) for row in axes])
-        size = np.abs(derived).max(axis=(1, 2))
-        stated = a.shape[1]
-        exact = np.concatenate([-np.linalg.solve(a, b[:, :stated]), b[:, stated:]], axis=1)
-        assert (
-            np.abs(derived - exact).max(axis=(1, 2)) < 1e-13 * np.linalg.cond(a) * np.maximum(size, 1.0) + 1e-11 * size
-        ).all()
-        for i, unit in enumerate(machine.closure.units):
-            shift = step * np.eye(axes.shape[1])[i]
-            ahead, behind = (machine.robot.forward_batch(axes + s)[0] for s in (shift, -shift))
-            slope = (ahead - behind)[:, machine.closure.task] / (2 * step * unit)
-            assert (np.abs(slope - derived[:, : slope.shape[1], i]).max(axis=1) < 1e-6 * size).all()
-
-
-@pytest.mark.long
 def test_a_way_out_ends_at_a_singularity_or_a_bound(machines: tuple[LoopMachine, ...]) -> None:
     """Straight on until the slot is refused: there a leg is stretched, or a ball joint at its end,
     or the plate lost.
@@ -93,7 +55,7 @@ def test_a_way_out_ends_at_a_singularity_or_a_bound(machines: tuple[LoopMachine,
     rng = np.random.default_rng(4)
     reasons = []
     for machine in machines:
-        for axes in machine.draw(6, rng):
+        for axes in machine.draw(4, rng):
             start = machine.closure.poses(axes[None])[0][0]
             direction = np.zeros(3)
             direction[machine.closure.task] = rng.normal(size=len(machine.closure.task))

@@ -1,8 +1,6 @@
 """Continuous motions of a loop, each step with the last result as reference: across ±180 degrees, and out of a
 limit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

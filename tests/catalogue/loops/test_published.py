@@ -1,7 +1,5 @@
 """Closed loops against numbers that others computed: LinuxCNC, Klipper, Newton's method on the closure."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin
@@ -24,7 +22,6 @@ def delta(azimuths: tuple[float, ...], **sizes: float) -> softkin.Mechanism:
     ],
 )
 def test_linuxcnc_rotary_delta(axes: tuple[float, ...], position: tuple[float, ...]) -> None:
-    """A rotary delta has the poses that LinuxCNC computes."""
     robot = delta((-90.0, 30.0, 150.0), base_radius=10.0, inner_arm=10.0, outer_arm=14.0, tcp_radius=6.0)
     np.testing.assert_allclose(robot.forward(axes)[0].position, position, atol=1e-11)
     np.testing.assert_allclose(robot.inverse((position, IDENTITY)), axes, atol=1e-9)
@@ -39,7 +36,6 @@ def test_linuxcnc_rotary_delta(axes: tuple[float, ...], position: tuple[float, .
     ],
 )
 def test_klipper_rotary_delta_in_t_layout(axes: tuple[float, ...], position: tuple[float, ...]) -> None:
-    """A rotary delta with arms in a T has the poses that Klipper computes."""
     robot = delta((0.0, 90.0, -90.0), base_radius=140.0, inner_arm=200.0, outer_arm=450.0, tcp_radius=45.0)
     np.testing.assert_allclose(robot.forward(axes)[0].position, position, atol=1e-9)
     np.testing.assert_allclose(robot.inverse((position, IDENTITY)), axes, atol=1e-9)
@@ -53,7 +49,6 @@ def test_klipper_rotary_delta_in_t_layout(axes: tuple[float, ...], position: tup
     ],
 )
 def test_linuxcnc_linear_delta(position: tuple[float, ...], axes: tuple[float, ...]) -> None:
-    """A linear delta has the poses that LinuxCNC computes."""
     turns = np.radians([90, 210, 330])
     rails = {
         f"rail_{c}_{i + 1}": float(130.25 * f(t))
@@ -76,7 +71,6 @@ def test_linuxcnc_linear_delta(position: tuple[float, ...], axes: tuple[float, .
     ],
 )
 def test_type_12(links: tuple[float, ...], axes: tuple[float, ...], position: tuple[float, ...]) -> None:
-    """The mechanism of type 12 has the published poses."""
     given = {f"link_length_{i}": v for i, v in enumerate(links, 1)}
     robot = softkin.KinType12XY(**given)
     np.testing.assert_allclose(robot.forward(axes)[0].position[:2], position, atol=2e-8)
@@ -86,7 +80,6 @@ def test_type_12(links: tuple[float, ...], axes: tuple[float, ...], position: tu
 
 
 def test_planar_delta_stretched_and_knees_together() -> None:
-    """A planar delta is singular where its arms are stretched, and where its knees meet."""
     robot = softkin.P2CType1(inner_arm=250.0, outer_arm=500.0, displacement=80.0)
     stretched = robot.inverse(((0.0, -745.721127500086, 0.0), IDENTITY))
     np.testing.assert_allclose(stretched, (96.12319886627, 96.12319886627), atol=1e-5)
@@ -95,7 +88,6 @@ def test_planar_delta_stretched_and_knees_together() -> None:
 
 
 def test_symmetric_delta_stretched_and_rods_parallel() -> None:
-    """A symmetric delta is singular where its arms are stretched, and where its rods are parallel."""
     robot = delta((0.0, 120.0, 240.0), base_radius=95.0, inner_arm=200.0, outer_arm=450.0)
     lowest = robot.inverse(((0.0, 0.0, -643.020217411552), IDENTITY))
     np.testing.assert_allclose(lowest, [98.404101570840] * 3, atol=1e-4)

@@ -1,10 +1,10 @@
 """What can be reached, leg by leg: the equation of a leg has a root in its own joint, or every slot is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 from softkin import Status
 
+from derive.description.mechanism import Mechanism
+from tests.catalogue.both_ways import inverse
 from tests.catalogue.closure import Array
 from tests.catalogue.loop_machines import TURNED, LoopMachine, facing, facings, loop_machine
 from tests.catalogue.test_round_trip import slots
@@ -12,6 +12,7 @@ from tests.catalogue.test_round_trip import slots
 PLACES = 300
 SAMPLES = 720
 """Of a joint: a full turn, or as far as anything reaches."""
+SWING, HAIR = "max_angle_ball_joint", 1e-9
 CLEAR = 1e-4
 """Of the reach: a leg whose equation comes nearer to zero than this without crossing it is not judged."""
 
@@ -89,3 +90,24 @@ def _both_modes(machine: LoopMachine) -> tuple[LoopMachine, LoopMachine]:
     flag = assembly.parameter
     other = {**machine.given, flag: not machine.given[flag]}
     return machine, loop_machine(machine.mechanism, "other mode", other)
+
+
+def test_a_ball_joint_ends_sharply(mechanism: Mechanism, machines: tuple[LoopMachine, ...]) -> None:
+    """A limit a hair above the swing of a pose answers, a hair below refuses; forward kinematics does not ask."""
+    assert bool(mechanism.bounds) == (SWING in machines[0].robot.parameters)
+    for machine in machines if mechanism.bounds else ():
+        axes = machine.draw(8, np.random.default_rng(1))
+        positions, rotations = machine.closure.poses(axes)
+        values = np.abs(
+            machine.closure.at(machine.closure.joints(axes), positions, [b.value for b in mechanism.bounds])
+        )
+        swings = np.degrees(np.arcsin(values.max(axis=1)))
+        for row, swing in enumerate(swings):
+            one = slice(row, row + 1)
+            for share, expected in ((1 + HAIR, Status.OK), (1 - HAIR, Status.UNREACHABLE), (0.5, Status.UNREACHABLE)):
+                robot = machine.changed(**{SWING: swing * share})
+                _, statuses = inverse(
+                    robot, positions[one], rotations[one], robot.forward_batch(axes[one])[2], axes[one]
+                )
+                assert statuses[0] == expected
+                assert robot.forward(axes[row]) == machine.robot.forward(axes[row])

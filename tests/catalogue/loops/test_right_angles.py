@@ -1,7 +1,5 @@
 """All axes at multiples of 90 degrees, or at simple lengths: every flat, stretched and folded pose of a loop."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

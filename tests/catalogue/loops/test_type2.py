@@ -1,7 +1,5 @@
 """Type 2 singularities: poses are refused at the least margin, and no step leads into the other assembly mode."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin
@@ -11,6 +9,8 @@ from derive.description.mechanism import Mechanism
 from tests.catalogue.closure import Array
 from tests.catalogue.loop_machines import LoopMachine, facing, facings
 from tests.catalogue.loops.crossings import Crossing, crossing_of
+from tests.catalogue.machines import few
+from tests.catalogue.refusals import refusal
 from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.units import compiled
 
@@ -29,13 +29,12 @@ def crossings(mechanism: Mechanism, machines: tuple[LoopMachine, ...]) -> list[C
 
     The links of the nominal type 12 add up, 110 + 280 = 300 + 90: all its type 2 singularities are of type 1 too.
     """
-    found = [c for c in map(crossing_of, machines) if c is not None]
-    assert len(found) == (2 if mechanism.name == "MC_KIN_TYPE_12_XY" else len(machines))
+    found = [c for c in map(crossing_of, few(machines)) if c is not None]
+    assert len(found) == (1 if mechanism.name == "MC_KIN_TYPE_12_XY" else 2)
     return found
 
 
 def rotation_of(machine: LoopMachine) -> list[list[float]]:
-    """The rotation that is commanded."""
     turned = facing(machine.robot)
     return (NO_TURN if turned is None else turned).tolist()
 
@@ -127,7 +126,7 @@ def test_nearer_than_the_threshold_it_is_flagged(crossings: list[Crossing]) -> N
 
 def test_the_least_margin_is_sharp(machines: tuple[LoopMachine, ...]) -> None:
     """A hair below the margin of a pose answers, a hair above refuses: every call that solves, in both languages."""
-    for machine in machines:
+    for machine in few(machines):
         block = Controller(compiled(machine.mechanism), machine.mechanism)
         for axes in machine.draw(6, np.random.default_rng(3)):
             (x, y, z), configuration = machine.robot.forward(axes)[0].position, machine.robot.forward(axes)[1]
@@ -190,15 +189,12 @@ def test_forward_has_one_solution_a_side(machines: tuple[LoopMachine, ...]) -> N
 
 
 def test_forward_answers_where_the_loop_closes_and_nowhere_else(machines: tuple[LoopMachine, ...]) -> None:
-    """Forward kinematics answers exactly the axis values for which the loop closes."""
-    for machine in machines:
+    for machine in few(machines):
         axes = machine.candidates(300, np.random.default_rng(8))
         expected = np.isfinite(machine.closure.poses(axes)[0]).all(axis=1)
         positions, rotations, _, statuses = machine.robot.forward_batch(axes)
         assert (statuses == np.where(expected, Status.OK, Status.IMPOSSIBLE)).all()
         assert machine.miss(axes[expected], positions[expected], rotations[expected]).max() < 1e-11
         for row in axes[~expected][:5]:
-            with pytest.raises(KinematicsError) as refused:
-                machine.robot.forward(row)
-            assert refused.value.status is Status.IMPOSSIBLE
+            assert refusal(machine.robot.forward, row) is Status.IMPOSSIBLE
             assert machine.robot.singularity(row).is_singular

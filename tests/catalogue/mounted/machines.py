@@ -1,7 +1,5 @@
 """Every mechanism of the catalogue as one machine, with poses of its flange that its equations give."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 

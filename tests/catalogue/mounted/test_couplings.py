@@ -1,7 +1,5 @@
 """Couplings with tools and on bases: which are possible, and that they go round."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

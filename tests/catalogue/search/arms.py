@@ -1,7 +1,5 @@
 """Arms whose last axis stands beside the wrist centre, and independent truth about them: the chain multiplied out."""
 
-from __future__ import annotations
-
 from functools import reduce
 
 import numpy as np
@@ -42,14 +40,12 @@ def turn(axis: int, angle: Array) -> Array:
 
 
 def shift(x: float, y: float, z: float) -> Array:
-    """A shift."""
     matrix = np.eye(4)
     matrix[:3, 3] = x, y, z
     return matrix
 
 
 def posed(matrix: Array) -> tuple[Array, Array]:
-    """Position and rotation."""
     return matrix[:3, 3], matrix[:3, :3]
 
 

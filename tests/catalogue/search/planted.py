@@ -1,8 +1,6 @@
 """Poses at which a root scan is difficult: A4 near 0 and 180 degrees, the elbow nearly stretched or folded, any
 offset."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,20 +1,18 @@
 """Forward and inverse kinematics of arms with a root scan, on every branch, and the number of solutions."""
 
-from __future__ import annotations
-
 from itertools import combinations, product
 
 import numpy as np
 import pytest
 import softkin
-from softkin import KinematicsError, Status
+from softkin import Status
 
+from tests.catalogue.refusals import refusal
 from tests.catalogue.search.arms import IRB_2400, LATERALS, Array, all_roots, arm, frame, miss, posed
 
 
 @pytest.mark.parametrize("lateral", (0.0, *LATERALS))
 def test_the_reported_configuration_leads_back(lateral: float) -> None:
-    """The inverse with the configuration of forward kinematics leads back to the frame."""
     robot, rng = arm(lateral), np.random.default_rng(1)
     axes = rng.uniform(-500, 500, (150, 6))
     positions, rotations, configurations, statuses = robot.forward_batch(axes)
@@ -31,7 +29,6 @@ def test_the_reported_configuration_leads_back(lateral: float) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("lateral", (0.0, *LATERALS))
 def test_right_angles_with_the_reference_at_the_same_axes(lateral: float) -> None:
-    """Poses with all joints at right angles are solved with the reference at the same axes."""
     grid = np.array(list(product((-90.0, 0.0, 90.0, 180.0), repeat=6)))
     axes = grid if lateral == 0.0 else grid[np.random.default_rng(2).choice(len(grid), 300, replace=False)]
     robot = arm(lateral)
@@ -47,7 +44,7 @@ def test_every_solution_is_found(lateral: float) -> None:
     """The witness asks the same of more poses and machines, before anything is generated."""
     robot, rng = arm(lateral), np.random.default_rng(3)
     total = missed = 0
-    for axes in rng.uniform(-180, 180, (12, 6)):
+    for axes in rng.uniform(-180, 180, (8, 6)):
         wanted = frame(axes, lateral)
         solutions = ranked(robot, wanted, axes)
         assert all(miss(a, lateral, wanted) < 1e-12 for a in solutions)
@@ -55,12 +52,11 @@ def test_every_solution_is_found(lateral: float) -> None:
         for root in all_roots(wanted, lateral, rng):
             total += 1
             missed += min((apart(root, a) for a in solutions), default=9.0) > 1e-5
-    assert total > 64
+    assert total > 42
     assert missed == 0
 
 
 def ranked(robot: softkin.Mechanism, wanted: Array, reference: Array) -> list[Array]:
-    """Every solution, whatever its rank."""
     slots = (s for s in robot.inverse_all(posed(wanted), reference) if s.axes is not None)
     return [np.array(axes) for s in slots for axes in (s.axes, *s.others)]
 
@@ -87,7 +83,6 @@ def test_the_solutions_of_a_slot_are_ranked_by_how_far_they_are() -> None:
 
 
 def test_a_slot_holds_a_solution_once_in_singular_poses_too() -> None:
-    """A slot lists each solution once, also at singular poses."""
     robot, solved = arm(60.0), 0
     for axes in np.random.default_rng(4).choice((-90.0, 0.0, 90.0, 180.0), (30, 6)):
         for slot in robot.inverse_all(posed(frame(axes, 60.0)), axes):
@@ -98,7 +93,6 @@ def test_a_slot_holds_a_solution_once_in_singular_poses_too() -> None:
 
 
 def test_a_solution_beyond_the_limits_gives_way_to_another_of_its_slot() -> None:
-    """Where the nearest solution of a slot is beyond limits, the slot gives another one."""
     here = np.array([-39.919, 90.278, 77.852, -212.045, 95.808, -183.919])
     robot = softkin.Ac6RZRYRYRXRYRZJ6Offset(**IRB_2400, j6_offset_x=-35.0, lower_a6=-120.0, upper_a6=120.0)
     wanted, configuration = frame(here, -35.0), robot.forward(here)[1][:4]
@@ -110,7 +104,6 @@ def test_a_solution_beyond_the_limits_gives_way_to_another_of_its_slot() -> None
 
 
 def test_every_slot_says_its_own_configuration() -> None:
-    """The axes of a slot have the configuration of the slot."""
     robot = arm(60.0)
     for axes in np.random.default_rng(5).uniform(-180, 180, (10, 6)):
         solutions = robot.inverse_all(posed(frame(axes, 60.0)), axes)
@@ -124,9 +117,7 @@ def test_without_the_offset_there_is_no_second_crossing() -> None:
     """Without the offset only the first branch of the crossing has a solution, and the refusal says so."""
     robot, axes = arm(0.0), (10.0, 20.0, 30.0, 40.0, 50.0, 60.0)
     reached, configuration = robot.forward(axes)
-    with pytest.raises(KinematicsError) as error:
-        robot.inverse(reached, (*configuration[:3], 2, *configuration[4:]), axes)
-    assert error.value.status is Status.UNREACHABLE
+    assert refusal(robot.inverse, reached, (*configuration[:3], 2, *configuration[4:]), axes) is Status.UNREACHABLE
 
 
 @pytest.mark.long
@@ -136,7 +127,7 @@ def test_a_path_in_one_configuration_is_followed() -> None:
     """
     robot, rng = arm(60.0), np.random.default_rng(6)
     followed = 0
-    while followed < 4:
+    while followed < 2:
         start = rng.uniform(-170, 170, 6)
         path = start + np.linspace(0.0, 1.0, 200)[:, None] * rng.uniform(-50, 50, 6)
         configurations = robot.forward_batch(path)[2][:, :4]
@@ -150,31 +141,9 @@ def test_a_path_in_one_configuration_is_followed() -> None:
 
 
 def test_garbage_ends_in_a_status() -> None:
-    """A pose with garbage is refused with a status."""
     robot = arm(60.0)
     good = posed(frame(np.array([10.0, 20.0, 30.0, 40.0, 50.0, 60.0]), 60.0))
     for position in ((np.nan, 0, 0), (np.inf, 0, 0), (1e10, 0, 0)):
-        with pytest.raises(KinematicsError) as error:
-            robot.inverse((position, good[1]))
-        assert error.value.status is Status.BAD_INPUT
-    with pytest.raises(KinematicsError) as error:
-        robot.inverse(((5000.0, 0.0, 0.0), good[1]))
-    assert error.value.status is Status.UNREACHABLE
-    with pytest.raises(KinematicsError) as error:
-        robot.inverse(good, None, (np.nan,) * 6)
-    assert error.value.status is Status.BAD_INPUT
-
-
-@pytest.mark.long
-def test_batches_are_scalar_calls() -> None:
-    """A batch gives the axes and statuses of single calls."""
-    robot = arm(-35.0)
-    axes = np.random.default_rng(7).uniform(-180, 180, (12, 6))
-    positions, rotations, configurations, _ = robot.forward_batch(axes)
-    open_bytes = np.zeros_like(configurations)
-    for bytes_ in (configurations, open_bytes):
-        found, statuses = robot.inverse_batch(positions, rotations, bytes_, axes)
-        for row in range(len(axes)):
-            assert statuses[row] == Status.OK
-            scalar = robot.inverse((positions[row], rotations[row]), tuple(int(b) for b in bytes_[row]), axes[row])
-            assert np.abs(np.subtract(scalar, found[row])).max() < 1e-9
+        assert refusal(robot.inverse, (position, good[1])) is Status.BAD_INPUT
+    assert refusal(robot.inverse, ((5000.0, 0.0, 0.0), good[1])) is Status.UNREACHABLE
+    assert refusal(robot.inverse, good, None, (np.nan,) * 6) is Status.BAD_INPUT

@@ -1,7 +1,5 @@
 """No solution is lost at common poses: near A4 = 0 and 180 degrees and near a straight elbow, and on paths there."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np
@@ -40,8 +38,8 @@ def check_answers(case: Planted) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("lateral", OFFSETS)
 def test_planted_poses(kind: str, lateral: float) -> None:
-    """The scan finds every planted solution."""
-    check_answers(planted(kind, lateral, 60, 11))
+    """Of many where the scan is difficult, and of some anywhere."""
+    check_answers(planted(kind, lateral, 60 if kind == "anywhere" else 1800, 12))
 
 
 LOST = {
@@ -98,9 +96,9 @@ def test_a_folded_elbow_puts_the_wrist_on_the_first_axes(
     free.
     """
     rng = np.random.default_rng(19)
-    near = planted("elbow", lateral, 60, 20).axes
+    near = planted("elbow", lateral, 36, 20).axes
     near[:, 2] += 90.0 - STRAIGHT
-    axes = np.concatenate([rng.choice((-90.0, 0.0, 90.0, 180.0), (60, 6)), near])
+    axes = np.concatenate([rng.choice((-90.0, 0.0, 90.0, 180.0), (36, 6)), near])
     robot = softkin.Ac6RZRYRYRXRYRZJ6Offset(**{k: v * unit for k, v in lengths.items()}, j6_offset_x=lateral * unit)
     references = np.concatenate([axes, np.zeros_like(axes), rng.uniform(-180.0, 180.0, axes.shape)])
     axes = np.tile(axes, (3, 1))
@@ -112,18 +110,10 @@ def test_a_folded_elbow_puts_the_wrist_on_the_first_axes(
     assert np.abs(turned - rotations).max() < 1e-9
 
 
-@pytest.mark.parametrize("kind", KINDS[1:])
-@pytest.mark.parametrize("lateral", OFFSETS)
-def test_a_hundred_thousand_planted_poses(kind: str, lateral: float) -> None:
-    """The scan finds the planted solutions of a hundred thousand poses."""
-    check_answers(planted(kind, lateral, 3710, 12))
-
-
-def test_the_block_answers_two_thousand_planted_poses_as_python_does() -> None:
-    """The block finds the planted solutions of two thousand poses as Python does."""
+def test_the_block_answers_planted_poses_as_python_does() -> None:
     rng = np.random.default_rng(13)
     for kind, lateral in product(KINDS[1:], OFFSETS):
-        case = planted(kind, lateral, 75, int(rng.integers(1e6)))
+        case = planted(kind, lateral, 27, int(rng.integers(1e6)))
         block = Controller(compiled(MECHANISM), MECHANISM)
         assert block.initialise({**ARM, "j6_offset_x": lateral}) == OK
         for axes, reference in zip(case.axes, case.references, strict=True):
@@ -141,7 +131,6 @@ def test_the_block_answers_two_thousand_planted_poses_as_python_does() -> None:
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("lateral", (1e-3, 8.0, 60.0, -300.0))
 def test_plain_numbers_and_batches_agree(kind: str, lateral: float) -> None:
-    """Single calls and batches of a scan agree."""
     case = planted(kind, lateral, 12, 14)
     positions, rotations, configurations, _ = case.robot.forward_batch(case.axes)
     found, statuses = case.robot.inverse_batch(positions, rotations, configurations, case.references)
@@ -157,7 +146,6 @@ def test_plain_numbers_and_batches_agree(kind: str, lateral: float) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("lateral", (8.0, 60.0, -300.0))
 def test_nothing_is_missed_that_a_scan_finds(kind: str, lateral: float) -> None:
-    """All solutions that a fine scan of the closure finds are found."""
     case = planted(kind, lateral, 12, 15)
     frames = [case.robot.forward(tuple(axes))[0] for axes in case.axes]
     seen = 0
@@ -228,7 +216,6 @@ def test_the_example_that_no_slot_answered() -> None:
 
 @pytest.mark.parametrize("distance", (1e-3, 1e-6, 1e-9, 1e-12, 0.0))
 def test_a_straight_wrist_is_regular(distance: float) -> None:
-    """A pose with a straight wrist, and poses close to it, are solved."""
     rng = np.random.default_rng(16)
     axes = rng.uniform(-180.0, 180.0, (80, 6))
     axes[:, 3] = rng.choice((0.0, 180.0), 80) + distance
@@ -242,10 +229,10 @@ def test_a_straight_wrist_is_regular(distance: float) -> None:
 
 
 def test_paths_through_a_straight_wrist_do_not_stop() -> None:
-    """27 straight lines of joints through A4 = 0, every byte open but those of shoulder and elbow."""
+    """Some straight lines of joints through A4 = 0, every byte open but those of shoulder and elbow."""
     robot, rng = softkin.Ac6RZRYRYRXRYRZJ6Offset(**ARM, j6_offset_x=60.0), np.random.default_rng(17)
     followed = 0
-    while followed < 27:
+    while followed < 10:
         middle = np.array([*rng.uniform(-120, 120, 3), 0.0, *rng.uniform(-120, 120, 2)])
         path = middle + np.linspace(-1.0, 1.0, 81)[:, None] * rng.uniform(-4, 4, 6)
         if not all(is_regular(robot, row) for row in path):

@@ -1,7 +1,5 @@
 """Published poses and the published determinant, in which the margins do not factor."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -40,7 +38,6 @@ def determinant(axes: np.ndarray, lateral: float) -> float:
 
 @pytest.mark.parametrize("lateral", (0.0, *LATERALS))
 def test_the_margin_is_the_published_determinant(lateral: float) -> None:
-    """The margin is proportional to the published determinant."""
     robot, rng = arm(lateral), np.random.default_rng(4)
     poses = rng.uniform(-180, 180, (40, 6))
     ours = np.array([robot.singularity(a).margins["determinant"] for a in poses])

@@ -2,8 +2,6 @@
 ends of its rods. The hexapod, whose legs are joints, has `hexapod`.
 """
 
-from __future__ import annotations
-
 import pytest
 
 from derive.description.mechanism import Mechanism
@@ -12,7 +10,6 @@ from tests.catalogue.turning_machines import TURNING, TurningMachine, turning_ma
 
 @pytest.fixture(params=[m for m in TURNING if m.name != "Kin_Hexapod"], ids=lambda m: m.name)
 def mechanism(request: pytest.FixtureRequest) -> Mechanism:
-    """A mechanism with rods."""
     return request.param
 
 

@@ -1,7 +1,5 @@
 """Poses where two branches meet, or a rod stands across its rail: the boundary belongs to the workspace."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

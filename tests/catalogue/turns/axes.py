@@ -1,8 +1,6 @@
 """Axes that turn more than once, each at a regular pose of its machine, and the machines with limits around that
 pose."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -39,7 +37,6 @@ class TurningAxis:
 
     @property
     def joint(self) -> Joint:
-        """The joint of the axis."""
         return self.mechanism.joints[self.index]
 
     @property

@@ -1,7 +1,5 @@
 """One machine as it is called in either language: what it answers, and why it refuses."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache

@@ -1,8 +1,6 @@
 """Calls on a turning axis, each against what its range allows: never a jump, and a refusal that says whether the turn
 refuses."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
@@ -95,7 +93,6 @@ def _check_refusal(axis: TurningAxis, limits: Range, caller: Caller, at: float, 
 
 
 def _answered(axis: TurningAxis, caller: Caller, asked: Asked, turn: int, value: float | None) -> None:
-    """With the turn named."""
     named = (*asked.configuration[: axis.byte], turn, *asked.configuration[axis.byte + 1 :])
     found = caller.inverse(replace(asked, configuration=named))
     assert found is not None, f"{axis}: turn {turn} is refused"

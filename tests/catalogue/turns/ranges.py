@@ -1,7 +1,5 @@
 """Ranges of axes, and what the inverse must answer in them: found here by counting turns, not by its formula."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -36,7 +34,6 @@ class Range:
         return self.width <= 360.0 - GAP_THAT_NO_STEP_CROSSES + self.tolerance
 
     def has(self, value: float) -> bool:
-        """Whether a value is inside."""
         return self.lower - self.tolerance <= value <= self.upper + self.tolerance
 
     def is_sharp(self, value: float) -> bool:

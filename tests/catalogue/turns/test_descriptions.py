@@ -1,7 +1,5 @@
 """What blocks and classes say of lengths and of limits that are not given, against what they do."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,9 +1,7 @@
 """Ranges around one turn, in both languages: a path is refused at their ends and never jumps; a turn inside can be
 named."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import pytest
@@ -40,15 +38,14 @@ def test_the_rule() -> None:
     assert [w for w in WIDTHS if Range(-w / 2, w / 2).has_one_value] == [180.0, 340.0, 350.0]
 
 
-@pytest.mark.slow("Articulated")
-@BOTH
-@pytest.mark.parametrize("mechanism", THOROUGH, ids=named)
-def test_every_edge(mechanism: Mechanism, make: Make) -> None:
-    """At every edge of a range of an axis, the axis takes its value inside, in many ranges."""
+def asked(mechanism: Mechanism, *, short: bool) -> Iterator[tuple[TurningAxis, Range]]:
+    """The axes of a mechanism and their ranges: of two mechanisms all, of others some. short: of those every other."""
     for axis in turning_axes(mechanism):
-        for limits in ranges_of(axis, WIDTHS):
-            for step in STEPS:
-                check_edges(axis, limits, step, make)
+        if mechanism in THOROUGH and not short:
+            yield from ((axis, limits) for limits in ranges_of(axis, WIDTHS))
+        else:
+            widths = FEW_WIDTHS[::2] if short else FEW_WIDTHS[1:]
+            yield from ((axis, limits) for limits in ranges_of(axis, widths)[:: 3 - len(axis.base) // 4])
 
 
 @pytest.mark.slow("Planar", "Ac6", "Articulated")
@@ -56,31 +53,25 @@ def test_every_edge(mechanism: Mechanism, make: Make) -> None:
 @BOTH
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=named)
 def test_edges(mechanism: Mechanism, make: Make) -> None:
-    """At edges of some ranges of an axis, the axis takes its value inside."""
-    for axis in turning_axes(mechanism):
-        for limits in ranges_of(axis, FEW_WIDTHS[1:])[:: 3 - len(axis.base) // 4]:
-            for step in FEW_STEPS:
-                check_edges(axis, limits, step, make)
-
-
-@pytest.mark.slow("Articulated")
-@BOTH
-@pytest.mark.parametrize("mechanism", THOROUGH, ids=named)
-def test_references_anywhere(mechanism: Mechanism, make: Make) -> None:
-    """With references anywhere an axis takes the turn that its range and the reference decide, in many ranges."""
-    for axis in turning_axes(mechanism):
-        for limits in ranges_of(axis, WIDTHS):
-            check_anywhere(axis, limits, make)
+    """At edges of ranges of an axis, the axis takes its value inside."""
+    for axis, limits in asked(mechanism, short=False):
+        for step in STEPS if mechanism in THOROUGH else FEW_STEPS:
+            check_edges(axis, limits, step, make)
 
 
 @pytest.mark.slow("Planar", "Ac6", "Articulated")
 @pytest.mark.long
-@pytest.mark.parametrize("mechanism", MECHANISMS, ids=named)
-def test_references_anywhere_in_short(mechanism: Mechanism) -> None:
-    """With references anywhere an axis takes the turn that its range and the reference decide."""
-    for axis in turning_axes(mechanism):
-        for limits in ranges_of(axis, FEW_WIDTHS[::2])[:: 3 - len(axis.base) // 4]:
-            check_anywhere(axis, limits, InPython)
+@pytest.mark.parametrize(
+    ("mechanism", "make"),
+    [
+        *(pytest.param(m, InPython, id=m.name) for m in MECHANISMS),
+        *(pytest.param(m, OnController, id=f"{m.name}-OnController") for m in THOROUGH),
+    ],
+)
+def test_references_anywhere(mechanism: Mechanism, make: Make) -> None:
+    """An axis takes the turn that its range and the reference decide."""
+    for axis, limits in asked(mechanism, short=mechanism not in THOROUGH):
+        check_anywhere(axis, limits, make)
 
 
 @pytest.mark.slow("Articulated")

@@ -1,0 +1,46 @@
+"""One machine in Python and in Structured Text: both give the same answers, or both refuse."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import softkin
+from softkin import KinematicsError
+
+from tests.text.controller import OK, Controller
+
+Answer = tuple[softkin.Frame, tuple[int, ...]]
+
+
+def forward_in_both(
+    controller: Controller, robot: softkin.Mechanism, axes: Sequence[float], size: float, turned: float = 1e-12
+) -> Answer | None:
+    """The frame and the configuration at axis values; None where both refuse.
+
+    size: that of the machine. turned: how far entries of the rotations may be apart.
+    """
+    status, answer = controller.forward(axes)
+    try:
+        frame, configuration = robot.forward(axes)
+    except KinematicsError:
+        assert status != OK
+        return None
+    assert status == OK
+    assert np.allclose(answer[0], frame.position, rtol=0.0, atol=1e-9 * size)
+    assert np.allclose(answer[1], frame.rotation, rtol=0.0, atol=turned)
+    assert answer[2][: len(configuration)] == tuple(byte % 256 for byte in configuration)
+    assert controller.is_singular(axes) == robot.singularity(axes).is_singular
+    return frame, configuration
+
+
+def inverse_in_both(
+    controller: Controller, robot: softkin.Mechanism, frame: softkin.Frame, near: Sequence[float], within: float = 1e-7
+) -> list[tuple[float, ...]]:
+    """The answers of all slots. within: how far those of the block may be from those of Python."""
+    answered = []
+    for slot in robot.inverse_all(frame, near):
+        status, found = controller.inverse(frame.position, frame.rotation, slot.configuration, near)
+        assert (status == OK) == (slot.axes is not None)
+        if slot.axes is not None:
+            assert np.allclose(found[: len(slot.axes)], slot.axes, rtol=0.0, atol=within)
+            answered.append(slot.axes)
+    return answered
