@@ -14,7 +14,7 @@ from tests.text.samples import Bytes, Sample
 
 pytestmark = pytest.mark.slow
 
-POSES, FAR = 2, 48
+POSES, FAR = 4, 100
 BYTES = (0, 1, 2, 3)
 
 
