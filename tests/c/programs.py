@@ -18,7 +18,7 @@ from tests.mechanisms import kinematics_of, named
 COMPILER = os.environ.get("CC", "gcc")
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-Wconversion")
 SANITIZED = (
-    "-O1",
+    "-O0",
     "-fsanitize=address,undefined,float-divide-by-zero,float-cast-overflow",
     "-fno-sanitize-recover=all",
 )

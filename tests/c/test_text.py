@@ -1,4 +1,4 @@
-"""What is written: its width, what it includes, the same bytes every time, what it says of a machine, and its use."""
+"""What is written: its width, what it includes, what it says of a machine, and its use."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 import softkin
 
-from derive.command.line import main
 from derive.emit.c import package, printer
 from derive.emit.c.printer import is_reserved, member, spelled
 from derive.ir.constants import LEAST
@@ -23,6 +22,7 @@ SHARED = {"softkin.c", "softkin.h", "softkin_constants.h", "softkin_rotation.h"}
 HEADERS = {"<math.h>", "<stdbool.h>", "<stddef.h>", "<stdint.h>", *(f'"{name}"' for name in SHARED)}
 
 
+@pytest.mark.broad
 @pytest.mark.parametrize("name", DIMENSIONS)
 def test_lines_and_includes(name: str) -> None:
     """No line is wider than a page; nothing is allocated, changed globally, or included besides libm."""
@@ -40,6 +40,7 @@ def test_lines_and_includes(name: str) -> None:
         assert not changed, (path, changed)
 
 
+@pytest.mark.broad
 @pytest.mark.parametrize("name", DIMENSIONS)
 def test_the_description_is_that_of_the_class(name: str) -> None:
     """Axes, parameters, bytes, rows, margins: what the class of the package says."""
@@ -94,21 +95,6 @@ def test_a_machine_that_does_not_fit(monkeypatch: pytest.MonkeyPatch) -> None:
             changed.setattr(package, most, size)
             assert package.part(kinematics) is None
     assert package.part(kinematics) is not None
-
-
-def test_the_command_writes_it_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`softkin derive … --language c` writes its folder, and leaves what stands beside it."""
-    description = ROOT / "derive" / "mechanisms" / "kin_caxis.py"
-    beside = tmp_path / "out" / "mine.txt"
-    beside.parent.mkdir()
-    beside.write_text("mine")
-    command = ["derive", str(description), "--out", str(beside.parent), "--language", "c"]
-    assert main(command) == 0
-    assert {path.name for path in beside.parent.iterdir()} == {"mine.txt", "c"}
-    found = {path.name: path.read_text() for path in (beside.parent / "c").iterdir()}
-    assert found == dict(package.files([part_of("Kin_CAxis")]))
-    assert set(found) == {"caxis.c", "caxis.h", *SHARED}
-    capsys.readouterr()
 
 
 def test_the_program_of_the_guide() -> None:

@@ -34,6 +34,7 @@ def scenes(name: str, parameters: dict[str, Any], rows: list[list[float]]) -> li
     return list(zip(found[::2], found[1::2], strict=True))
 
 
+@pytest.mark.broad
 @pytest.mark.parametrize("name", DIMENSIONS)
 def test_bodies_follow_the_machine(name: str) -> None:
     """At random poses: the last body ends at the tool, frames are rotations, and no body changes its shape."""
@@ -75,6 +76,7 @@ def _own_points(body: dict[str, Any]) -> list[float]:
     ]
 
 
+@pytest.mark.broad
 @pytest.mark.parametrize("name", DIMENSIONS)
 def test_rods_are_as_long_as_stated(name: str) -> None:
     """The ends of every bar are apart by its length."""

@@ -1,4 +1,4 @@
-"""What is written: its width, its imports, the same bytes every time, and what it says of a machine."""
+"""What is written: its width, its imports, and what it says of a machine."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from derive.emit.javascript import package
 from tests.corpus.dimensions import DIMENSIONS
 from tests.javascript.modules import files_of, module_of, part_of
 from tests.javascript.node import ask
-from tests.mechanisms import named
 
 
+@pytest.mark.broad
 @pytest.mark.parametrize("name", DIMENSIONS)
 def test_lines_and_imports(name: str) -> None:
     """No line is wider than a page; what is imported is there, is used, and is a file beside the module."""
@@ -38,6 +38,7 @@ def test_lines_and_imports(name: str) -> None:
         assert not re.search(r"Math\.random|Date|require\(|eval\(|import\(\"[^.]|fetch", text), path
 
 
+@pytest.mark.broad
 @pytest.mark.parametrize("name", DIMENSIONS)
 def test_the_description_is_that_of_the_class(name: str) -> None:
     """Axes, parameters, bytes, rows, margins, limits: what the class of the package says."""
@@ -77,25 +78,6 @@ def test_a_machine_may_be_called_as_a_file() -> None:
     assert package.module_name("Kin_Index") == "index_machine"
     assert package.module_name("Kin_Numbers") == "numbers"
     assert "softkin/numbers.js" in files_of(part_of("Kin_CAxis"))
-
-
-def test_the_command_writes_it_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`softkin derive … --language javascript` writes its folder, and leaves what stands beside it."""
-    description = Path(__file__).parents[2] / "derive" / "mechanisms" / "kin_caxis.py"
-    beside = tmp_path / "out" / "mine.txt"
-    beside.parent.mkdir()
-    beside.write_text("mine")
-    command = ["derive", str(description), "--out", str(beside.parent), "--language", "javascript"]
-    assert main(command) == 0
-    assert beside.read_text() == "mine"
-    assert {path.name for path in beside.parent.iterdir()} == {"mine.txt", "javascript"}
-    written = {str(p.relative_to(beside.parent / "javascript")) for p in (beside.parent / "javascript").rglob("*.*")}
-    assert written == set(files_of(part_of("Kin_CAxis")))
-    first = (beside.parent / "javascript" / "caxis.js").read_text()
-    assert main(command) == 0 and (beside.parent / "javascript" / "caxis.js").read_text() == first
-    assert package.files([part_of("Kin_CAxis")])["caxis.js"] == first
-    assert f"{named('Kin_CAxis').name}: " in first
-    capsys.readouterr()
 
 
 def test_the_catalogue_needs_another_folder(capsys: pytest.CaptureFixture[str]) -> None:

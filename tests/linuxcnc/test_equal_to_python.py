@@ -12,6 +12,8 @@ from derive.emit.linuxcnc.words import Orientation
 from tests.linuxcnc.machine import NAMES, Machine, about, answered, differs, heading, machine_of, recorded
 from tests.linuxcnc.module import LETTERS, Pose
 
+pytestmark = pytest.mark.broad
+
 SAME = 1e-12
 SINGULAR = 1e-3
 FREE = 1e-9

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from derive.command.line import main
 from derive.emit.linuxcnc import package
 from derive.emit.linuxcnc.words import LETTERS, Orientation, words_of
 from derive.pipeline import Built, languages, unwritten
@@ -23,6 +22,7 @@ HEADERS = {
 }  # fmt: skip
 
 
+@pytest.mark.broad
 @pytest.mark.parametrize("name", NAMES)
 def test_one_source(name: str) -> None:
     """Nothing is allocated or printed, no header stands after the code of LinuxCNC that would be read before it, and
@@ -50,6 +50,7 @@ def _is_searched(name: str) -> bool:
     return any("root" in type(s).__name__.lower() for p in kinematics_of(named(name)).shared for s in p.body)
 
 
+@pytest.mark.broad
 @pytest.mark.parametrize("name", NAMES)
 def test_no_warnings(name: str, tmp_path: Path) -> None:
     """As plain C99 against both versions; the other tests compile it as halcompile does, with extensions of GNU."""
@@ -125,16 +126,3 @@ def test_a_mechanism_without_joints() -> None:
     built = Built("", "", None, {}, {})
     (said,) = unwritten(built, languages(wanted=["linuxcnc"]), named("Kin_Tool"))
     assert said.startswith("no module for LinuxCNC: it has 0 axes, a pose there 1 to 9")
-
-
-def test_the_command_writes_it_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`softkin derive … --language linuxcnc` writes its folder, and leaves what stands beside it."""
-    description = ROOT / "derive" / "mechanisms" / "kin_caxis.py"
-    beside = tmp_path / "out" / "mine.txt"
-    beside.parent.mkdir()
-    beside.write_text("mine")
-    assert main(["derive", str(description), "--out", str(beside.parent), "--language", "linuxcnc"]) == 0
-    assert {path.name for path in beside.parent.iterdir()} == {"mine.txt", "linuxcnc"}
-    found = {path.name: path.read_text() for path in (beside.parent / "linuxcnc").iterdir()}
-    assert found == part_of("Kin_CAxis")["files"]
-    capsys.readouterr()

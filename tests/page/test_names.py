@@ -61,6 +61,7 @@ def _declared(block: str) -> list[str]:
     return re.findall(r"^ *(\w+) : (?:LREAL|BOOL|INT)\b", inputs[1], re.MULTILINE) if inputs else []
 
 
+@pytest.mark.broad
 @pytest.mark.slow(" ")  # machines that are in no catalogue
 @pytest.mark.parametrize("name", (*NAMES, *ODD, "arm on a track"))
 def test_every_name_is_one_of_the_block(name: str) -> None:

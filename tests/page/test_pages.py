@@ -24,6 +24,8 @@ from tests.mechanisms import kinematics_of, named
 from tests.page.made import NAMES, page, samples, spelled, spelling, tree
 from tests.page.reading import every, has_class, maths, parsed, residuals, run, section, value_of
 
+pytestmark = pytest.mark.broad
+
 _CLOSE = 1e-9
 SEARCHED = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
 EACH = pytest.mark.parametrize("name", NAMES)

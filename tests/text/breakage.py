@@ -75,6 +75,26 @@ REFUSED = {
         "FUNCTION_BLOCK Softkin_Kinematics", "PUBLIC AxesToOrientation", "PUBLIC Other", "AxesToOrientation"
     ),
     "a missing property": Break("PROPERTY PUBLIC NumAxes", "NumAxes", "Count", "NumAxes"),
+    "a property of another type": Break("PROPERTY PUBLIC NumAxes", "NumAxes : UDINT", "NumAxes : UINT", "is a UDINT"),
+    "another result": Break("METHOD PUBLIC GetConfigurationDataSize", " : INT", " : DINT", "returns INT, not DINT"),
+    "another length of a string": Break(
+        "METHOD PUBLIC GetKinematicsName", "STRING(255)", "STRING(300)", "returns STRING"
+    ),
+    "a method of an interface that is private": Break(
+        "METHOD PUBLIC IsInitialized", "PUBLIC IsInitialized", "PRIVATE IsInitialized", "must be public"
+    ),
+    "a parameter of another name": Break(
+        "METHOD PUBLIC ActivateAutomaticRotaryPeriods",
+        "  cdSrc : TRAFO.CONFIGDATA;\nEND_VAR\nVAR\n",
+        "  cdSource : TRAFO.CONFIGDATA;\nEND_VAR\nVAR\n  cdSrc : TRAFO.CONFIGDATA;\n",
+        "cdsrc",
+    ),
+    "one parameter more": Break(
+        "METHOD PUBLIC GetAxisProperties",
+        "  udiAxis : UDINT;",
+        "  udiAxis : UDINT;\n  udiMore : UDINT;",
+        "has 2 parameters, not 3",
+    ),
     "parameters in another order": Break(
         "METHOD PUBLIC CPConnectible", "  cd1 : TRAFO.CONFIGDATA;\n  cd2", "  cd2 : TRAFO.CONFIGDATA;\n  cd1", "cd1"
     ),

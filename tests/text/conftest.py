@@ -1,11 +1,12 @@
-"""A test that asks for `pairs` runs for machines of every kind; one that asks for `serial_pairs` runs for the machines
-of serial mechanisms alone."""
+"""A test that asks for `pairs` runs for machines of every kind; one that asks for `serial_pairs` runs for those of
+serial mechanisms alone, one that asks for `loops` for those with rods."""
 
 from __future__ import annotations
 
 import pytest
 
 from derive.description.mechanism import Mechanism
+from tests.text.loops.machines import LOOPS, Loop, loops_of
 from tests.text.pairs import POSITION_KINEMATICS, Pair, pairs_of
 from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
 
@@ -14,6 +15,12 @@ from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
 def pairs(request: pytest.FixtureRequest) -> tuple[Pair, ...]:
     """The machines of a mechanism, each as a block and in Python."""
     return pairs_of(request.param)
+
+
+@pytest.fixture(params=LOOPS, ids=lambda m: m.name)
+def loops(request: pytest.FixtureRequest) -> tuple[Loop, ...]:
+    """The machines of a mechanism with rods, each as a block and in Python."""
+    return loops_of(request.param)
 
 
 @pytest.fixture(params=MECHANISMS, ids=lambda m: m.name)

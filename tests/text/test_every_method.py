@@ -50,7 +50,8 @@ def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str) -> Non
     """A method of the block answers as the Python package does."""
     compare = comparisons_of(mechanism)[method]
     for pair in pairs_of(mechanism):
-        for sample in pair.regular[: 3 if method in POSELESS else None]:
+        regular = pair.regular[:: 2 if isinstance(pair, Loop) else 1]  # which has many, for its limits
+        for sample in regular[: 3 if method in POSELESS else None]:
             compare(pair, sample)
         for sample in pair.any if isinstance(pair, Loop) and method in EVERYWHERE else ():
             compare(pair, sample)

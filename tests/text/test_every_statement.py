@@ -215,13 +215,18 @@ def the_tests(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) -> Ite
 
 
 def unreachable(mechanism: Mechanism, lines: list[str]) -> set[int]:
-    """The lines that no input reaches: an axis whose closure allows only an interval always has limits, and a divisor
-    that has been refused is not replaced."""
+    """The lines that no input reaches: an axis whose closure allows only an interval always has limits, a divisor that
+    has been refused is not replaced, and an inverse without axes has nothing to refuse, and so no reason.
+    """
     keys = [capitalized(joint.key) for joint in mechanism.joints if joint.domain is not None]
     dead = {
         f"{word}{key} := {value};" for key in keys for word, value in (("lowest", "-1.0E12"), ("highest", "1.0E12"))
     }
     found = {number for number, line in enumerate(lines, 1) if line.strip() in dead}
+    if not mechanism.joints:
+        start = next(number for number, line in enumerate(lines, 1) if line.startswith("METHOD PROTECTED ReasonOf "))
+        end = next(n for n, line in enumerate(lines, 1) if n > start and line.startswith("END_METHOD"))
+        found |= set(range(start, end))
     return found | replaced_after_a_refusal(lines)
 
 

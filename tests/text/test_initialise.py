@@ -106,6 +106,7 @@ def test_a_length_has_no_default(pairs: tuple[Pair, ...]) -> None:
     assert controller.block.call("IsInitialized") is not has_length
 
 
+@pytest.mark.broad
 @pytest.mark.parametrize("size", [36, 80])
 def test_a_matrix_of_another_size_is_refused(pairs: tuple[Pair, ...], size: int) -> None:
     """Initialize refuses a library whose matrix has another size."""
@@ -115,6 +116,7 @@ def test_a_matrix_of_another_size_is_refused(pairs: tuple[Pair, ...], size: int)
     assert controller.block.call("IsInitialized") is False
 
 
+@pytest.mark.broad
 @pytest.mark.long
 def test_a_configuration_that_is_too_small_is_refused(pairs: tuple[Pair, ...]) -> None:
     """By a compiler that looks at indices, and by Initialize where the compiler does not."""

@@ -96,7 +96,7 @@ def _short(mechanism: Mechanism, rod: Rod, position: np.ndarray) -> float:
     square = sp.lambdify(joint.symbol, (rod.equation + rod.length**2).subs(given))
     low, high = (-np.pi, np.pi) if joint.is_angle else (-1e5, 1e5)
     for _ in range(4):  # a grid around the best of a grid
-        values = np.linspace(low, high, 20001)
+        values = np.linspace(low, high, 2001)
         apart = np.abs(np.sqrt(np.broadcast_to(square(values), values.shape)) - length)
         best = values[np.argmin(apart)]
         low, high = best - (high - low) / 1000.0, best + (high - low) / 1000.0

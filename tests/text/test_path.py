@@ -45,6 +45,7 @@ def inside_domains(machine: Machine, axes: Array) -> Array:
     return usable
 
 
+@pytest.mark.broad
 @pytest.mark.long
 def test_a_path_is_followed_without_a_jump(serial_pairs: tuple[SerialPair, ...]) -> None:
     """The block follows a path without a jump of an axis."""

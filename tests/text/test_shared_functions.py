@@ -49,23 +49,6 @@ def test_atan2(y: float, x: float) -> None:
     assert -math.pi <= found <= math.pi
 
 
-def test_atan2_in_every_quadrant() -> None:
-    """The arc tangent is exact at multiples of 45 degrees."""
-    quarter = math.pi / 4
-    for y, x, eighths in (
-        (0, 1, 0),
-        (1, 1, 1),
-        (1, 0, 2),
-        (1, -1, 3),
-        (0, -1, 4),
-        (-1, -1, -3),
-        (-1, 0, -2),
-        (-1, 1, -1),
-    ):
-        assert LIBRARY.function("Softkin_Atan2")(float(y), float(x)) == pytest.approx(eighths * quarter, rel=ROUNDING)
-    assert LIBRARY.function("Softkin_Atan2")(0.0, 0.0) == 0.0
-
-
 @given(value=SIZES)
 def test_root(value: float) -> None:
     """The root is bit for bit that of the reference interpreter."""

@@ -23,6 +23,7 @@ def by_columns(pair: Pair) -> Controller:
     return controller
 
 
+@pytest.mark.broad
 @pytest.mark.long("Hexapod", "Scara4")
 def test_every_method_answers_the_same_by_columns(pairs: tuple[Pair, ...]) -> None:
     """Every method gives the same answers for matrices that are stored by columns."""
@@ -36,10 +37,3 @@ def test_every_method_answers_the_same_by_columns(pairs: tuple[Pair, ...]) -> No
             for method, compare in comparisons_of(pair.mechanism).items():
                 if method not in POSELESS and method.lower() in controller.methods:
                     compare(other, sample)
-
-
-def test_the_order_is_found(pairs: tuple[Pair, ...]) -> None:
-    """Initialize finds the storage order of the library, in every machine."""
-    for pair in pairs:
-        assert pair.controller.block.matrixOrder.lower() == "rows"
-        by_columns(pair)

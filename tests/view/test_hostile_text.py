@@ -6,12 +6,16 @@ import re
 from base64 import b64encode
 from hashlib import sha256
 
+import pytest
+
 from derive.command.view import PACKAGES
 from derive.view.page import Content, page
 from tests.javascript.modules import files_of
 from tests.machines.hostile import MARKS
 from tests.machines.test_hostile_text import Elements, pair
 from tests.view.available import available
+
+pytestmark = pytest.mark.slow
 
 
 def shown(index: int) -> str:

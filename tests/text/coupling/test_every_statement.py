@@ -13,7 +13,8 @@ from tests.text.other_turns import check_other_turns
 from tests.text.reasons import provoke
 from tests.text.samples import Sample
 from tests.text.statements import Statements
-from tests.text.units import compiled, file_of, text_of
+from tests.text.test_every_statement import left_out, libraries
+from tests.text.units import compiled, file_of
 
 pytestmark = pytest.mark.slow
 
@@ -22,10 +23,7 @@ pytestmark = pytest.mark.slow
 def test_every_statement_runs(mechanism: Mechanism) -> None:
     """The tests execute every statement of the block of an orientation kinematics."""
     pairs = orientation_pairs_of(mechanism)
-    libraries = [compiled(mechanism), compiled(mechanism, matrix_size=36)]
-    if len(pairs[0].robot.CONFIGURATION) > 1:
-        libraries.append(test_initialise.without_index_checks(mechanism))
-    statements = Statements([file_of(mechanism)], libraries)
+    statements = Statements([file_of(mechanism)], libraries(mechanism))
     with statements.watched():
         for one in pairs:
             for sample in one.regular[:2]:
@@ -37,14 +35,12 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
         tried.test_the_number_of_axes(mechanism)
         tried.test_a_tool_that_points_the_opposite_way(mechanism)
         tried.test_garbage_and_no_initialisation(mechanism)
-        assert OrientationController(libraries[1], mechanism).initialise(pairs[0].robot.parameters) == NOT_INITIALIZED
+        small = OrientationController(compiled(mechanism, matrix_size=36), mechanism)
+        assert small.initialise(pairs[0].robot.parameters) == NOT_INITIALIZED
         if pairs[0].robot.CONFIGURATION:
             test_initialise.test_a_configuration_that_is_too_small_is_refused(pairs)
             test_configuration_blocks.test_what_is_set_is_read(pairs[0])
-    lines = text_of(mechanism).split("\n")
-    missing = {place.line for place in statements.left_out()} - _unreachable(lines)
-    missing = {line for line in missing if not lines[line - 1].startswith("FUNCTION_BLOCK")}
-    assert not missing, [f"{line}: {lines[line - 1].strip()}" for line in sorted(missing)]
+    assert left_out(mechanism, statements) == []
 
 
 def _limits_and_garbage(one: tried.OrientationPair) -> None:
@@ -102,11 +98,3 @@ def _before_initialize(mechanism: Mechanism) -> None:
     properties = values.meaningless(pair.library, values.PROPERTIES_TYPE)
     fresh.block.call("GetAxisProperties", props=properties, udiAxis=0)
     assert properties.limits.xUnlimited
-
-
-def _unreachable(lines: list[str]) -> set[int]:
-    """An inverse without axes has nothing to refuse, and so no reason: its method is never entered."""
-    if "NumAxes := 0;" not in lines:
-        return set()
-    start = next(number for number, line in enumerate(lines, 1) if line.startswith("METHOD PROTECTED ReasonOf "))
-    return set(range(start, next(n for n, line in enumerate(lines, 1) if n > start and line.startswith("END_METHOD"))))

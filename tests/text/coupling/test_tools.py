@@ -67,6 +67,7 @@ class Tooled:
         return self.block.inverse(place, wanted.tolist(), data, reference)
 
 
+@pytest.mark.broad
 @pytest.mark.long("Ac6", "Hexapod")
 @pytest.mark.parametrize("mechanism", MACHINES, ids=lambda m: m.name)
 def test_a_tool_is_the_same_in_both_languages(mechanism: Mechanism) -> None:

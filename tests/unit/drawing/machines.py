@@ -14,8 +14,8 @@ from tests.mechanisms import catalogue, kinematics_of
 
 CATALOGUE = {mechanism.name: mechanism for _, mechanism in catalogue()}
 KINDS = (
-    "Kin_Scara4_CCZC_ZCcoupled", "Kin_SCCC", "Kin_HGantry3", "Kin_GantryCutter2", "Kin_Ac6_ThreeParallel", "Kin_Wrist3",
-    "Kin_Polar_Z", "Kin_P2C_Type2", "Kin_P2X_Type2", "Kin_PCC", "Kin_Crane", "MC_KIN_TYPE_12_XY", "Kin_Tripod_Rotary",
+    "Kin_Scara4_CCZC_ZCcoupled", "Kin_SCCC", "Kin_HGantry3", "Kin_GantryCutter2", "Kin_Ac6_ThreeParallel", "Kin_Wrist2",
+    "Kin_Polar_Z", "Kin_P2C_Type1", "Kin_P2X_Type2", "Kin_PCC", "Kin_Crane", "MC_KIN_TYPE_12_XY", "Kin_Tripod_Rotary",
     "Kin_Tripod_P3Z", "Kin_Tripod_Linear", "Kin_Delta_P3C_Type3", "Kin_Hexapod",
 )  # fmt: skip
 

@@ -16,6 +16,8 @@ from derive.emit.picture.symbols import rails, slide_arrow
 from derive.emit.picture.view import Box, fitted
 from tests.unit.drawing.machines import CATALOGUE, CHAINS, KINDS, RODS, Drawn, drawn
 
+pytestmark = pytest.mark.broad
+
 STEP = 1e-4
 SLIDES = tuple(n for n, m in CATALOGUE.items() if m.chain is not None and any(not j.is_angle for j in m.joints))
 

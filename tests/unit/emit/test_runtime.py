@@ -45,53 +45,6 @@ def test_primitive_is_its_reference(name: str, data: st.DataObject) -> None:
     assert array(*(np.array([v]) for v in arguments))[0] == pytest.approx(expected, rel=1e-15, abs=1e-15)
 
 
-@given(y=SIZES, x=SIZES)
-def test_atan2_points_where_it_says(y: float, x: float) -> None:
-    """Sine and cosine of the angle point to (x, y)."""
-    angle = _scalar.atan2(y, x)
-    assert -math.pi <= angle <= math.pi  # -pi for an angle that rounds to it
-    assert math.hypot(x, y) * math.cos(angle) == pytest.approx(x, abs=1e-6)
-    assert math.hypot(x, y) * math.sin(angle) == pytest.approx(y, abs=1e-6)
-
-
-def test_zeros_have_no_sign() -> None:
-    """A negative zero does not change the angle of a direction."""
-    assert _scalar.atan2(-0.0, -1.0) == math.pi
-    assert _scalar.atan2(0.0, -0.0) == 0.0
-    assert list(_array.atan2(np.array([-0.0, 0.0]), np.array([-1.0, -0.0]))) == [math.pi, 0.0]
-
-
-@given(value=DEGREES, centre=DEGREES)
-def test_nearest_period_is_the_same_direction_and_near(value: float, centre: float) -> None:
-    """The nearest period differs by whole turns, and is within half a turn of the centre."""
-    found = _scalar.nearest_period(value, centre)
-    turns = (found - value) / 360.0
-    assert turns == pytest.approx(round(turns), abs=1e-9)
-    assert -180.0 - 1e-6 <= found - centre <= 180.0 + 1e-6
-
-
-@given(direction=st.floats(-180.0, 179.9), turn=st.integers(-100, 100), noise=st.floats(-1e-12, 1e-12))
-def test_an_edge_is_not_crossed_by_rounding(direction: float, turn: int, noise: float) -> None:
-    """A value on the edge of a turn stays on its side in spite of rounding."""
-    centre = 360.0 * turn
-    assert _scalar.nearest_period(direction + noise, centre) == pytest.approx(direction + centre, abs=1e-9)
-
-
-@given(angle=ANGLES, centre=ANGLES, half=st.floats(0.0, math.pi))
-def test_nearest_on_arc_stays_on_the_arc(angle: float, centre: float, half: float) -> None:
-    """The nearest angle on an arc is on the arc, and unchanged if it was there."""
-    found = _scalar.nearest_on_arc(angle, centre, half)
-    assert centre - half - 1e-9 <= found <= centre + half + 1e-9
-    if abs(angle - centre) <= half:
-        assert found == pytest.approx(angle, abs=1e-9)
-
-
-@given(size=SIZES)
-def test_root_is_total(size: float) -> None:
-    """The root of a negative number is 0, and any other root is exact."""
-    assert _scalar.root(size) == math.sqrt(max(0.0, size))
-
-
 def test_select_and_absolute() -> None:
     """Choice and absolute value work row by row."""
     values = np.array([-1.0, 2.0])

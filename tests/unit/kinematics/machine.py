@@ -17,7 +17,6 @@ from tests.mechanisms import kinematics_of
 
 Array = NDArray[np.float64]
 Values = dict[str, Array]
-ENTRIES = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
 
 
 @dataclass(frozen=True)
@@ -26,10 +25,6 @@ class Machine:
 
     kinematics: Kinematics
     constants: Values
-
-    @property
-    def axes(self) -> tuple[str, ...]:
-        return tuple(j.axis.name for j in self.kinematics.mechanism.joints)
 
     @property
     def slots(self) -> tuple[dict[str, float], ...]:
@@ -50,39 +45,13 @@ class Machine:
         return outputs
 
     def inverse(
-        self,
-        pose: Mapping[str, Array],
-        slot: Mapping[str, float | Array],
-        reference: Mapping[str, Array],
-        turns: Mapping[str, float] | None = None,
+        self, pose: Mapping[str, Array], slot: Mapping[str, float | Array], reference: Mapping[str, Array]
     ) -> tuple[Values, NDArray[np.object_]]:
-        """One branch, periods nearest to the reference unless `turns` (joint name → number) says otherwise."""
-        return self.run(self.kinematics.branch, {**pose, **slot, **self._periods(reference, turns)})
-
-    def offset_inverse(
-        self, point: Mapping[str, Array], slot: Mapping[str, float | Array], reference: Mapping[str, Array]
-    ) -> tuple[Values, NDArray[np.object_]]:
-        """One branch of the offset interface: x, y, z of the point, point_* in the flange's coordinates."""
-        return self.run(self.kinematics.offset_branch, {**point, **slot, **self._periods(reference, None)})
-
-    def signs(self, margins: Mapping[str, Array]) -> dict[str, Array]:
-        """The branch signs that margins (outputs of `forward` or `offset_configuration`) name."""
-        return {f"sigma_{b.name}": np.sign(margins[f"branch_{b.name}"]) for b in self.kinematics.branches}
-
-    def jacobian(self, axes: Mapping[str, Array]) -> Array:
-        """Matrices of shape (poses, rows, axes)."""
-        outputs, _ = self.run(self.kinematics.jacobian, axes)
-        rows, columns = len(self.kinematics.rows), len(self.axes)
-        entries = [outputs[f"j{r + 1}{c + 1}"] for r in range(rows) for c in range(columns)]
-        return np.stack(entries, axis=-1).reshape(-1, rows, columns)
-
-    def _periods(self, reference: Mapping[str, Array], turns: Mapping[str, float] | None) -> dict[str, Array | float]:
-        given = turns or {}
-        values: dict[str, Array | float] = {
-            j.turn.name: given.get(j.name, 0.0) for j in self.kinematics.mechanism.joints
-        }
-        values.update({j.reference.name: reference[j.axis.name] for j in self.kinematics.mechanism.joints})
-        return values
+        """One branch, periods nearest to the reference."""
+        values: dict[str, Array | float] = {**pose, **slot}
+        for joint in self.kinematics.mechanism.joints:
+            values |= {joint.turn.name: 0.0, joint.reference.name: reference[joint.axis.name]}
+        return self.run(self.kinematics.branch, values)
 
 
 def machine(mechanism: Mechanism, **settings: float) -> Machine:

@@ -2,34 +2,24 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning, assembly, on_plate
 from derive.description.validate import validate
-from derive.emit.language import Part
-from derive.emit.python import package as python
-from derive.emit.softmotion.library import StructuredTextFiles
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.report.self_test import self_test
 from derive.witness import witness
-from tests.text.controller import OK, Controller
-from tests.text.units import compiled_text
 from tests.unit.kinematics.machine import Values, machine
 from tests.unit.kinematics.turning_inventions import TURNING_INVENTIONS, three_rpr
 
 pytestmark = pytest.mark.slow
 
 NAMES = tuple(TURNING_INVENTIONS)
-QUICK = tuple(n for n in NAMES if n != "six cranks with rods")
 EVERY = pytest.mark.parametrize("name", NAMES, ids=str)
 COUNT = 60
 
@@ -85,83 +75,6 @@ def test_there_and_back(name: str) -> None:
     for value in pose:
         assert np.abs(again[value] - pose[value][good]).max() < 1e-9
     assert all((again[f"branch_{b.name}"] > 0).all() for b in own.kinematics.branches)
-
-
-@pytest.mark.parametrize("name", QUICK)
-def test_both_languages_answer_alike(name: str, tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Structured Text and Python, there and back, in every slot: what the interpreter answers, and singular poses."""
-    kinematics, pose = built(name), poses_of(name)
-    own = machine(kinematics.mechanism)
-    asked = [[float(pose[c][k]) for c in (*"xyz", *(f"r{i}{j}" for i in "123" for j in "123"))] for k in range(12)]
-    controller = _block(kinematics)
-    robot = json.loads(_python(kinematics, asked, tmp_path_factory.mktemp("package")))
-    zero = {j.axis.name: np.zeros(COUNT) for j in kinematics.mechanism.joints}
-    answers = 0
-    for slot, signs in enumerate(own.slots):
-        axes, status = own.inverse(pose, signs, zero)
-        data = [1 + (slot >> k & 1) for k in range(len(kinematics.branches))] + [0] * len(kinematics.period_joints)
-        for k, (row, found) in enumerate(zip(asked, (slots[slot] for slots in robot), strict=True)):
-            expected = [float(v[k]) for v in axes.values()]
-            place, rows = tuple(row[:3]), [row[3:6], row[6:9], row[9:12]]
-            text, block = controller.inverse(place, rows, data, (0.0,) * len(expected))
-            assert (text == OK) == (status[k] == Status.OK) == (found is not None)
-            if found is None:
-                continue
-            answers += 1
-            np.testing.assert_allclose(found["axes"], expected, atol=1e-9)
-            np.testing.assert_allclose(block[: len(expected)], expected, atol=1e-9)
-            text, back = controller.forward(tuple(expected))
-            assert (text == OK) == (found["position"] is not None)
-            if text == OK:
-                np.testing.assert_allclose(back[0], found["position"], atol=1e-8)
-                assert controller.is_singular(tuple(expected)) == found["singular"]
-    assert answers >= 12
-
-
-def _block(kinematics: Kinematics) -> Controller:
-    name = kinematics.mechanism.block_name
-    language = StructuredTextFiles(None)
-    texts = language.files([language.part(kinematics)])
-    text = next(v for k, v in texts.items() if k == f"{kinematics.mechanism.family}/{name}.st")
-    controller = Controller(compiled_text(f"{name}.st", text), kinematics.mechanism)
-    assert controller.initialise({p.name: p.nominal for p in kinematics.parameters}) == OK
-    return controller
-
-
-ASK = """
-import json, sys, softkin
-given, asked = json.loads(sys.stdin.read())
-robot = next(iter(softkin.catalogue().values()))(**given)
-rows = []
-for a in asked:
-    slots = []
-    for s in robot.inverse_all((a[:3], [a[3:6], a[6:9], a[9:]]), [0.0] * len(robot.AXES)):
-        if s.axes is None:
-            slots.append(None)
-            continue
-        try:
-            place = robot.forward(s.axes)[0].position
-        except softkin.KinematicsError:
-            place = None
-        slots.append({"axes": s.axes, "position": place, "singular": bool(robot.singularity(s.axes).is_singular)})
-    rows.append(slots)
-print(json.dumps(rows))
-"""
-
-
-def _python(kinematics: Kinematics, asked: list[list[float]], folder: Path) -> str:
-    part: Part = python.part(kinematics)
-    for name, text in python.files([part]).items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    given = {p.name: p.nominal for p in kinematics.mechanism.parameters}
-    done = subprocess.run(
-        [sys.executable, "-c", ASK], input=json.dumps([given, asked]), cwd=folder, text=True, capture_output=True,
-        env={"PYTHONPATH": str(folder)}, check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    return done.stdout
 
 
 def test_a_loop_that_is_not_described_as_needed_is_refused() -> None:

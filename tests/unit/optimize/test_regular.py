@@ -66,6 +66,7 @@ def test_what_is_no_arithmetic() -> None:
     assert regular(normalise("p", [Let(AXIS, sp.sin(X))], [Output("axis", AXIS)]), ()) is None
 
 
+@pytest.mark.broad
 @pytest.mark.long("Ac6", "P2C", "Pos_RRR", "Wrist2")
 @pytest.mark.parametrize("mechanism", [m for _, m in catalogue()], ids=lambda m: m.name)
 def test_the_same_answers(mechanism: Mechanism) -> None:
