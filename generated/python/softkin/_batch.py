@@ -25,8 +25,8 @@ from softkin._array import (
 )
 from softkin._array_rotation import made_rotations
 from softkin._columns import Bytes, Configurations, Mask, Poses, Rows, Table, columns, configurations
-from softkin._configuration import COINCIDE, COINCIDENT, FIRST, SECOND
-from softkin._constants import EDGE, OF_A_SEARCH
+from softkin._configuration import COINCIDE, FIRST, SECOND
+from softkin._constants import COINCIDENT, EDGE, OF_A_SEARCH
 from softkin._table import configuration_rows, numbers, starts
 from softkin._types import ConfigurationLike, FrameLike, Status
 
