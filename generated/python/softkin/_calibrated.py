@@ -7,7 +7,7 @@ dimensions, and stands on another base with another tool: its inverse stays clos
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from math import pi
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self, cast
@@ -25,6 +25,7 @@ from softkin._start import IterativeForward
 from softkin._tools import TILTS
 from softkin._types import (
     Configuration,
+    ConfigurationLike,
     Diagnosis,
     FrameLike,
     KinematicsError,
@@ -148,7 +149,7 @@ class Calibrated(Mechanism):
     def _period_bytes(self) -> list[int]:
         return self.nominal._period_bytes
 
-    def _read(self, configuration: Iterable[int] | None) -> tuple[Configuration, Turns]:
+    def _read(self, configuration: ConfigurationLike | None) -> tuple[Configuration, Turns]:
         return self.nominal._read(configuration)
 
     def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:
