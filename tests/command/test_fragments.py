@@ -14,8 +14,9 @@ from derive.mechanisms.kin_scara4_zccoupled_type1 import MECHANISM as SCARA
 from derive.pipeline import derive_one
 
 ROOT = Path(__file__).resolve().parents[2]
-RUN_ELSEWHERE = ("COMPILER.md", "GALLERY.md", "PYTHON.md")
-"""test_compiler_guide, test_gallery and test_python_guide run these; test_guide what begins with the name of a file."""
+RUN_ELSEWHERE = ("CALIBRATION.md", "COMPILER.md", "GALLERY.md", "PYTHON.md")
+"""tests/calibration, test_compiler_guide, test_gallery and test_python_guide run these; test_guide runs what begins
+with the name of a file."""
 LISTINGS = [
     (path.name, text)
     for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))

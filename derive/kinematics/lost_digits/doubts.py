@@ -61,16 +61,34 @@ def _with_lengths(machine: Machine, statements: Sequence[Statement]) -> list[Sta
         is_doubtful = is_doubtful or (isinstance(s, Require) and bool(_doubts(machine, statements, place)))
         if is_doubtful and isinstance(s, Let) and s.name in turned:
             alike = _alike(turned[s.name])
-            found += [alike] if _doubts(machine, [*found, alike], len(found)) else []
+            if _doubts(machine, [*found, *alike], len(found) + 1):
+                found = [*_free_at_zero(found, turned[s.name].angle), *alike]
     return found
 
 
-def _alike(step: Conditioning) -> Require:
-    """The condition that both lengths of a step are alike, or so large that their squares have the digits."""
-    away = CONVERGED * step.scale
-    differ = sp.Abs(step.missed) - away * (step.value + away)
-    condition = sp.Or(sp.Gt(step.value, DOUBTFUL * step.scale), sp.Le(differ, 0))
-    return Require(condition, Status.UNREACHABLE, reason=about_joint(step.angle, Why.OUT_OF_REACH))
+def _free_at_zero(statements: Sequence[Statement], angle: sp.Symbol) -> list[Statement]:
+    """The statements with the angle free where the other length of its step is zero, too: then cosine and sine would
+    both be zero.
+    """
+    own = {s.name: s.value for s in statements if isinstance(s, Let) and s.name in (cosine(angle), sine(angle))}
+    if not all(isinstance(value, Select) for value in own.values()):
+        return list(statements)
+    square = sp.Add(*[sp.fraction(value.args[1])[0] ** 2 for value in own.values()])
+    is_known = sp.Gt(square, 0)
+    chosen = {name: Select(sp.And(value.args[0], is_known), *value.args[1:]) for name, value in own.items()}
+    return [replace(s, value=chosen[s.name]) if isinstance(s, Let) and s.name in chosen else s for s in statements]
+
+
+def _alike(step: Conditioning) -> tuple[Let, Require]:
+    """By how much the lengths of a step differ, 0 if they are so large that their squares have the digits; and the
+    condition that they are alike.
+    """
+    assert step.missed is not None
+    away, bound = real(f"away_{step.angle.name}"), CONVERGED * step.scale
+    differ = sp.Abs(step.missed) / (step.value + bound)
+    rare = Select(sp.Gt(step.value, DOUBTFUL * step.scale), sp.Integer(0), differ)
+    condition = sp.Le(away, bound)
+    return Let(away, rare), Require(condition, Status.UNREACHABLE, reason=about_joint(step.angle, Why.OUT_OF_REACH))
 
 
 def _doubts(machine: Machine, statements: Sequence[Statement], place: int) -> list[sp.Basic]:

@@ -1,8 +1,8 @@
 """Direction:  cos u : sin u = along : across.
 
-One root. If the conditioning (the length of the vector that turns) vanishes, or both values do, nothing determines u,
-and u takes the value of the reference. Cosine and sine are divided by the length of (along, across) itself, so that
-sin^2 + cos^2 = 1 to rounding.
+One root. If the conditioning (the length of the vector that turns) vanishes nothing determines u, and u takes the
+value of the reference. Cosine and sine are divided by the length of (along, across) itself, so that sin^2 + cos^2 = 1
+to rounding.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ def direction(
         Let(cos_name, along, note),
         Let(sin_name, across),
         Let(length, Select(long_enough, conditioning if is_length else Root(square), sp.Integer(1))),
-        Let(cosine(angle), Select(long_enough, cos_name / length, cos_free), AT_THE_SINGULARITY),
-        Let(sine(angle), Select(long_enough, sin_name / length, sin_free)),
+        Let(cosine(angle), Select(determined, cos_name / length, cos_free), AT_THE_SINGULARITY),
+        Let(sine(angle), Select(determined, sin_name / length, sin_free)),
     )
 
 

@@ -15,9 +15,8 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
       machine_scale_times_rounding = k->machine_scale_times_rounding, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, product_in_away_q2 = k->product_in_away_q2,
       product_in_lost_digits_38 = k->product_in_lost_digits_38,
-      product_in_within_48 = k->product_in_within_48,
       quotient_in_closed_cos_q3 = k->quotient_in_closed_cos_q3,
       quotient_in_closed_sin_q3 = k->quotient_in_closed_sin_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
@@ -87,24 +86,21 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     missed += !lost_digits_38 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_q3) <= bound_of_cos_q3 ? 0.0 : 1.0;
+    missed += reach > product_in_lost_digits_38 ? 0.0 : 1.0;
     const double sign_elbow = sigma_elbow; /* elbow: +1 up, -1 down */
     /* sine squared, times the squared scale */
     const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
     const double sin_q3 = softkin_lane_root(sine_square_q3)*quotient_in_closed_sin_q3*sign_elbow;
-    const double arm_along_q2 = a2 + a3*cos_q3;
-    const double arm_across_q2 = a3*sin_q3;
-    const double size_in_within_48 = fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2
-        - reach*reach);
-    const bool within_48 = (reach > product_in_lost_digits_38)
-        || (size_in_within_48 - (machine_scale_times_rounding + reach)*product_in_within_48 <= 0.0);
-    const bool lost_digits_48 = (!within_48)
+    const bool within_49 = 0.0 <= machine_scale_times_rounding;
+    const bool lost_digits_49 = (!within_49)
         && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01) || (fabs(sin_q3) <= 0.01)
         || (fabs(ahead_q1) <= product_in_lost_digits_38));
     /* digits may be lost */
-    missed += !lost_digits_48 ? 0.0 : 1.0;
+    missed += !lost_digits_49 ? 0.0 : 1.0;
     /* q2: out of reach */
-    missed += (reach > product_in_lost_digits_38)
-        || (size_in_within_48 - product_in_within_48*(product_in_within_48 + reach) <= 0.0) ? 0.0 : 1.0;
+    missed += 0.0 <= product_in_away_q2 ? 0.0 : 1.0;
+    const double arm_along_q2 = a2 + a3*cos_q3;
+    const double arm_across_q2 = a3*sin_q3;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
     const double across_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
@@ -147,9 +143,8 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
       machine_scale_times_rounding = k->machine_scale_times_rounding, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, product_in_away_q2 = k->product_in_away_q2,
       product_in_lost_digits_38 = k->product_in_lost_digits_38,
-      product_in_within_48 = k->product_in_within_48,
       quotient_in_closed_cos_q3 = k->quotient_in_closed_cos_q3,
       quotient_in_closed_sin_q3 = k->quotient_in_closed_sin_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
@@ -303,69 +298,50 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
     /* digits may be lost */
     missed += !lost_digits_38_right_up ? 0.0 : 1.0;
+    missed += reach_left_down > product_in_lost_digits_38 ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down;
     const double sin_q3_left_up_down = softkin_lane_root(sine_square_q3_left_down)*quotient_in_closed_sin_q3;
-    const double arm_along_q2_left_down = a2 + a3*cos_q3_left_down;
-    const double arm_across_q2_left_up_down = a3*sin_q3_left_up_down;
-    const double size_in_within_48_left_up_down = fabs(arm_across_q2_left_up_down*arm_across_q2_left_up_down
-        + arm_along_q2_left_down*arm_along_q2_left_down - reach_left_down*reach_left_down);
-    const bool within_48_left_up_down = (reach_left_down > product_in_lost_digits_38)
-        || (size_in_within_48_left_up_down
-        - (machine_scale_times_rounding + reach_left_down)*product_in_within_48 <= 0.0);
-    const bool lost_digits_48_left_up_down = (!within_48_left_up_down)
+    const bool within_49_left_up_down = 0.0 <= machine_scale_times_rounding;
+    const bool lost_digits_49_left_up_down = (!within_49_left_up_down)
         && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_down) <= 0.01)
         || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
     /* digits may be lost */
-    missed += !lost_digits_48_left_up_down ? 0.0 : 1.0;
+    missed += !lost_digits_49_left_up_down ? 0.0 : 1.0;
+    missed += reach_left_up > product_in_lost_digits_38 ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
     const double sin_q3_left_up_up = softkin_lane_root(sine_square_q3_left_up)*quotient_in_closed_sin_q3;
-    const double arm_along_q2_left_up = a2 + a3*cos_q3_left_up;
-    const double arm_across_q2_left_up_up = a3*sin_q3_left_up_up;
-    const double size_in_within_48_left_up_up = fabs(arm_across_q2_left_up_up*arm_across_q2_left_up_up
-        + arm_along_q2_left_up*arm_along_q2_left_up - reach_left_up*reach_left_up);
-    const bool within_48_left_up_up = (reach_left_up > product_in_lost_digits_38)
-        || (size_in_within_48_left_up_up
-        - (machine_scale_times_rounding + reach_left_up)*product_in_within_48 <= 0.0);
-    const bool lost_digits_48_left_up_up = (!within_48_left_up_up)
+    const bool within_49_left_up_up = 0.0 <= machine_scale_times_rounding;
+    const bool lost_digits_49_left_up_up = (!within_49_left_up_up)
         && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_up) <= 0.01)
         || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
     /* digits may be lost */
-    missed += !lost_digits_48_left_up_up ? 0.0 : 1.0;
+    missed += !lost_digits_49_left_up_up ? 0.0 : 1.0;
+    missed += reach_right_down > product_in_lost_digits_38 ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
     const double sin_q3_right_up_down = softkin_lane_root(sine_square_q3_right_down)
         *quotient_in_closed_sin_q3;
-    const double arm_along_q2_right_down = a2 + a3*cos_q3_right_down;
-    const double arm_across_q2_right_up_down = a3*sin_q3_right_up_down;
-    const double size_in_within_48_right_up_down = fabs(arm_across_q2_right_up_down
-        *arm_across_q2_right_up_down + arm_along_q2_right_down*arm_along_q2_right_down
-        - reach_right_down*reach_right_down);
-    const bool within_48_right_up_down = (reach_right_down > product_in_lost_digits_38)
-        || (size_in_within_48_right_up_down
-        - (machine_scale_times_rounding + reach_right_down)*product_in_within_48 <= 0.0);
-    const bool lost_digits_48_right_up_down = (!within_48_right_up_down)
+    const bool within_49_right_up_down = 0.0 <= machine_scale_times_rounding;
+    const bool lost_digits_49_right_up_down = (!within_49_right_up_down)
         && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_down) <= 0.01)
         || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
     /* digits may be lost */
-    missed += !lost_digits_48_right_up_down ? 0.0 : 1.0;
+    missed += !lost_digits_49_right_up_down ? 0.0 : 1.0;
+    missed += reach_right_up > product_in_lost_digits_38 ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
     const double sin_q3_right_up_up = softkin_lane_root(sine_square_q3_right_up)*quotient_in_closed_sin_q3;
-    const double arm_along_q2_right_up = a2 + a3*cos_q3_right_up;
-    const double arm_across_q2_right_up_up = a3*sin_q3_right_up_up;
-    const double size_in_within_48_right_up_up = fabs(arm_across_q2_right_up_up*arm_across_q2_right_up_up
-        + arm_along_q2_right_up*arm_along_q2_right_up - reach_right_up*reach_right_up);
-    const bool within_48_right_up_up = (reach_right_up > product_in_lost_digits_38)
-        || (size_in_within_48_right_up_up
-        - (machine_scale_times_rounding + reach_right_up)*product_in_within_48 <= 0.0);
-    const bool lost_digits_48_right_up_up = (!within_48_right_up_up)
+    const bool within_49_right_up_up = 0.0 <= machine_scale_times_rounding;
+    const bool lost_digits_49_right_up_up = (!within_49_right_up_up)
         && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_up) <= 0.01)
         || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
     /* digits may be lost */
-    missed += !lost_digits_48_right_up_up ? 0.0 : 1.0;
+    missed += !lost_digits_49_right_up_up ? 0.0 : 1.0;
+    const double arm_along_q2_left_down = a2 + a3*cos_q3_left_down;
     const double product_in_along_q2_left_up_down = arm_along_q2_left_down*wrist_x_from_q1_left_down;
+    const double arm_across_q2_left_up_down = a3*sin_q3_left_up_down;
     const double product_in_along_q2_left_up_down_2 = arm_across_q2_left_up_down*wrist_z_from_q1_left_down;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2_left_up_down = product_in_along_q2_left_up_down
@@ -377,7 +353,9 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     missed += reach_left_down > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += across_q2_left_up_down*across_q2_left_up_down
         + along_q2_left_up_down*along_q2_left_up_down > 0.0 ? 0.0 : 1.0;
+    const double arm_along_q2_left_up = a2 + a3*cos_q3_left_up;
     const double product_in_along_q2_left_up_up = arm_along_q2_left_up*wrist_x_from_q1_left_up;
+    const double arm_across_q2_left_up_up = a3*sin_q3_left_up_up;
     const double product_in_along_q2_left_up_up_2 = arm_across_q2_left_up_up*wrist_z_from_q1_left_up;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2_left_up_up = product_in_along_q2_left_up_up + product_in_along_q2_left_up_up_2;
@@ -399,7 +377,9 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double across_q2_left_down_up = product_in_across_q2_left_up_up + product_in_across_q2_left_up_up_2;
     missed += across_q2_left_down_up*across_q2_left_down_up
         + along_q2_left_down_up*along_q2_left_down_up > 0.0 ? 0.0 : 1.0;
+    const double arm_along_q2_right_down = a2 + a3*cos_q3_right_down;
     const double product_in_along_q2_right_up_down = arm_along_q2_right_down*wrist_x_from_q1_right_down;
+    const double arm_across_q2_right_up_down = a3*sin_q3_right_up_down;
     const double product_in_along_q2_right_up_down_2 = arm_across_q2_right_up_down*wrist_z_from_q1_right_down;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2_right_up_down = product_in_along_q2_right_up_down
@@ -411,7 +391,9 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     missed += reach_right_down > machine_scale_times_free_angle ? 0.0 : 1.0;
     missed += across_q2_right_up_down*across_q2_right_up_down
         + along_q2_right_up_down*along_q2_right_up_down > 0.0 ? 0.0 : 1.0;
+    const double arm_along_q2_right_up = a2 + a3*cos_q3_right_up;
     const double product_in_along_q2_right_up_up = arm_along_q2_right_up*wrist_x_from_q1_right_up;
+    const double arm_across_q2_right_up_up = a3*sin_q3_right_up_up;
     const double product_in_along_q2_right_up_up_2 = arm_across_q2_right_up_up*wrist_z_from_q1_right_up;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2_right_up_up = product_in_along_q2_right_up_up + product_in_along_q2_right_up_up_2;
@@ -439,9 +421,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double refusal_left_down = fabs(cos_q3_left_down) <= bound_of_cos_q3 ? 0 : 3;
     /* q2: out of reach */
     const double refusal_left_up_down = refusal_left_down > 0 ? refusal_left_down
-        : ((reach_left_down > product_in_lost_digits_38)
-        || (size_in_within_48_left_up_down
-        - product_in_within_48*(product_in_within_48 + reach_left_down) <= 0.0) ? 0 : 3);
+        : (0.0 <= product_in_away_q2 ? 0 : 3);
     const double axis_a1_left = offset_a1 + softkin_lane_angle(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
     const double angle_of_arm_along_q2_left_up_down = softkin_lane_angle(arm_across_q2_left_up_down,
         arm_along_q2_left_down);
@@ -467,9 +447,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double refusal_left_up = fabs(cos_q3_left_up) <= bound_of_cos_q3 ? 0 : 3;
     /* q2: out of reach */
     const double refusal_left_up_up = refusal_left_up > 0 ? refusal_left_up
-        : ((reach_left_up > product_in_lost_digits_38)
-        || (size_in_within_48_left_up_up
-        - product_in_within_48*(product_in_within_48 + reach_left_up) <= 0.0) ? 0 : 3);
+        : (0.0 <= product_in_away_q2 ? 0 : 3);
     const double angle_of_arm_along_q2_left_up_up = softkin_lane_angle(arm_across_q2_left_up_up,
         arm_along_q2_left_up);
     const double angle_of_wrist_x_from_q1_left_up = softkin_lane_angle(wrist_z_from_q1_left_up,
@@ -502,9 +480,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double refusal_right_down = fabs(cos_q3_right_down) <= bound_of_cos_q3 ? 0 : 3;
     /* q2: out of reach */
     const double refusal_right_up_down = refusal_right_down > 0 ? refusal_right_down
-        : ((reach_right_down > product_in_lost_digits_38)
-        || (size_in_within_48_right_up_down
-        - product_in_within_48*(product_in_within_48 + reach_right_down) <= 0.0) ? 0 : 3);
+        : (0.0 <= product_in_away_q2 ? 0 : 3);
     const double axis_a1_right = offset_a1 + softkin_lane_angle(sin_q1_right, cos_q1_right)*SOFTKIN_RADIAN;
     const double angle_of_arm_along_q2_right_up_down = softkin_lane_angle(arm_across_q2_right_up_down,
         arm_along_q2_right_down);
@@ -530,9 +506,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double refusal_right_up = fabs(cos_q3_right_up) <= bound_of_cos_q3 ? 0 : 3;
     /* q2: out of reach */
     const double refusal_right_up_up = refusal_right_up > 0 ? refusal_right_up
-        : ((reach_right_up > product_in_lost_digits_38)
-        || (size_in_within_48_right_up_up
-        - product_in_within_48*(product_in_within_48 + reach_right_up) <= 0.0) ? 0 : 3);
+        : (0.0 <= product_in_away_q2 ? 0 : 3);
     const double angle_of_arm_along_q2_right_up_up = softkin_lane_angle(arm_across_q2_right_up_up,
         arm_along_q2_right_up);
     const double angle_of_wrist_x_from_q1_right_up = softkin_lane_angle(wrist_z_from_q1_right_up,

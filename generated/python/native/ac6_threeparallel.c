@@ -711,16 +711,15 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
   const double sin_q3 = softkin_root(sine_square_q3)*k->quotient_in_closed_sin_q3*sign_elbow;
   const double arm_across_q2 = k->a3*sin_q3;
-  const double size_in_within_48 = fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2
-      - reach*reach);
-  const bool within_48 = (reach > k->product_in_lost_digits_38)
-      || (size_in_within_48 - (k->machine_scale_times_rounding + reach)*k->product_in_within_48 <= 0.0);
-  const bool lost_digits_48 = (!within_48)
+  const double away_q2 = reach > k->product_in_lost_digits_38 ? 0.0
+      : fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2 - reach*reach)
+      /(k->product_in_away_q2 + reach);
+  const bool within_49 = away_q2 <= k->machine_scale_times_rounding;
+  const bool lost_digits_49 = (!within_49)
       && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01) || (fabs(sin_q3) <= 0.01)
       || (fabs(ahead_q1) <= k->product_in_lost_digits_38));
   /* q2: out of reach */
-  if (!(lost_digits_48 || (reach > k->product_in_lost_digits_38)
-      || (size_in_within_48 - k->product_in_within_48*(k->product_in_within_48 + reach) <= 0.0))) {
+  if (!(lost_digits_49 || (away_q2 <= k->product_in_away_q2))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   /* A1: without a commanded turn, the value nearest to this */
@@ -774,7 +773,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       near_a6);
   /* if digits were lost, steps on the closure meet the pose */
   double results[7] = {0.0};
-  if (lost_digits_38 || lost_digits_48) {
+  if (lost_digits_38 || lost_digits_49) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, sigma_elbow, sigma_shoulder,
         sigma_wrist, turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6, r11, r12, r13, r21, r22, r23, r31,
         r32, r33, x, y, z, axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6};
@@ -793,8 +792,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
   }
   /* q2: out of reach */
-  if (!(met || (reach > k->product_in_lost_digits_38)
-      || (size_in_within_48 - k->product_in_within_48*(k->product_in_within_48 + reach) <= 0.0))) {
+  if (!(met || (away_q2 <= k->product_in_away_q2))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
@@ -1332,15 +1330,15 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_q3_left_up_down = softkin_root(sine_square_q3_left_down)*k->quotient_in_closed_sin_q3;
   const double arm_along_q2_left_down = k->a2 + k->a3*cos_q3_left_down;
   const double arm_across_q2_left_up_down = k->a3*sin_q3_left_up_down;
-  const double size_in_within_48_left_up_down = fabs(arm_across_q2_left_up_down*arm_across_q2_left_up_down
-      + arm_along_q2_left_down*arm_along_q2_left_down - reach_left_down*reach_left_down);
-  const bool within_48_left_up_down = (reach_left_down > k->product_in_lost_digits_38)
-      || (size_in_within_48_left_up_down
-      - (k->machine_scale_times_rounding + reach_left_down)*k->product_in_within_48 <= 0.0);
-  const bool lost_digits_48_left_up_down = (!within_48_left_up_down)
+  const double away_q2_left_up_down = reach_left_down > k->product_in_lost_digits_38 ? 0.0
+      : fabs(arm_across_q2_left_up_down*arm_across_q2_left_up_down
+      + arm_along_q2_left_down*arm_along_q2_left_down - reach_left_down*reach_left_down)
+      /(k->product_in_away_q2 + reach_left_down);
+  const bool within_49_left_up_down = away_q2_left_up_down <= k->machine_scale_times_rounding;
+  const bool lost_digits_49_left_up_down = (!within_49_left_up_down)
       && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_down) <= 0.01)
       || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
-  if (!(!lost_digits_48_left_up_down)) {
+  if (!(!lost_digits_49_left_up_down)) {
     return false;
   }
   /* sine squared, times the squared scale */
@@ -1348,15 +1346,14 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_q3_left_up_up = softkin_root(sine_square_q3_left_up)*k->quotient_in_closed_sin_q3;
   const double arm_along_q2_left_up = k->a2 + k->a3*cos_q3_left_up;
   const double arm_across_q2_left_up_up = k->a3*sin_q3_left_up_up;
-  const double size_in_within_48_left_up_up = fabs(arm_across_q2_left_up_up*arm_across_q2_left_up_up
-      + arm_along_q2_left_up*arm_along_q2_left_up - reach_left_up*reach_left_up);
-  const bool within_48_left_up_up = (reach_left_up > k->product_in_lost_digits_38)
-      || (size_in_within_48_left_up_up
-      - (k->machine_scale_times_rounding + reach_left_up)*k->product_in_within_48 <= 0.0);
-  const bool lost_digits_48_left_up_up = (!within_48_left_up_up)
+  const double away_q2_left_up_up = reach_left_up > k->product_in_lost_digits_38 ? 0.0
+      : fabs(arm_across_q2_left_up_up*arm_across_q2_left_up_up + arm_along_q2_left_up*arm_along_q2_left_up
+      - reach_left_up*reach_left_up)/(k->product_in_away_q2 + reach_left_up);
+  const bool within_49_left_up_up = away_q2_left_up_up <= k->machine_scale_times_rounding;
+  const bool lost_digits_49_left_up_up = (!within_49_left_up_up)
       && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_up) <= 0.01)
       || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
-  if (!(!lost_digits_48_left_up_up)) {
+  if (!(!lost_digits_49_left_up_up)) {
     return false;
   }
   /* sine squared, times the squared scale */
@@ -1364,15 +1361,15 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_q3_right_up_down = softkin_root(sine_square_q3_right_down)*k->quotient_in_closed_sin_q3;
   const double arm_along_q2_right_down = k->a2 + k->a3*cos_q3_right_down;
   const double arm_across_q2_right_up_down = k->a3*sin_q3_right_up_down;
-  const double size_in_within_48_right_up_down = fabs(arm_across_q2_right_up_down*arm_across_q2_right_up_down
-      + arm_along_q2_right_down*arm_along_q2_right_down - reach_right_down*reach_right_down);
-  const bool within_48_right_up_down = (reach_right_down > k->product_in_lost_digits_38)
-      || (size_in_within_48_right_up_down
-      - (k->machine_scale_times_rounding + reach_right_down)*k->product_in_within_48 <= 0.0);
-  const bool lost_digits_48_right_up_down = (!within_48_right_up_down)
+  const double away_q2_right_up_down = reach_right_down > k->product_in_lost_digits_38 ? 0.0
+      : fabs(arm_across_q2_right_up_down*arm_across_q2_right_up_down
+      + arm_along_q2_right_down*arm_along_q2_right_down - reach_right_down*reach_right_down)
+      /(k->product_in_away_q2 + reach_right_down);
+  const bool within_49_right_up_down = away_q2_right_up_down <= k->machine_scale_times_rounding;
+  const bool lost_digits_49_right_up_down = (!within_49_right_up_down)
       && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_down) <= 0.01)
       || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
-  if (!(!lost_digits_48_right_up_down)) {
+  if (!(!lost_digits_49_right_up_down)) {
     return false;
   }
   /* sine squared, times the squared scale */
@@ -1380,23 +1377,20 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_q3_right_up_up = softkin_root(sine_square_q3_right_up)*k->quotient_in_closed_sin_q3;
   const double arm_along_q2_right_up = k->a2 + k->a3*cos_q3_right_up;
   const double arm_across_q2_right_up_up = k->a3*sin_q3_right_up_up;
-  const double size_in_within_48_right_up_up = fabs(arm_across_q2_right_up_up*arm_across_q2_right_up_up
-      + arm_along_q2_right_up*arm_along_q2_right_up - reach_right_up*reach_right_up);
-  const bool within_48_right_up_up = (reach_right_up > k->product_in_lost_digits_38)
-      || (size_in_within_48_right_up_up
-      - (k->machine_scale_times_rounding + reach_right_up)*k->product_in_within_48 <= 0.0);
-  const bool lost_digits_48_right_up_up = (!within_48_right_up_up)
+  const double away_q2_right_up_up = reach_right_up > k->product_in_lost_digits_38 ? 0.0
+      : fabs(arm_across_q2_right_up_up*arm_across_q2_right_up_up
+      + arm_along_q2_right_up*arm_along_q2_right_up - reach_right_up*reach_right_up)
+      /(k->product_in_away_q2 + reach_right_up);
+  const bool within_49_right_up_up = away_q2_right_up_up <= k->machine_scale_times_rounding;
+  const bool lost_digits_49_right_up_up = (!within_49_right_up_up)
       && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_up) <= 0.01)
       || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
-  if (!(!lost_digits_48_right_up_up)) {
+  if (!(!lost_digits_49_right_up_up)) {
     return false;
   }
   int refusal_left_up_down;
   if (fabs(cos_q3_left_down) <= k->bound_of_cos_q3) {
-    /* q2: out of reach */
-    refusal_left_up_down = (reach_left_down > k->product_in_lost_digits_38)
-        || (size_in_within_48_left_up_down
-        - k->product_in_within_48*(k->product_in_within_48 + reach_left_down) <= 0.0) ? 0 : 3;
+    refusal_left_up_down = away_q2_left_up_down <= k->product_in_away_q2 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_left_up_down = 3; /* q2: out of reach */
   }
@@ -1428,10 +1422,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a5_left_down = k->offset_a5 + quotient_in_axis_a5_left_down;
   int refusal_left_up_up;
   if (fabs(cos_q3_left_up) <= k->bound_of_cos_q3) {
-    /* q2: out of reach */
-    refusal_left_up_up = (reach_left_up > k->product_in_lost_digits_38)
-        || (size_in_within_48_left_up_up
-        - k->product_in_within_48*(k->product_in_within_48 + reach_left_up) <= 0.0) ? 0 : 3;
+    refusal_left_up_up = away_q2_left_up_up <= k->product_in_away_q2 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_left_up_up = 3; /* q2: out of reach */
   }
@@ -1485,9 +1476,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   int refusal_right_up_down;
   if (fabs(cos_q3_right_down) <= k->bound_of_cos_q3) {
     /* q2: out of reach */
-    refusal_right_up_down = (reach_right_down > k->product_in_lost_digits_38)
-        || (size_in_within_48_right_up_down
-        - k->product_in_within_48*(k->product_in_within_48 + reach_right_down) <= 0.0) ? 0 : 3;
+    refusal_right_up_down = away_q2_right_up_down <= k->product_in_away_q2 ? 0 : 3;
   } else {
     refusal_right_up_down = 3; /* q2: out of reach */
   }
@@ -1521,10 +1510,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a5_right_down = k->offset_a5 + quotient_in_axis_a5_right_down;
   int refusal_right_up_up;
   if (fabs(cos_q3_right_up) <= k->bound_of_cos_q3) {
-    /* q2: out of reach */
-    refusal_right_up_up = (reach_right_up > k->product_in_lost_digits_38)
-        || (size_in_within_48_right_up_up
-        - k->product_in_within_48*(k->product_in_within_48 + reach_right_up) <= 0.0) ? 0 : 3;
+    refusal_right_up_up = away_q2_right_up_up <= k->product_in_away_q2 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_right_up_up = 3; /* q2: out of reach */
   }
@@ -1683,8 +1669,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double bound_of_cos_q3 = 1.0000000000005 + 5e-16*machine_scale*machine_scale/(p->a2*p->a3);
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double product_in_lost_digits_38 = 0.01*machine_scale;
+  const double product_in_away_q2 = 1e-11*machine_scale;
   const double machine_scale_times_rounding = 1e-12*machine_scale;
-  const double product_in_within_48 = 1e-11*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double a2_plus_a3 = p->a2 + p->a3;
   const double a2_minus_a3 = p->a2 - p->a3;
@@ -1731,8 +1717,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.bound_of_cos_q3 = bound_of_cos_q3;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.product_in_lost_digits_38 = product_in_lost_digits_38;
+  made.product_in_away_q2 = product_in_away_q2;
   made.machine_scale_times_rounding = machine_scale_times_rounding;
-  made.product_in_within_48 = product_in_within_48;
   made.one_by_machine_scale = one_by_machine_scale;
   made.a2_plus_a3 = a2_plus_a3;
   made.a2_minus_a3 = a2_minus_a3;

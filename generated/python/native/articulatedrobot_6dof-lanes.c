@@ -17,10 +17,9 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
       machine_scale_times_rounding = k->machine_scale_times_rounding, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, product_in_away_q2 = k->product_in_away_q2,
       product_in_lost_digits_23 = k->product_in_lost_digits_23,
-      product_in_lost_digits_35 = k->product_in_lost_digits_35,
-      product_in_within_35 = k->product_in_within_35, rounding_q1 = k->rounding_q1,
+      product_in_lost_digits_36 = k->product_in_lost_digits_36, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
       single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0;
@@ -68,6 +67,7 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     missed += !lost_digits_23 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_swing_q3) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += reach > product_in_lost_digits_23 ? 0.0 : 1.0;
     const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
     /* sine squared, times the squared scale */
     const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
@@ -75,21 +75,17 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3;
     const double sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3;
+    const bool within_36 = 0.0 <= machine_scale_times_rounding;
+    const bool lost_digits_36 = (!within_36)
+        && ((fabs(ahead_q1) <= product_in_lost_digits_23)
+        || (fabs(a2_times_a3_times_2*sin_q3 - a2_times_d4_times_2*cos_q3) <= product_in_lost_digits_36));
+    /* digits may be lost */
+    missed += !lost_digits_36 ? 0.0 : 1.0;
+    /* q2: out of reach */
+    missed += 0.0 <= product_in_away_q2 ? 0.0 : 1.0;
+    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_q2 = -effective_q3*sin_swing_q3;
     const double arm_across_q2 = a2 + effective_q3*cos_swing_q3;
-    const double size_in_within_35 = fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2
-        - reach*reach);
-    const bool within_35 = (reach > product_in_lost_digits_23)
-        || (size_in_within_35 - (machine_scale_times_rounding + reach)*product_in_within_35 <= 0.0);
-    const bool lost_digits_35 = (!within_35)
-        && ((fabs(ahead_q1) <= product_in_lost_digits_23)
-        || (fabs(a2_times_a3_times_2*sin_q3 - a2_times_d4_times_2*cos_q3) <= product_in_lost_digits_35));
-    /* digits may be lost */
-    missed += !lost_digits_35 ? 0.0 : 1.0;
-    /* q2: out of reach */
-    missed += (reach > product_in_lost_digits_23)
-        || (size_in_within_35 - product_in_within_35*(product_in_within_35 + reach) <= 0.0) ? 0.0 : 1.0;
-    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
     const double across_q2 = arm_along_q2*wrist_z_from_q1 - arm_across_q2*wrist_x_from_q1;
@@ -160,13 +156,12 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
       machine_scale_times_rounding = k->machine_scale_times_rounding, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
-      product_in_lost_digits_23 = k->product_in_lost_digits_23,
-      product_in_within_35 = k->product_in_within_35, rounding_q1 = k->rounding_q1,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, product_in_away_q2 = k->product_in_away_q2,
+      product_in_lost_digits_23 = k->product_in_lost_digits_23, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
       single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0;
-  const double product_in_lost_digits_35_front_down = 0.02*a2*effective_q3;
+  const double product_in_lost_digits_36_front_down = 0.02*a2*effective_q3;
   const double a2_plus_effective_q3_2 = a2 + effective_q3;
   const double a2_minus_effective_q3_2 = a2 - effective_q3;
   const double d4_by_effective_q3_2 = d4/effective_q3;
@@ -234,6 +229,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const bool lost_digits_23_back = (!within_23_back) && (fabs(ahead_q1_front) <= product_in_lost_digits_23);
     /* digits may be lost */
     missed += !lost_digits_23_back ? 0.0 : 1.0;
+    missed += reach_front > product_in_lost_digits_23 ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
     const double sin_swing_q3_front_up = 2.0*softkin_lane_root(sine_square_q3_front)/sum_q3_front;
@@ -244,28 +240,23 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double product_in_sin_q3_front_down = d4_by_effective_q3_2*cos_swing_q3_front;
     const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2*sin_swing_q3_front_up;
     const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
-    const double arm_along_q2_front_down = effective_q3*sin_swing_q3_front_up;
-    const double arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front;
-    const double size_in_within_35_front_down = fabs(arm_across_q2_front*arm_across_q2_front
-        + arm_along_q2_front_down*arm_along_q2_front_down - reach_front*reach_front);
-    const bool within_35_front_down = (reach_front > product_in_lost_digits_23)
-        || (size_in_within_35_front_down
-        - (machine_scale_times_rounding + reach_front)*product_in_within_35 <= 0.0);
-    const bool lost_digits_35_front_down = (!within_35_front_down)
+    const bool within_36_front_down = 0.0 <= machine_scale_times_rounding;
+    const bool lost_digits_36_front_down = (!within_36_front_down)
         && ((fabs(ahead_q1_front) <= product_in_lost_digits_23)
         || (fabs(a2_times_a3_times_2*sin_q3_front_down
-        - a2_times_d4_times_2*cos_q3_front_down) <= product_in_lost_digits_35_front_down));
+        - a2_times_d4_times_2*cos_q3_front_down) <= product_in_lost_digits_36_front_down));
     /* digits may be lost */
-    missed += !lost_digits_35_front_down ? 0.0 : 1.0;
+    missed += !lost_digits_36_front_down ? 0.0 : 1.0;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
     const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
-    const bool lost_digits_35_front_up = (!within_35_front_down)
+    const bool lost_digits_36_front_up = (!within_36_front_down)
         && ((fabs(ahead_q1_front) <= product_in_lost_digits_23)
         || (fabs(a2_times_a3_times_2*sin_q3_front_up
-        - a2_times_d4_times_2*cos_q3_front_up) <= product_in_lost_digits_35_front_down));
+        - a2_times_d4_times_2*cos_q3_front_up) <= product_in_lost_digits_36_front_down));
     /* digits may be lost */
-    missed += !lost_digits_35_front_up ? 0.0 : 1.0;
+    missed += !lost_digits_36_front_up ? 0.0 : 1.0;
+    missed += reach_back > product_in_lost_digits_23 ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
     const double sin_swing_q3_back_up = 2.0*softkin_lane_root(sine_square_q3_back)/sum_q3_back;
@@ -276,30 +267,26 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double product_in_sin_q3_back_down = d4_by_effective_q3_2*cos_swing_q3_back;
     const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2*sin_swing_q3_back_up;
     const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
-    const double arm_along_q2_back_down = effective_q3*sin_swing_q3_back_up;
-    const double arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back;
-    const double size_in_within_35_back_down = fabs(arm_across_q2_back*arm_across_q2_back
-        + arm_along_q2_back_down*arm_along_q2_back_down - reach_back*reach_back);
-    const bool within_35_back_down = (reach_back > product_in_lost_digits_23)
-        || (size_in_within_35_back_down
-        - (machine_scale_times_rounding + reach_back)*product_in_within_35 <= 0.0);
-    const bool lost_digits_35_back_down = (!within_35_back_down)
+    const bool within_36_back_down = 0.0 <= machine_scale_times_rounding;
+    const bool lost_digits_36_back_down = (!within_36_back_down)
         && ((fabs(ahead_q1_front) <= product_in_lost_digits_23)
         || (fabs(a2_times_a3_times_2*sin_q3_back_down
-        - a2_times_d4_times_2*cos_q3_back_down) <= product_in_lost_digits_35_front_down));
+        - a2_times_d4_times_2*cos_q3_back_down) <= product_in_lost_digits_36_front_down));
     /* digits may be lost */
-    missed += !lost_digits_35_back_down ? 0.0 : 1.0;
+    missed += !lost_digits_36_back_down ? 0.0 : 1.0;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
     const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
-    const bool lost_digits_35_back_up = (!within_35_back_down)
+    const bool lost_digits_36_back_up = (!within_36_back_down)
         && ((fabs(ahead_q1_front) <= product_in_lost_digits_23)
         || (fabs(a2_times_a3_times_2*sin_q3_back_up
-        - a2_times_d4_times_2*cos_q3_back_up) <= product_in_lost_digits_35_front_down));
+        - a2_times_d4_times_2*cos_q3_back_up) <= product_in_lost_digits_36_front_down));
     /* digits may be lost */
-    missed += !lost_digits_35_back_up ? 0.0 : 1.0;
+    missed += !lost_digits_36_back_up ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
+    const double arm_along_q2_front_down = effective_q3*sin_swing_q3_front_up;
     const double product_in_along_q2_front_down = arm_along_q2_front_down*wrist_x_from_q1_front;
+    const double arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front;
     const double product_in_along_q2_front_down_2 = arm_across_q2_front*wrist_z_from_q1;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2_front_down = product_in_along_q2_front_down + product_in_along_q2_front_down_2;
@@ -352,7 +339,9 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
         + r33_from_q123_front_up*r33_from_q123_front_up);
     missed += radius_q4_front_up > 2e-12 ? 0.0 : 1.0;
     missed += radius_q4_front_up > 0.1 ? 0.0 : 1.0;
+    const double arm_along_q2_back_down = effective_q3*sin_swing_q3_back_up;
     const double product_in_along_q2_back_down = arm_along_q2_back_down*wrist_x_from_q1_back;
+    const double arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back;
     const double arm_across_q2_back_times_wrist_z_from_q1 = arm_across_q2_back*wrist_z_from_q1;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2_back_down = arm_across_q2_back_times_wrist_z_from_q1
@@ -403,10 +392,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* q3: out of reach */
     const double refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
     /* q2: out of reach */
-    const double refusal_front_down = refusal_front > 0 ? refusal_front
-        : ((reach_front > product_in_lost_digits_23)
-        || (size_in_within_35_front_down - product_in_within_35*(product_in_within_35 + reach_front) <= 0.0)
-        ? 0 : 3);
+    const double refusal_front_down = refusal_front > 0 ? refusal_front : (0.0 <= product_in_away_q2 ? 0 : 3);
     const double axis_a1_front = offset_a1 + softkin_lane_angle(sin_q1_front, cos_q1_front)*SOFTKIN_RADIAN;
     const double axis_a2_front_down = offset_a2
         + softkin_lane_angle(sin_q2_front_down, cos_q2_front_down)*SOFTKIN_RADIAN;
@@ -461,10 +447,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* q3: out of reach */
     const double refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3;
     /* q2: out of reach */
-    const double refusal_back_down = refusal_back > 0 ? refusal_back
-        : ((reach_back > product_in_lost_digits_23)
-        || (size_in_within_35_back_down - product_in_within_35*(product_in_within_35 + reach_back) <= 0.0)
-        ? 0 : 3);
+    const double refusal_back_down = refusal_back > 0 ? refusal_back : (0.0 <= product_in_away_q2 ? 0 : 3);
     const double axis_a1_back = offset_a1 + softkin_lane_angle(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
     const double axis_a2_back_down = offset_a2
         + softkin_lane_angle(sin_q2_back_down, cos_q2_back_down)*SOFTKIN_RADIAN;

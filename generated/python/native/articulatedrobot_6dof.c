@@ -716,20 +716,19 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sin_swing_q3 = -2.0*softkin_root(sine_square_q3)*sign_elbow/divisor_of_cos_q3;
   const double arm_along_q2 = -k->effective_q3*sin_swing_q3;
   const double arm_across_q2 = k->a2 + k->effective_q3*cos_swing_q3;
-  const double size_in_within_35 = fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2
-      - reach*reach);
+  const double away_q2 = reach > k->product_in_lost_digits_23 ? 0.0
+      : fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2 - reach*reach)
+      /(k->product_in_away_q2 + reach);
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_q3 = k->a3_by_effective_q3*cos_swing_q3 - k->d4_by_effective_q3*sin_swing_q3;
   const double sin_q3 = k->a3_by_effective_q3*sin_swing_q3 + k->d4_by_effective_q3*cos_swing_q3;
-  const bool within_35 = (reach > k->product_in_lost_digits_23)
-      || (size_in_within_35 - (k->machine_scale_times_rounding + reach)*k->product_in_within_35 <= 0.0);
-  const bool lost_digits_35 = (!within_35)
+  const bool within_36 = away_q2 <= k->machine_scale_times_rounding;
+  const bool lost_digits_36 = (!within_36)
       && ((fabs(ahead_q1) <= k->product_in_lost_digits_23)
       || (fabs(k->a2_times_a3_times_2*sin_q3
-      - k->a2_times_d4_times_2*cos_q3) <= k->product_in_lost_digits_35));
+      - k->a2_times_d4_times_2*cos_q3) <= k->product_in_lost_digits_36));
   /* q2: out of reach */
-  if (!(lost_digits_35 || (reach > k->product_in_lost_digits_23)
-      || (size_in_within_35 - k->product_in_within_35*(k->product_in_within_35 + reach) <= 0.0))) {
+  if (!(lost_digits_36 || (away_q2 <= k->product_in_away_q2))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   double cos_q1, sin_q1;
@@ -827,7 +826,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       + softkin_angle_of(direction_y_q6, direction_x_q6)*SOFTKIN_RADIAN, near_a6);
   /* if digits were lost, steps on the closure meet the pose */
   double results[7] = {0.0};
-  if (lost_digits_23 || lost_digits_35) {
+  if (lost_digits_23 || lost_digits_36) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, sigma_arm, sigma_elbow,
         sigma_hand, turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6, r11, r12, r13, r21, r22, r23, r31,
         r32, r33, x, y, z, axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6};
@@ -846,8 +845,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         - k->a2_plus_effective_q3 : fabs(k->a2_minus_effective_q3) - reach), 0);
   }
   /* q2: out of reach */
-  if (!(met || (reach > k->product_in_lost_digits_23)
-      || (size_in_within_35 - k->product_in_within_35*(k->product_in_within_35 + reach) <= 0.0))) {
+  if (!(met || (away_q2 <= k->product_in_away_q2))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
@@ -1176,7 +1174,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       r31 = frame->rotation[2][0], r32 = frame->rotation[2][1], r33 = frame->rotation[2][2],
       ref_a1 = reference[0], ref_a2 = reference[1], ref_a3 = reference[2], ref_a4 = reference[3],
       ref_a5 = reference[4], ref_a6 = reference[5];
-  const double product_in_lost_digits_35_front_down = 0.02*k->a2*k->effective_q3;
+  const double product_in_lost_digits_36_front_down = 0.02*k->a2*k->effective_q3;
   const double a2_plus_effective_q3_2 = k->a2 + k->effective_q3;
   const double a2_minus_effective_q3_2 = k->a2 - k->effective_q3;
   const double d4_by_effective_q3_2 = k->d4/k->effective_q3;
@@ -1250,26 +1248,25 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
   const double arm_along_q2_front_down = k->effective_q3*sin_swing_q3_front_up;
   const double arm_across_q2_front = k->a2 + k->effective_q3*cos_swing_q3_front;
-  const double size_in_within_35_front_down = fabs(arm_across_q2_front*arm_across_q2_front
-      + arm_along_q2_front_down*arm_along_q2_front_down - reach_front*reach_front);
-  const bool within_35_front_down = (reach_front > k->product_in_lost_digits_23)
-      || (size_in_within_35_front_down
-      - (k->machine_scale_times_rounding + reach_front)*k->product_in_within_35 <= 0.0);
-  const bool lost_digits_35_front_down = (!within_35_front_down)
+  const double away_q2_front_down = reach_front > k->product_in_lost_digits_23 ? 0.0
+      : fabs(arm_across_q2_front*arm_across_q2_front + arm_along_q2_front_down*arm_along_q2_front_down
+      - reach_front*reach_front)/(k->product_in_away_q2 + reach_front);
+  const bool within_36_front_down = away_q2_front_down <= k->machine_scale_times_rounding;
+  const bool lost_digits_36_front_down = (!within_36_front_down)
       && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
       || (fabs(k->a2_times_a3_times_2*sin_q3_front_down
-      - k->a2_times_d4_times_2*cos_q3_front_down) <= product_in_lost_digits_35_front_down));
-  if (!(!lost_digits_35_front_down)) {
+      - k->a2_times_d4_times_2*cos_q3_front_down) <= product_in_lost_digits_36_front_down));
+  if (!(!lost_digits_36_front_down)) {
     return false;
   }
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
   const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
-  const bool lost_digits_35_front_up = (!within_35_front_down)
+  const bool lost_digits_36_front_up = (!within_36_front_down)
       && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
       || (fabs(k->a2_times_a3_times_2*sin_q3_front_up
-      - k->a2_times_d4_times_2*cos_q3_front_up) <= product_in_lost_digits_35_front_down));
-  if (!(!lost_digits_35_front_up)) {
+      - k->a2_times_d4_times_2*cos_q3_front_up) <= product_in_lost_digits_36_front_down));
+  if (!(!lost_digits_36_front_up)) {
     return false;
   }
   /* sine squared, times the squared scale */
@@ -1284,34 +1281,30 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
   const double arm_along_q2_back_down = k->effective_q3*sin_swing_q3_back_up;
   const double arm_across_q2_back = k->a2 + k->effective_q3*cos_swing_q3_back;
-  const double size_in_within_35_back_down = fabs(arm_across_q2_back*arm_across_q2_back
-      + arm_along_q2_back_down*arm_along_q2_back_down - reach_back*reach_back);
-  const bool within_35_back_down = (reach_back > k->product_in_lost_digits_23)
-      || (size_in_within_35_back_down
-      - (k->machine_scale_times_rounding + reach_back)*k->product_in_within_35 <= 0.0);
-  const bool lost_digits_35_back_down = (!within_35_back_down)
+  const double away_q2_back_down = reach_back > k->product_in_lost_digits_23 ? 0.0
+      : fabs(arm_across_q2_back*arm_across_q2_back + arm_along_q2_back_down*arm_along_q2_back_down
+      - reach_back*reach_back)/(k->product_in_away_q2 + reach_back);
+  const bool within_36_back_down = away_q2_back_down <= k->machine_scale_times_rounding;
+  const bool lost_digits_36_back_down = (!within_36_back_down)
       && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
       || (fabs(k->a2_times_a3_times_2*sin_q3_back_down
-      - k->a2_times_d4_times_2*cos_q3_back_down) <= product_in_lost_digits_35_front_down));
-  if (!(!lost_digits_35_back_down)) {
+      - k->a2_times_d4_times_2*cos_q3_back_down) <= product_in_lost_digits_36_front_down));
+  if (!(!lost_digits_36_back_down)) {
     return false;
   }
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
   const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
-  const bool lost_digits_35_back_up = (!within_35_back_down)
+  const bool lost_digits_36_back_up = (!within_36_back_down)
       && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
       || (fabs(k->a2_times_a3_times_2*sin_q3_back_up
-      - k->a2_times_d4_times_2*cos_q3_back_up) <= product_in_lost_digits_35_front_down));
-  if (!(!lost_digits_35_back_up)) {
+      - k->a2_times_d4_times_2*cos_q3_back_up) <= product_in_lost_digits_36_front_down));
+  if (!(!lost_digits_36_back_up)) {
     return false;
   }
   int refusal_front_down;
   if (fabs(cos_swing_q3_front) <= 1.0000000000005) {
-    /* q2: out of reach */
-    refusal_front_down = (reach_front > k->product_in_lost_digits_23)
-        || (size_in_within_35_front_down
-        - k->product_in_within_35*(k->product_in_within_35 + reach_front) <= 0.0) ? 0 : 3;
+    refusal_front_down = away_q2_front_down <= k->product_in_away_q2 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_front_down = 3; /* q2: out of reach */
   }
@@ -1570,10 +1563,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a5_front_up_up = k->offset_a5 - quotient_in_axis_a5_front_up_down;
   int refusal_back_down;
   if (fabs(cos_swing_q3_back) <= 1.0000000000005) {
-    /* q2: out of reach */
-    refusal_back_down = (reach_back > k->product_in_lost_digits_23)
-        || (size_in_within_35_back_down
-        - k->product_in_within_35*(k->product_in_within_35 + reach_back) <= 0.0) ? 0 : 3;
+    refusal_back_down = away_q2_back_down <= k->product_in_away_q2 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_back_down = 3; /* q2: out of reach */
   }
@@ -1915,9 +1905,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
   const double product_in_lost_digits_23 = 0.01*machine_scale;
   const double a2_minus_effective_q3 = p->a2 - effective_q3;
+  const double product_in_away_q2 = 1e-11*machine_scale;
   const double machine_scale_times_rounding = 1e-12*machine_scale;
-  const double product_in_lost_digits_35 = 0.02*p->a2*effective_q3;
-  const double product_in_within_35 = 1e-11*machine_scale;
+  const double product_in_lost_digits_36 = 0.02*p->a2*effective_q3;
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double one_by_effective_q3 = 1.0/effective_q3;
@@ -1968,9 +1958,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.rounding_q1 = rounding_q1;
   made.product_in_lost_digits_23 = product_in_lost_digits_23;
   made.a2_minus_effective_q3 = a2_minus_effective_q3;
+  made.product_in_away_q2 = product_in_away_q2;
   made.machine_scale_times_rounding = machine_scale_times_rounding;
-  made.product_in_lost_digits_35 = product_in_lost_digits_35;
-  made.product_in_within_35 = product_in_within_35;
+  made.product_in_lost_digits_36 = product_in_lost_digits_36;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;
   made.one_by_effective_q3 = one_by_effective_q3;

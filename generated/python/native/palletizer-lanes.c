@@ -56,6 +56,12 @@ void palletizer_regular(const void *machine, const softkin_lanes *given,
     /* a3_from_a2: out of reach */
     missed += fabs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2 ? 0.0 : 1.0;
     missed += radius_a1 > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
+    /* polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the reference */
+    const double direction_x_a1 = sign_shoulder*x;
+    const double direction_y_a1 = sign_shoulder*y;
+    const double angle_a1 = softkin_lane_angle(direction_y_a1, direction_x_a1);
+    const double axis_a1 = offset_a1 + angle_a1*SOFTKIN_RADIAN;
     const double arm_along_a2 = link_length_1 - link_length_2*cos_swing_a3_from_a2;
     const double sign_elbow = sigma_elbow; /* elbow: +1 up, -1 down */
     /* sine squared, times the squared scale */
@@ -64,17 +70,10 @@ void palletizer_regular(const void *machine, const softkin_lanes *given,
     const double cos_a3_from_a2 = softkin_lane_root(sine_square_a3_from_a2)
         *half_by_link_length_1_by_link_length_2*sign_elbow;
     const double arm_across_a2 = link_length_2*cos_a3_from_a2;
-    /* rotation by a2 that takes the arm to its target point */
-    const double along_a2 = arm_across_a2*wrist_a1_radius + arm_along_a2*wrist_z;
-    const double across_a2 = arm_along_a2*wrist_a1_radius - arm_across_a2*wrist_z;
-    missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += across_a2*across_a2 + along_a2*along_a2 > 0.0 ? 0.0 : 1.0;
-    /* polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the reference */
-    const double direction_x_a1 = sign_shoulder*x;
-    const double direction_y_a1 = sign_shoulder*y;
-    const double angle_a1 = softkin_lane_angle(direction_y_a1, direction_x_a1);
-    const double axis_a1 = offset_a1 + angle_a1*SOFTKIN_RADIAN;
-    const double angle_a2 = softkin_lane_angle(across_a2, along_a2);
+    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
+    const double direction_x_a2 = arm_across_a2*wrist_a1_radius + arm_along_a2*wrist_z;
+    const double direction_y_a2 = arm_along_a2*wrist_a1_radius - arm_across_a2*wrist_z;
+    const double angle_a2 = softkin_lane_angle(direction_y_a2, direction_x_a2);
     const double axis_a2 = offset_a2 + angle_a2*SOFTKIN_RADIAN;
     const double angle_a3_from_a2 = softkin_lane_angle(cos_swing_a3_from_a2, cos_a3_from_a2);
     /* a3 from the sum a3_from_a2 of angles about parallel axes */
@@ -136,6 +135,12 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
     /* distance that the remaining links must span */
     const double reach_front = softkin_lane_root(wrist_z_squared
         + wrist_a1_radius_front*wrist_a1_radius_front);
+    missed += reach_front > machine_scale_times_free_angle ? 0.0 : 1.0;
+    /* coordinate of the point that the remaining links must reach */
+    const double wrist_a1_radius_back = -radius_a1 - shoulder_offset_plus_wrist_offset_x;
+    /* distance that the remaining links must span */
+    const double reach_back = softkin_lane_root(wrist_z_squared + wrist_a1_radius_back*wrist_a1_radius_back);
+    missed += reach_back > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* law of cosines for a3_from_a2 (z² + a1 radius²): 1 - cosine, times a scale */
     const double one_less_cos_a3_from_a2_front = (reach_front - link_length_1_minus_link_length_2)
         *(link_length_1_minus_link_length_2 + reach_front);
@@ -144,64 +149,17 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
         *(link_length_1_plus_link_length_2 - reach_front);
     const double cos_swing_a3_from_a2_front = (one_plus_cos_a3_from_a2_front - one_less_cos_a3_from_a2_front)
         *quotient_in_closed_cos_swing_a3_from_a2;
+    /* a3_from_a2: out of reach */
+    const double refusal_front = fabs(cos_swing_a3_from_a2_front) <= bound_of_cos_swing_a3_from_a2 ? 0 : 3;
+    const double angle_a1_front = softkin_lane_angle(y, x);
+    const double axis_a1_front = offset_a1 + angle_a1_front*SOFTKIN_RADIAN;
     const double arm_along_a2_front = link_length_1 - link_length_2*cos_swing_a3_from_a2_front;
-    const double arm_along_a2_front_times_wrist_z = arm_along_a2_front*wrist_z;
     /* sine squared, times the squared scale */
     const double sine_square_a3_from_a2_front = one_less_cos_a3_from_a2_front*one_plus_cos_a3_from_a2_front;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_a3_from_a2_front_up = softkin_lane_root(sine_square_a3_from_a2_front)
         *half_by_link_length_1_by_link_length_2;
     const double arm_across_a2_front_up = link_length_2*cos_a3_from_a2_front_up;
-    const double product_in_along_a2_front_up = arm_across_a2_front_up*wrist_a1_radius_front;
-    /* rotation by a2 that takes the arm to its target point */
-    const double along_a2_front_up = arm_along_a2_front_times_wrist_z + product_in_along_a2_front_up;
-    const double arm_across_a2_front_up_times_wrist_z = arm_across_a2_front_up*wrist_z;
-    const double product_in_across_a2_front_up = arm_along_a2_front*wrist_a1_radius_front;
-    const double across_a2_front_up = product_in_across_a2_front_up - arm_across_a2_front_up_times_wrist_z;
-    missed += reach_front > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += across_a2_front_up*across_a2_front_up + along_a2_front_up*along_a2_front_up > 0.0 ? 0.0 : 1.0;
-    /* rotation by a2 that takes the arm to its target point */
-    const double along_a2_front_down = arm_along_a2_front_times_wrist_z - product_in_along_a2_front_up;
-    const double across_a2_front_down = arm_across_a2_front_up_times_wrist_z + product_in_across_a2_front_up;
-    missed += across_a2_front_down*across_a2_front_down + along_a2_front_down*along_a2_front_down > 0.0 ? 0.0
-        : 1.0;
-    /* coordinate of the point that the remaining links must reach */
-    const double wrist_a1_radius_back = -radius_a1 - shoulder_offset_plus_wrist_offset_x;
-    /* distance that the remaining links must span */
-    const double reach_back = softkin_lane_root(wrist_z_squared + wrist_a1_radius_back*wrist_a1_radius_back);
-    /* law of cosines for a3_from_a2 (z² + a1 radius²): 1 - cosine, times a scale */
-    const double one_less_cos_a3_from_a2_back = (reach_back - link_length_1_minus_link_length_2)
-        *(link_length_1_minus_link_length_2 + reach_back);
-    /* 1 + cosine, times the scale */
-    const double one_plus_cos_a3_from_a2_back = (link_length_1_plus_link_length_2 + reach_back)
-        *(link_length_1_plus_link_length_2 - reach_back);
-    const double cos_swing_a3_from_a2_back = (one_plus_cos_a3_from_a2_back - one_less_cos_a3_from_a2_back)
-        *quotient_in_closed_cos_swing_a3_from_a2;
-    const double arm_along_a2_back = link_length_1 - link_length_2*cos_swing_a3_from_a2_back;
-    const double arm_along_a2_back_times_wrist_z = arm_along_a2_back*wrist_z;
-    /* sine squared, times the squared scale */
-    const double sine_square_a3_from_a2_back = one_less_cos_a3_from_a2_back*one_plus_cos_a3_from_a2_back;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_a3_from_a2_back_up = softkin_lane_root(sine_square_a3_from_a2_back)
-        *half_by_link_length_1_by_link_length_2;
-    const double arm_across_a2_back_up = link_length_2*cos_a3_from_a2_back_up;
-    const double product_in_along_a2_back_up = arm_across_a2_back_up*wrist_a1_radius_back;
-    /* rotation by a2 that takes the arm to its target point */
-    const double along_a2_back_up = arm_along_a2_back_times_wrist_z + product_in_along_a2_back_up;
-    const double arm_across_a2_back_up_times_wrist_z = arm_across_a2_back_up*wrist_z;
-    const double product_in_across_a2_back_up = arm_along_a2_back*wrist_a1_radius_back;
-    const double across_a2_back_up = product_in_across_a2_back_up - arm_across_a2_back_up_times_wrist_z;
-    missed += reach_back > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += across_a2_back_up*across_a2_back_up + along_a2_back_up*along_a2_back_up > 0.0 ? 0.0 : 1.0;
-    /* rotation by a2 that takes the arm to its target point */
-    const double along_a2_back_down = arm_along_a2_back_times_wrist_z - product_in_along_a2_back_up;
-    const double across_a2_back_down = arm_across_a2_back_up_times_wrist_z + product_in_across_a2_back_up;
-    missed += across_a2_back_down*across_a2_back_down + along_a2_back_down*along_a2_back_down > 0.0 ? 0.0
-        : 1.0;
-    /* a3_from_a2: out of reach */
-    const double refusal_front = fabs(cos_swing_a3_from_a2_front) <= bound_of_cos_swing_a3_from_a2 ? 0 : 3;
-    const double angle_a1_front = softkin_lane_angle(y, x);
-    const double axis_a1_front = offset_a1 + angle_a1_front*SOFTKIN_RADIAN;
     const double angle_of_arm_along_a2_front_up = softkin_lane_angle(arm_across_a2_front_up,
         arm_along_a2_front);
     const double angle_of_wrist_z_front = softkin_lane_angle(wrist_a1_radius_front, wrist_z);
@@ -221,9 +179,24 @@ void palletizer_regular_all(const void *machine, const softkin_lanes *given,
     /* a3 from the sum a3_from_a2 of angles about parallel axes */
     const double axis_a3_front_down = offset_a3
         + (angle_a2_front_down + angle_a3_from_a2_front_down)*SOFTKIN_RADIAN;
+    /* law of cosines for a3_from_a2 (z² + a1 radius²): 1 - cosine, times a scale */
+    const double one_less_cos_a3_from_a2_back = (reach_back - link_length_1_minus_link_length_2)
+        *(link_length_1_minus_link_length_2 + reach_back);
+    /* 1 + cosine, times the scale */
+    const double one_plus_cos_a3_from_a2_back = (link_length_1_plus_link_length_2 + reach_back)
+        *(link_length_1_plus_link_length_2 - reach_back);
+    const double cos_swing_a3_from_a2_back = (one_plus_cos_a3_from_a2_back - one_less_cos_a3_from_a2_back)
+        *quotient_in_closed_cos_swing_a3_from_a2;
     /* a3_from_a2: out of reach */
     const double refusal_back = fabs(cos_swing_a3_from_a2_back) <= bound_of_cos_swing_a3_from_a2 ? 0 : 3;
     const double axis_a1_back = 180.0 + axis_a1_front;
+    const double arm_along_a2_back = link_length_1 - link_length_2*cos_swing_a3_from_a2_back;
+    /* sine squared, times the squared scale */
+    const double sine_square_a3_from_a2_back = one_less_cos_a3_from_a2_back*one_plus_cos_a3_from_a2_back;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_a3_from_a2_back_up = softkin_lane_root(sine_square_a3_from_a2_back)
+        *half_by_link_length_1_by_link_length_2;
+    const double arm_across_a2_back_up = link_length_2*cos_a3_from_a2_back_up;
     const double angle_of_arm_along_a2_back_up = softkin_lane_angle(arm_across_a2_back_up, arm_along_a2_back);
     const double angle_of_wrist_z_back = softkin_lane_angle(wrist_a1_radius_back, wrist_z);
     const double angle_a2_back_up = angle_of_wrist_z_back - angle_of_arm_along_a2_back_up;

@@ -231,24 +231,23 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double near_a1 = turn_a1 != 0 ? 360.0*(turn_a1 > 0 ? turn_a1 - 1 : turn_a1) : open_a1;
   /* A1: whole turns added */
   const double axis_a1 = softkin_on_turn(k->offset_a1 + angle_a1*SOFTKIN_RADIAN, near_a1);
-  const double arm_along_a2 = k->link_length_1 - k->link_length_2*cos_swing_a3_from_a2;
   const double sign_elbow = sigma_elbow; /* elbow: +1 up, -1 down */
   /* sine squared, times the squared scale */
   const double sine_square_a3_from_a2 = one_less_cos_a3_from_a2*one_plus_cos_a3_from_a2;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_a3_from_a2 = softkin_root(sine_square_a3_from_a2)*k->half_by_link_length_1_by_link_length_2
       *sign_elbow;
-  const double arm_across_a2 = k->link_length_2*cos_a3_from_a2;
-  /* rotation by a2 that takes the arm to its target point */
-  const double along_a2 = arm_across_a2*wrist_a1_radius + arm_along_a2*wrist_z;
-  const double across_a2 = arm_along_a2*wrist_a1_radius - arm_across_a2*wrist_z;
   double direction_x_a2, direction_y_a2;
-  if (reach > k->machine_scale_times_free_angle && across_a2*across_a2 + along_a2*along_a2 > 0.0) {
-    direction_x_a2 = along_a2; /* at a singularity: the angle of the reference */
-    direction_y_a2 = across_a2;
+  if (reach > k->machine_scale_times_free_angle) {
+    const double arm_along_a2 = k->link_length_1 - k->link_length_2*cos_swing_a3_from_a2;
+    const double arm_across_a2 = k->link_length_2*cos_a3_from_a2;
+    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
+    direction_x_a2 = arm_across_a2*wrist_a1_radius + arm_along_a2*wrist_z;
+    direction_y_a2 = arm_along_a2*wrist_a1_radius - arm_across_a2*wrist_z;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    direction_x_a2 = cos(reference_a2); /* at a singularity: the angle of the reference */
+    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
+    direction_x_a2 = cos(reference_a2);
     direction_y_a2 = sin(reference_a2);
   }
   const double angle_a2 = softkin_angle_of(direction_y_a2, direction_x_a2);
@@ -574,26 +573,25 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   const double angle_a1_front = softkin_angle_of(direction_y_a1_front, direction_x_a1_front);
   const double axis_a1_front = k->offset_a1 + angle_a1_front*SOFTKIN_RADIAN;
-  const double arm_along_a2_front = k->link_length_1 - k->link_length_2*cos_swing_a3_from_a2_front;
   /* sine squared, times the squared scale */
   const double sine_square_a3_from_a2_front = one_less_cos_a3_from_a2_front*one_plus_cos_a3_from_a2_front;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_a3_from_a2_front_up = softkin_root(sine_square_a3_from_a2_front)
       *k->half_by_link_length_1_by_link_length_2;
-  const double arm_across_a2_front_up = k->link_length_2*cos_a3_from_a2_front_up;
-  const double angle_of_arm_along_a2_front_up = softkin_angle_of(arm_across_a2_front_up, arm_along_a2_front);
-  const double angle_of_wrist_z_front = softkin_angle_of(wrist_a1_radius_front, wrist_z);
-  const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-  const double arm_along_a2_front_times_wrist_z = arm_along_a2_front*wrist_z;
-  const double product_in_along_a2_front_up = arm_across_a2_front_up*wrist_a1_radius_front;
-  /* rotation by a2 that takes the arm to its target point */
-  const double along_a2_front_up = arm_along_a2_front_times_wrist_z + product_in_along_a2_front_up;
-  const double arm_across_a2_front_up_times_wrist_z = arm_across_a2_front_up*wrist_z;
-  const double product_in_across_a2_front_up = arm_along_a2_front*wrist_a1_radius_front;
-  const double across_a2_front_up = product_in_across_a2_front_up - arm_across_a2_front_up_times_wrist_z;
-  const double angle_a2_front_up = (reach_front > k->machine_scale_times_free_angle)
-      && (across_a2_front_up*across_a2_front_up + along_a2_front_up*along_a2_front_up > 0.0)
-      ? angle_of_wrist_z_front - angle_of_arm_along_a2_front_up : reference_a2;
+  double angle_a2_front_up, angle_a2_front_down;
+  if (reach_front > k->machine_scale_times_free_angle) {
+    const double arm_along_a2_front = k->link_length_1 - k->link_length_2*cos_swing_a3_from_a2_front;
+    const double arm_across_a2_front_up = k->link_length_2*cos_a3_from_a2_front_up;
+    const double angle_of_arm_along_a2_front_up = softkin_angle_of(arm_across_a2_front_up,
+        arm_along_a2_front);
+    const double angle_of_wrist_z_front = softkin_angle_of(wrist_a1_radius_front, wrist_z);
+    angle_a2_front_up = angle_of_wrist_z_front - angle_of_arm_along_a2_front_up;
+    angle_a2_front_down = angle_of_arm_along_a2_front_up + angle_of_wrist_z_front;
+  } else {
+    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    angle_a2_front_up = reference_a2;
+    angle_a2_front_down = reference_a2;
+  }
   const double axis_a2_front_up = k->offset_a2 + angle_a2_front_up*SOFTKIN_RADIAN;
   const double angle_a3_from_a2_front_up = softkin_angle_of(cos_swing_a3_from_a2_front,
       cos_a3_from_a2_front_up);
@@ -603,12 +601,6 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double angle_heading = softkin_angle_of(heading_across, heading_along);
   /* cosine and sine of a4 from the cos heading and sin heading equations */
   const double axis_a4_front = k->offset_a4 + (angle_heading - angle_a1_front)*SOFTKIN_RADIAN;
-  /* rotation by a2 that takes the arm to its target point */
-  const double along_a2_front_down = arm_along_a2_front_times_wrist_z - product_in_along_a2_front_up;
-  const double across_a2_front_down = arm_across_a2_front_up_times_wrist_z + product_in_across_a2_front_up;
-  const double angle_a2_front_down = (reach_front > k->machine_scale_times_free_angle)
-      && (across_a2_front_down*across_a2_front_down + along_a2_front_down*along_a2_front_down > 0.0)
-      ? angle_of_arm_along_a2_front_up + angle_of_wrist_z_front : reference_a2;
   const double axis_a2_front_down = k->offset_a2 + angle_a2_front_down*SOFTKIN_RADIAN;
   const double angle_a3_from_a2_front_down = 180.0*SOFTKIN_DEGREE - angle_a3_from_a2_front_up;
   /* a3 from the sum a3_from_a2 of angles about parallel axes */
@@ -639,35 +631,28 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     /* cosine and sine of a4 from the cos heading and sin heading equations */
     axis_a4_back = k->offset_a4 + (angle_heading - angle_a1_back)*SOFTKIN_RADIAN;
   }
-  const double arm_along_a2_back = k->link_length_1 - k->link_length_2*cos_swing_a3_from_a2_back;
   /* sine squared, times the squared scale */
   const double sine_square_a3_from_a2_back = one_less_cos_a3_from_a2_back*one_plus_cos_a3_from_a2_back;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_a3_from_a2_back_up = softkin_root(sine_square_a3_from_a2_back)
       *k->half_by_link_length_1_by_link_length_2;
-  const double arm_across_a2_back_up = k->link_length_2*cos_a3_from_a2_back_up;
-  const double angle_of_arm_along_a2_back_up = softkin_angle_of(arm_across_a2_back_up, arm_along_a2_back);
-  const double angle_of_wrist_z_back = softkin_angle_of(wrist_a1_radius_back, wrist_z);
-  const double arm_along_a2_back_times_wrist_z = arm_along_a2_back*wrist_z;
-  const double product_in_along_a2_back_up = arm_across_a2_back_up*wrist_a1_radius_back;
-  /* rotation by a2 that takes the arm to its target point */
-  const double along_a2_back_up = arm_along_a2_back_times_wrist_z + product_in_along_a2_back_up;
-  const double arm_across_a2_back_up_times_wrist_z = arm_across_a2_back_up*wrist_z;
-  const double product_in_across_a2_back_up = arm_along_a2_back*wrist_a1_radius_back;
-  const double across_a2_back_up = product_in_across_a2_back_up - arm_across_a2_back_up_times_wrist_z;
-  const double angle_a2_back_up = (reach_back > k->machine_scale_times_free_angle)
-      && (across_a2_back_up*across_a2_back_up + along_a2_back_up*along_a2_back_up > 0.0)
-      ? angle_of_wrist_z_back - angle_of_arm_along_a2_back_up : reference_a2;
+  double angle_a2_back_up, angle_a2_back_down;
+  if (reach_back > k->machine_scale_times_free_angle) {
+    const double arm_along_a2_back = k->link_length_1 - k->link_length_2*cos_swing_a3_from_a2_back;
+    const double arm_across_a2_back_up = k->link_length_2*cos_a3_from_a2_back_up;
+    const double angle_of_arm_along_a2_back_up = softkin_angle_of(arm_across_a2_back_up, arm_along_a2_back);
+    const double angle_of_wrist_z_back = softkin_angle_of(wrist_a1_radius_back, wrist_z);
+    angle_a2_back_up = angle_of_wrist_z_back - angle_of_arm_along_a2_back_up;
+    angle_a2_back_down = angle_of_arm_along_a2_back_up + angle_of_wrist_z_back;
+  } else {
+    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    angle_a2_back_up = reference_a2;
+    angle_a2_back_down = reference_a2;
+  }
   const double axis_a2_back_up = k->offset_a2 + angle_a2_back_up*SOFTKIN_RADIAN;
   const double angle_a3_from_a2_back_up = softkin_angle_of(cos_swing_a3_from_a2_back, cos_a3_from_a2_back_up);
   /* a3 from the sum a3_from_a2 of angles about parallel axes */
   const double axis_a3_back_up = k->offset_a3 + (angle_a2_back_up + angle_a3_from_a2_back_up)*SOFTKIN_RADIAN;
-  /* rotation by a2 that takes the arm to its target point */
-  const double along_a2_back_down = arm_along_a2_back_times_wrist_z - product_in_along_a2_back_up;
-  const double across_a2_back_down = arm_across_a2_back_up_times_wrist_z + product_in_across_a2_back_up;
-  const double angle_a2_back_down = (reach_back > k->machine_scale_times_free_angle)
-      && (across_a2_back_down*across_a2_back_down + along_a2_back_down*along_a2_back_down > 0.0)
-      ? angle_of_arm_along_a2_back_up + angle_of_wrist_z_back : reference_a2;
   const double axis_a2_back_down = k->offset_a2 + angle_a2_back_down*SOFTKIN_RADIAN;
   const double angle_a3_from_a2_back_down = 180.0*SOFTKIN_DEGREE - angle_a3_from_a2_back_up;
   /* a3 from the sum a3_from_a2 of angles about parallel axes */

@@ -424,20 +424,19 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sin_swing_q3 = -2.0*softkin_root(sine_square_q3)*sign_elbow/divisor_of_cos_q3;
   const double arm_along_q2 = -k->effective_q3_2*sin_swing_q3;
   const double arm_across_q2 = k->a2 + k->effective_q3_2*cos_swing_q3;
-  const double size_in_within_31 = fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2
-      - reach*reach);
+  const double away_q2 = reach > k->product_in_lost_digits_19 ? 0.0
+      : fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2 - reach*reach)
+      /(k->product_in_away_q2 + reach);
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_q3 = k->a3_by_effective_q3_2*cos_swing_q3 - k->d4_by_effective_q3_2*sin_swing_q3;
   const double sin_q3 = k->a3_by_effective_q3_2*sin_swing_q3 + k->d4_by_effective_q3_2*cos_swing_q3;
-  const bool within_31 = (reach > k->product_in_lost_digits_19)
-      || (size_in_within_31 - (k->machine_scale_times_rounding + reach)*k->product_in_within_31 <= 0.0);
-  const bool lost_digits_31 = (!within_31)
+  const bool within_32 = away_q2 <= k->machine_scale_times_rounding;
+  const bool lost_digits_32 = (!within_32)
       && ((fabs(ahead_q1) <= k->product_in_lost_digits_19)
       || (fabs(k->a2_times_a3_times_2*sin_q3
-      - k->a2_times_d4_times_2*cos_q3) <= k->product_in_lost_digits_31));
+      - k->a2_times_d4_times_2*cos_q3) <= k->product_in_lost_digits_32));
   /* q2: out of reach */
-  if (!(lost_digits_31 || (reach > k->product_in_lost_digits_19)
-      || (size_in_within_31 - k->product_in_within_31*(k->product_in_within_31 + reach) <= 0.0))) {
+  if (!(lost_digits_32 || (away_q2 <= k->product_in_away_q2))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   double cos_q1, sin_q1;
@@ -483,7 +482,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       near_a3);
   /* if digits were lost, steps on the closure meet the pose */
   double results[4] = {0.0};
-  if (lost_digits_19 || lost_digits_31) {
+  if (lost_digits_19 || lost_digits_32) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, sigma_arm, sigma_elbow, turn_a1, turn_a2, turn_a3, x,
         y, z, axis_a1, axis_a2, axis_a3};
     const softkin_status status = find_meet_pose(k, arguments, results, why);
@@ -500,8 +499,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         - k->a2_plus_effective_q3_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
   }
   /* q2: out of reach */
-  if (!(met || (reach > k->product_in_lost_digits_19)
-      || (size_in_within_31 - k->product_in_within_31*(k->product_in_within_31 + reach) <= 0.0))) {
+  if (!(met || (away_q2 <= k->product_in_away_q2))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
@@ -677,7 +675,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const pos_rrr_machine *k = machine;
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2], ref_a1 = reference[0],
       ref_a2 = reference[1], ref_a3 = reference[2];
-  const double product_in_lost_digits_31_front_down = 0.02*k->a2*k->effective_q3_2;
+  const double product_in_lost_digits_32_front_down = 0.02*k->a2*k->effective_q3_2;
   const double a2_plus_effective_q3_2_2 = k->a2 + k->effective_q3_2;
   const double a2_minus_effective_q3_2_2 = k->a2 - k->effective_q3_2;
   const double d4_by_effective_q3_2_2 = k->d4/k->effective_q3_2;
@@ -747,26 +745,25 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
   const double arm_along_q2_front_down = k->effective_q3_2*sin_swing_q3_front_up;
   const double arm_across_q2_front = k->a2 + k->effective_q3_2*cos_swing_q3_front;
-  const double size_in_within_31_front_down = fabs(arm_across_q2_front*arm_across_q2_front
-      + arm_along_q2_front_down*arm_along_q2_front_down - reach_front*reach_front);
-  const bool within_31_front_down = (reach_front > k->product_in_lost_digits_19)
-      || (size_in_within_31_front_down
-      - (k->machine_scale_times_rounding + reach_front)*k->product_in_within_31 <= 0.0);
-  const bool lost_digits_31_front_down = (!within_31_front_down)
+  const double away_q2_front_down = reach_front > k->product_in_lost_digits_19 ? 0.0
+      : fabs(arm_across_q2_front*arm_across_q2_front + arm_along_q2_front_down*arm_along_q2_front_down
+      - reach_front*reach_front)/(k->product_in_away_q2 + reach_front);
+  const bool within_32_front_down = away_q2_front_down <= k->machine_scale_times_rounding;
+  const bool lost_digits_32_front_down = (!within_32_front_down)
       && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_19)
       || (fabs(k->a2_times_a3_times_2*sin_q3_front_down
-      - k->a2_times_d4_times_2*cos_q3_front_down) <= product_in_lost_digits_31_front_down));
-  if (!(!lost_digits_31_front_down)) {
+      - k->a2_times_d4_times_2*cos_q3_front_down) <= product_in_lost_digits_32_front_down));
+  if (!(!lost_digits_32_front_down)) {
     return false;
   }
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
   const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
-  const bool lost_digits_31_front_up = (!within_31_front_down)
+  const bool lost_digits_32_front_up = (!within_32_front_down)
       && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_19)
       || (fabs(k->a2_times_a3_times_2*sin_q3_front_up
-      - k->a2_times_d4_times_2*cos_q3_front_up) <= product_in_lost_digits_31_front_down));
-  if (!(!lost_digits_31_front_up)) {
+      - k->a2_times_d4_times_2*cos_q3_front_up) <= product_in_lost_digits_32_front_down));
+  if (!(!lost_digits_32_front_up)) {
     return false;
   }
   /* sine squared, times the squared scale */
@@ -781,34 +778,30 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
   const double arm_along_q2_back_down = k->effective_q3_2*sin_swing_q3_back_up;
   const double arm_across_q2_back = k->a2 + k->effective_q3_2*cos_swing_q3_back;
-  const double size_in_within_31_back_down = fabs(arm_across_q2_back*arm_across_q2_back
-      + arm_along_q2_back_down*arm_along_q2_back_down - reach_back*reach_back);
-  const bool within_31_back_down = (reach_back > k->product_in_lost_digits_19)
-      || (size_in_within_31_back_down
-      - (k->machine_scale_times_rounding + reach_back)*k->product_in_within_31 <= 0.0);
-  const bool lost_digits_31_back_down = (!within_31_back_down)
+  const double away_q2_back_down = reach_back > k->product_in_lost_digits_19 ? 0.0
+      : fabs(arm_across_q2_back*arm_across_q2_back + arm_along_q2_back_down*arm_along_q2_back_down
+      - reach_back*reach_back)/(k->product_in_away_q2 + reach_back);
+  const bool within_32_back_down = away_q2_back_down <= k->machine_scale_times_rounding;
+  const bool lost_digits_32_back_down = (!within_32_back_down)
       && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_19)
       || (fabs(k->a2_times_a3_times_2*sin_q3_back_down
-      - k->a2_times_d4_times_2*cos_q3_back_down) <= product_in_lost_digits_31_front_down));
-  if (!(!lost_digits_31_back_down)) {
+      - k->a2_times_d4_times_2*cos_q3_back_down) <= product_in_lost_digits_32_front_down));
+  if (!(!lost_digits_32_back_down)) {
     return false;
   }
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
   const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
-  const bool lost_digits_31_back_up = (!within_31_back_down)
+  const bool lost_digits_32_back_up = (!within_32_back_down)
       && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_19)
       || (fabs(k->a2_times_a3_times_2*sin_q3_back_up
-      - k->a2_times_d4_times_2*cos_q3_back_up) <= product_in_lost_digits_31_front_down));
-  if (!(!lost_digits_31_back_up)) {
+      - k->a2_times_d4_times_2*cos_q3_back_up) <= product_in_lost_digits_32_front_down));
+  if (!(!lost_digits_32_back_up)) {
     return false;
   }
   int refusal_front_down;
   if (fabs(cos_swing_q3_front) <= 1.0000000000005) {
-    /* q2: out of reach */
-    refusal_front_down = (reach_front > k->product_in_lost_digits_19)
-        || (size_in_within_31_front_down
-        - k->product_in_within_31*(k->product_in_within_31 + reach_front) <= 0.0) ? 0 : 3;
+    refusal_front_down = away_q2_front_down <= k->product_in_away_q2 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_front_down = 3; /* q2: out of reach */
   }
@@ -862,10 +855,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       + softkin_angle_of(sin_q3_front_up, cos_q3_front_up)*SOFTKIN_RADIAN;
   int refusal_back_down;
   if (fabs(cos_swing_q3_back) <= 1.0000000000005) {
-    /* q2: out of reach */
-    refusal_back_down = (reach_back > k->product_in_lost_digits_19)
-        || (size_in_within_31_back_down
-        - k->product_in_within_31*(k->product_in_within_31 + reach_back) <= 0.0) ? 0 : 3;
+    refusal_back_down = away_q2_back_down <= k->product_in_away_q2 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_back_down = 3; /* q2: out of reach */
   }
@@ -944,9 +934,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
   const double product_in_lost_digits_19 = 0.01*machine_scale;
   const double a2_minus_effective_q3_2 = p->a2 - effective_q3_2;
+  const double product_in_away_q2 = 1e-11*machine_scale;
   const double machine_scale_times_rounding = 1e-12*machine_scale;
-  const double product_in_lost_digits_31 = 0.02*p->a2*effective_q3_2;
-  const double product_in_within_31 = 1e-11*machine_scale;
+  const double product_in_lost_digits_32 = 0.02*p->a2*effective_q3_2;
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double one_by_effective_q3_2 = 1.0/effective_q3_2;
@@ -981,9 +971,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.rounding_q1 = rounding_q1;
   made.product_in_lost_digits_19 = product_in_lost_digits_19;
   made.a2_minus_effective_q3_2 = a2_minus_effective_q3_2;
+  made.product_in_away_q2 = product_in_away_q2;
   made.machine_scale_times_rounding = machine_scale_times_rounding;
-  made.product_in_lost_digits_31 = product_in_lost_digits_31;
-  made.product_in_within_31 = product_in_within_31;
+  made.product_in_lost_digits_32 = product_in_lost_digits_32;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;
   made.one_by_effective_q3_2 = one_by_effective_q3_2;

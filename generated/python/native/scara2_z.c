@@ -134,22 +134,21 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         (reach - k->machine_scale > fabs(k->arm_length_1_minus_arm_length_2) - reach ? reach
         - k->machine_scale : fabs(k->arm_length_1_minus_arm_length_2) - reach), 0);
   }
-  const double arm_along_a1 = k->arm_length_1 + k->arm_length_2*cos_a2;
   const double sign_elbow = sigma_elbow; /* elbow: +1 right, -1 left */
   /* sine squared, times the squared scale */
   const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
   const double sin_a2 = softkin_root(sine_square_a2)*k->half_by_arm_length_1_by_arm_length_2*sign_elbow;
-  const double arm_across_a1 = k->arm_length_2*sin_a2;
-  /* rotation by a1 that takes the arm to its target point */
-  const double along_a1 = arm_across_a1*y + arm_along_a1*x;
-  const double across_a1 = arm_along_a1*y - arm_across_a1*x;
   double direction_x_a1, direction_y_a1;
-  if (reach > k->machine_scale_times_free_angle && across_a1*across_a1 + along_a1*along_a1 > 0.0) {
-    direction_x_a1 = along_a1; /* at a singularity: the angle of the reference */
-    direction_y_a1 = across_a1;
+  if (reach > k->machine_scale_times_free_angle) {
+    const double arm_along_a1 = k->arm_length_1 + k->arm_length_2*cos_a2;
+    const double arm_across_a1 = k->arm_length_2*sin_a2;
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
+    direction_x_a1 = arm_across_a1*y + arm_along_a1*x;
+    direction_y_a1 = arm_along_a1*y - arm_across_a1*x;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    direction_x_a1 = cos(reference_a1); /* at a singularity: the angle of the reference */
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
+    direction_x_a1 = cos(reference_a1);
     direction_y_a1 = sin(reference_a1);
   }
   /* A1: without a commanded turn, the value nearest to this */
@@ -292,34 +291,25 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(fabs(cos_a2) <= k->bound_of_cos_a2)) {
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 2);
   }
-  const double arm_along_a1 = k->arm_length_1 + k->arm_length_2*cos_a2;
   /* sine squared, times the squared scale */
   const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
   const double sin_a2_right = softkin_root(sine_square_a2)*k->half_by_arm_length_1_by_arm_length_2;
-  const double arm_across_a1_right = k->arm_length_2*sin_a2_right;
-  const double angle_of_arm_along_a1_right = softkin_angle_of(arm_across_a1_right, arm_along_a1);
-  const double angle_of_x = softkin_angle_of(y, x);
-  const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-  const double arm_along_a1_times_x = arm_along_a1*x;
-  const double arm_across_a1_right_times_y = arm_across_a1_right*y;
-  /* rotation by a1 that takes the arm to its target point */
-  const double along_a1_right = arm_across_a1_right_times_y + arm_along_a1_times_x;
-  const double arm_along_a1_times_y = arm_along_a1*y;
-  const double arm_across_a1_right_times_x = arm_across_a1_right*x;
-  const double across_a1_right = arm_along_a1_times_y - arm_across_a1_right_times_x;
-  const double angle_a1_right = (reach > k->machine_scale_times_free_angle)
-      && (across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0) ? angle_of_x
-      - angle_of_arm_along_a1_right : reference_a1;
+  double angle_a1_right, angle_a1_left;
+  if (reach > k->machine_scale_times_free_angle) {
+    const double arm_along_a1 = k->arm_length_1 + k->arm_length_2*cos_a2;
+    const double arm_across_a1_right = k->arm_length_2*sin_a2_right;
+    const double angle_of_arm_along_a1_right = softkin_angle_of(arm_across_a1_right, arm_along_a1);
+    const double angle_of_x = softkin_angle_of(y, x);
+    angle_a1_right = angle_of_x - angle_of_arm_along_a1_right;
+    angle_a1_left = angle_of_arm_along_a1_right + angle_of_x;
+  } else {
+    angle_a1_right = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
+    angle_a1_left = angle_a1_right;
+  }
   const double axis_a1_right = k->offset_a1 + angle_a1_right*SOFTKIN_RADIAN;
   const double quotient_in_axis_a2_right = softkin_angle_of(sin_a2_right, cos_a2)*SOFTKIN_RADIAN;
   const double axis_a2_right = k->offset_a2 + quotient_in_axis_a2_right;
   const double axis_z = k->offset_z + z;
-  /* rotation by a1 that takes the arm to its target point */
-  const double along_a1_left = arm_along_a1_times_x - arm_across_a1_right_times_y;
-  const double across_a1_left = arm_across_a1_right_times_x + arm_along_a1_times_y;
-  const double angle_a1_left = (reach > k->machine_scale_times_free_angle)
-      && (across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0) ? angle_of_arm_along_a1_right
-      + angle_of_x : reference_a1;
   const double axis_a1_left = k->offset_a1 + angle_a1_left*SOFTKIN_RADIAN;
   const double axis_a2_left = k->offset_a2 - quotient_in_axis_a2_right;
   const double near_a1 = k->single_a1 ? k->mid_a1 : ref_a1;

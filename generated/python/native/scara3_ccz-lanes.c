@@ -32,18 +32,17 @@ void scara3_ccz_regular(const void *machine, const softkin_lanes *given,
     const double cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)*quotient_in_cos_a2;
     /* a2: out of reach */
     missed += fabs(cos_a2) <= bound_of_cos_a2 ? 0.0 : 1.0;
+    missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_a1 = link_length_1 + link_length_2*cos_a2;
     const double sign_elbow = sigma_elbow; /* elbow: +1 right, -1 left */
     /* sine squared, times the squared scale */
     const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
     const double sin_a2 = softkin_lane_root(sine_square_a2)*half_by_link_length_1_by_link_length_2*sign_elbow;
     const double arm_across_a1 = link_length_2*sin_a2;
-    /* rotation by a1 that takes the arm to its target point */
-    const double along_a1 = arm_across_a1*y + arm_along_a1*x;
-    const double across_a1 = arm_along_a1*y - arm_across_a1*x;
-    missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += across_a1*across_a1 + along_a1*along_a1 > 0.0 ? 0.0 : 1.0;
-    const double axis_a1 = offset_a1 + softkin_lane_angle(across_a1, along_a1)*SOFTKIN_RADIAN;
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
+    const double direction_x_a1 = arm_across_a1*y + arm_along_a1*x;
+    const double direction_y_a1 = arm_along_a1*y - arm_across_a1*x;
+    const double axis_a1 = offset_a1 + softkin_lane_angle(direction_y_a1, direction_x_a1)*SOFTKIN_RADIAN;
     const double axis_a2 = offset_a2 + softkin_lane_angle(sin_a2, cos_a2)*SOFTKIN_RADIAN;
     const double axis_a3 = offset_a3 + z;
     near[0][lane] = single_a1 > 0.0 ? mid_a1 : ref_a1;
@@ -82,24 +81,12 @@ void scara3_ccz_regular_all(const void *machine, const softkin_lanes *given,
     const double cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)*quotient_in_cos_a2;
     /* a2: out of reach */
     missed += fabs(cos_a2) <= bound_of_cos_a2 ? 0.0 : 1.0;
+    missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_a1 = link_length_1 + link_length_2*cos_a2;
-    const double arm_along_a1_times_x = arm_along_a1*x;
     /* sine squared, times the squared scale */
     const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
     const double sin_a2_right = softkin_lane_root(sine_square_a2)*half_by_link_length_1_by_link_length_2;
     const double arm_across_a1_right = link_length_2*sin_a2_right;
-    const double arm_across_a1_right_times_y = arm_across_a1_right*y;
-    /* rotation by a1 that takes the arm to its target point */
-    const double along_a1_right = arm_across_a1_right_times_y + arm_along_a1_times_x;
-    const double arm_along_a1_times_y = arm_along_a1*y;
-    const double arm_across_a1_right_times_x = arm_across_a1_right*x;
-    const double across_a1_right = arm_along_a1_times_y - arm_across_a1_right_times_x;
-    missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0 ? 0.0 : 1.0;
-    /* rotation by a1 that takes the arm to its target point */
-    const double along_a1_left = arm_along_a1_times_x - arm_across_a1_right_times_y;
-    const double across_a1_left = arm_across_a1_right_times_x + arm_along_a1_times_y;
-    missed += across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0 ? 0.0 : 1.0;
     const double angle_of_arm_along_a1_right = softkin_lane_angle(arm_across_a1_right, arm_along_a1);
     const double angle_of_x = softkin_lane_angle(y, x);
     const double angle_a1_right = angle_of_x - angle_of_arm_along_a1_right;

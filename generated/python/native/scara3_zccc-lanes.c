@@ -52,19 +52,18 @@ void scara3_zccc_regular(const void *machine, const softkin_lanes *given,
     const double cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)*quotient_in_cos_a3;
     /* a3: out of reach */
     missed += fabs(cos_a3) <= bound_of_cos_a3 ? 0.0 : 1.0;
+    missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
+    const double axis_a1 = offset_a1 + z;
     const double arm_along_a2 = link_length_1 + link_length_2*cos_a3;
     const double sign_elbow = sigma_elbow; /* elbow: +1 right, -1 left */
     /* sine squared, times the squared scale */
     const double sine_square_a3 = one_less_cos_a3*one_plus_cos_a3;
     const double sin_a3 = softkin_lane_root(sine_square_a3)*half_by_link_length_1_by_link_length_2*sign_elbow;
     const double arm_across_a2 = link_length_2*sin_a3;
-    /* rotation by a2 that takes the arm to its target point */
-    const double along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x;
-    const double across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x;
-    missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += across_a2*across_a2 + along_a2*along_a2 > 0.0 ? 0.0 : 1.0;
-    const double axis_a1 = offset_a1 + z;
-    const double angle_a2 = softkin_lane_angle(across_a2, along_a2);
+    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
+    const double direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x;
+    const double direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x;
+    const double angle_a2 = softkin_lane_angle(direction_y_a2, direction_x_a2);
     const double axis_a2 = offset_a2 + angle_a2*SOFTKIN_RADIAN;
     const double angle_a3 = softkin_lane_angle(sin_a3, cos_a3);
     const double axis_a3 = offset_a3 + angle_a3*SOFTKIN_RADIAN;
@@ -129,25 +128,13 @@ void scara3_zccc_regular_all(const void *machine, const softkin_lanes *given,
     const double cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)*quotient_in_cos_a3;
     /* a3: out of reach */
     missed += fabs(cos_a3) <= bound_of_cos_a3 ? 0.0 : 1.0;
+    missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
+    const double axis_a1 = offset_a1 + z;
     const double arm_along_a2 = link_length_1 + link_length_2*cos_a3;
-    const double arm_along_a2_times_wrist_x = arm_along_a2*wrist_x;
     /* sine squared, times the squared scale */
     const double sine_square_a3 = one_less_cos_a3*one_plus_cos_a3;
     const double sin_a3_right = softkin_lane_root(sine_square_a3)*half_by_link_length_1_by_link_length_2;
     const double arm_across_a2_right = link_length_2*sin_a3_right;
-    const double arm_across_a2_right_times_wrist_y = arm_across_a2_right*wrist_y;
-    /* rotation by a2 that takes the arm to its target point */
-    const double along_a2_right = arm_across_a2_right_times_wrist_y + arm_along_a2_times_wrist_x;
-    const double arm_along_a2_times_wrist_y = arm_along_a2*wrist_y;
-    const double arm_across_a2_right_times_wrist_x = arm_across_a2_right*wrist_x;
-    const double across_a2_right = arm_along_a2_times_wrist_y - arm_across_a2_right_times_wrist_x;
-    missed += reach > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += across_a2_right*across_a2_right + along_a2_right*along_a2_right > 0.0 ? 0.0 : 1.0;
-    /* rotation by a2 that takes the arm to its target point */
-    const double along_a2_left = arm_along_a2_times_wrist_x - arm_across_a2_right_times_wrist_y;
-    const double across_a2_left = arm_across_a2_right_times_wrist_x + arm_along_a2_times_wrist_y;
-    missed += across_a2_left*across_a2_left + along_a2_left*along_a2_left > 0.0 ? 0.0 : 1.0;
-    const double axis_a1 = offset_a1 + z;
     const double angle_of_arm_along_a2_right = softkin_lane_angle(arm_across_a2_right, arm_along_a2);
     const double angle_of_wrist_x = softkin_lane_angle(wrist_y, wrist_x);
     const double angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2_right;

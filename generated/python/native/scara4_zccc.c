@@ -173,22 +173,21 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         0);
   }
   const double axis_a1 = k->offset_a1 + z;
-  const double arm_along_a2 = k->link_length_1 + k->link_length_2*cos_a3;
   const double sign_elbow = sigma_elbow; /* elbow: +1 right, -1 left */
   /* sine squared, times the squared scale */
   const double sine_square_a3 = one_less_cos_a3*one_plus_cos_a3;
   const double sin_a3 = softkin_root(sine_square_a3)*k->half_by_link_length_1_by_link_length_2*sign_elbow;
-  const double arm_across_a2 = k->link_length_2*sin_a3;
-  /* rotation by a2 that takes the arm to its target point */
-  const double along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x;
-  const double across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x;
   double direction_x_a2, direction_y_a2;
-  if (reach > k->machine_scale_times_free_angle && across_a2*across_a2 + along_a2*along_a2 > 0.0) {
-    direction_x_a2 = along_a2; /* at a singularity: the angle of the reference */
-    direction_y_a2 = across_a2;
+  if (reach > k->machine_scale_times_free_angle) {
+    const double arm_along_a2 = k->link_length_1 + k->link_length_2*cos_a3;
+    const double arm_across_a2 = k->link_length_2*sin_a3;
+    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
+    direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x;
+    direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x;
   } else {
     const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    direction_x_a2 = cos(reference_a2); /* at a singularity: the angle of the reference */
+    /* rotation by a2 that takes the arm to its target point; at a singularity: the angle of the reference */
+    direction_x_a2 = cos(reference_a2);
     direction_y_a2 = sin(reference_a2);
   }
   const double angle_a2 = softkin_angle_of(direction_y_a2, direction_x_a2);
@@ -393,24 +392,21 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 2);
   }
   const double axis_a1 = k->offset_a1 + z;
-  const double arm_along_a2 = k->link_length_1 + k->link_length_2*cos_a3;
   /* sine squared, times the squared scale */
   const double sine_square_a3 = one_less_cos_a3*one_plus_cos_a3;
   const double sin_a3_right = softkin_root(sine_square_a3)*k->half_by_link_length_1_by_link_length_2;
-  const double arm_across_a2_right = k->link_length_2*sin_a3_right;
-  const double angle_of_arm_along_a2_right = softkin_angle_of(arm_across_a2_right, arm_along_a2);
-  const double angle_of_wrist_x = softkin_angle_of(wrist_y, wrist_x);
-  const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-  const double arm_along_a2_times_wrist_x = arm_along_a2*wrist_x;
-  const double arm_across_a2_right_times_wrist_y = arm_across_a2_right*wrist_y;
-  /* rotation by a2 that takes the arm to its target point */
-  const double along_a2_right = arm_across_a2_right_times_wrist_y + arm_along_a2_times_wrist_x;
-  const double arm_along_a2_times_wrist_y = arm_along_a2*wrist_y;
-  const double arm_across_a2_right_times_wrist_x = arm_across_a2_right*wrist_x;
-  const double across_a2_right = arm_along_a2_times_wrist_y - arm_across_a2_right_times_wrist_x;
-  const double angle_a2_right = (reach > k->machine_scale_times_free_angle)
-      && (across_a2_right*across_a2_right + along_a2_right*along_a2_right > 0.0) ? angle_of_wrist_x
-      - angle_of_arm_along_a2_right : reference_a2;
+  double angle_a2_right, angle_a2_left;
+  if (reach > k->machine_scale_times_free_angle) {
+    const double arm_along_a2 = k->link_length_1 + k->link_length_2*cos_a3;
+    const double arm_across_a2_right = k->link_length_2*sin_a3_right;
+    const double angle_of_arm_along_a2_right = softkin_angle_of(arm_across_a2_right, arm_along_a2);
+    const double angle_of_wrist_x = softkin_angle_of(wrist_y, wrist_x);
+    angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2_right;
+    angle_a2_left = angle_of_arm_along_a2_right + angle_of_wrist_x;
+  } else {
+    angle_a2_right = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+    angle_a2_left = angle_a2_right;
+  }
   const double axis_a2_right = k->offset_a2 + angle_a2_right*SOFTKIN_RADIAN;
   const double angle_a3_right = softkin_angle_of(sin_a3_right, cos_a3);
   const double quotient_in_axis_a3_right = angle_a3_right*SOFTKIN_RADIAN;
@@ -419,12 +415,6 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* a4 from the sum a234 of angles about parallel axes */
   const double axis_a4_right = k->offset_a4
       + (angle_heading - angle_a2_right - angle_a3_right)*SOFTKIN_RADIAN;
-  /* rotation by a2 that takes the arm to its target point */
-  const double along_a2_left = arm_along_a2_times_wrist_x - arm_across_a2_right_times_wrist_y;
-  const double across_a2_left = arm_across_a2_right_times_wrist_x + arm_along_a2_times_wrist_y;
-  const double angle_a2_left = (reach > k->machine_scale_times_free_angle)
-      && (across_a2_left*across_a2_left + along_a2_left*along_a2_left > 0.0) ? angle_of_arm_along_a2_right
-      + angle_of_wrist_x : reference_a2;
   const double axis_a2_left = k->offset_a2 + angle_a2_left*SOFTKIN_RADIAN;
   const double axis_a3_left = k->offset_a3 - quotient_in_axis_a3_right;
   /* a4 from the sum a234 of angles about parallel axes */

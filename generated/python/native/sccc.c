@@ -190,22 +190,21 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         ? reach - k->link_length_1_plus_link_length_2 : fabs(k->link_length_1_minus_link_length_2) - reach),
         0);
   }
-  const double arm_along_a1 = k->link_length_1 + k->link_length_2*cos_a2;
   const double sign_elbow = sigma_elbow; /* elbow: +1 right, -1 left */
   /* sine squared, times the squared scale */
   const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
   const double sin_a2 = softkin_root(sine_square_a2)*k->half_by_link_length_1_by_link_length_2*sign_elbow;
-  const double arm_across_a1 = k->link_length_2*sin_a2;
-  /* rotation by a1 that takes the arm to its target point */
-  const double along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x;
-  const double across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x;
   double direction_x_a1, direction_y_a1;
-  if (reach > k->machine_scale_times_free_angle && across_a1*across_a1 + along_a1*along_a1 > 0.0) {
-    direction_x_a1 = along_a1; /* at a singularity: the angle of the reference */
-    direction_y_a1 = across_a1;
+  if (reach > k->machine_scale_times_free_angle) {
+    const double arm_along_a1 = k->link_length_1 + k->link_length_2*cos_a2;
+    const double arm_across_a1 = k->link_length_2*sin_a2;
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
+    direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x;
+    direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-    direction_x_a1 = cos(reference_a1); /* at a singularity: the angle of the reference */
+    /* rotation by a1 that takes the arm to its target point; at a singularity: the angle of the reference */
+    direction_x_a1 = cos(reference_a1);
     direction_y_a1 = sin(reference_a1);
   }
   const double angle_a1 = softkin_angle_of(direction_y_a1, direction_x_a1);

@@ -28,10 +28,10 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 30 additions, 29 multiplications, 0 divisions, 0 square roots, 9 sines
-    inverse: 49 additions, 40 multiplications, 4 divisions, 3 square roots, 4 sines
-    inverse, all 4 branches: 165 additions, 117 multiplications, 11 divisions, 7 square roots, 11 sines
+    inverse: 48 additions, 38 multiplications, 4 divisions, 3 square roots, 4 sines
+    inverse, all 4 branches: 163 additions, 111 multiplications, 11 divisions, 7 square roots, 11 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 2 additions, 1 multiplications, 0 divisions, 0 square roots, 4
+    a branch at a singular pose, in addition: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 4
     sines
 
 A3 is the angle of the forearm against the base: where A2 alone moves, the forearm keeps its direction.
@@ -85,32 +85,31 @@ class Constants:
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 2e-12 * machine_scale
         product_in_lost_digits_17 = 0.01 * machine_scale
+        product_in_away_a2 = 1e-11 * machine_scale
         machine_scale_times_rounding = 1e-12 * machine_scale
-        product_in_lost_digits_29 = 0.02 * link_length_1 * link_length_2
-        product_in_within_29 = 1e-11 * machine_scale
+        product_in_lost_digits_30 = 0.02 * link_length_1 * link_length_2
         one_by_machine_scale = 1.0 / machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         quotient_in_closed_cos_swing_a3_from_a2 = 0.25 / (link_length_1 * link_length_2)
         shoulder_offset_plus_wrist_offset_x = shoulder_offset + wrist_offset_x
         base_height_plus_wrist_offset_z = base_height + wrist_offset_z
-        product_in_lost_digits_29_2 = 2.0 * link_length_1 * link_length_2
+        product_in_lost_digits_30_2 = 2.0 * link_length_1 * link_length_2
         self.base_height, self.shoulder_offset, self.link_length_1 = base_height, shoulder_offset, link_length_1
         self.link_length_2, self.wrist_offset_x, self.wrist_offset_z = link_length_2, wrist_offset_x, wrist_offset_z
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.machine_scale, self.bound_of_cos_swing_a3_from_a2 = machine_scale, bound_of_cos_swing_a3_from_a2
         self.rounding_a1, self.link_length_1_minus_link_length_2 = rounding_a1, link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.product_in_lost_digits_17 = product_in_lost_digits_17
+        self.product_in_lost_digits_17, self.product_in_away_a2 = product_in_lost_digits_17, product_in_away_a2
         self.machine_scale_times_rounding = machine_scale_times_rounding
-        self.product_in_lost_digits_29, self.product_in_within_29 = product_in_lost_digits_29, product_in_within_29
-        self.one_by_machine_scale = one_by_machine_scale
+        self.product_in_lost_digits_30, self.one_by_machine_scale = product_in_lost_digits_30, one_by_machine_scale
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
         self.quotient_in_closed_cos_swing_a3_from_a2 = quotient_in_closed_cos_swing_a3_from_a2
         self.shoulder_offset_plus_wrist_offset_x = shoulder_offset_plus_wrist_offset_x
         self.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z
-        self.product_in_lost_digits_29_2 = product_in_lost_digits_29_2
+        self.product_in_lost_digits_30_2 = product_in_lost_digits_30_2
 
 
 class Palletizer(OffsetKinematics, TwistChoice):
@@ -122,7 +121,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer"
-    KEY = "palletizer 3b3416c8e13ef56f"
+    KEY = "palletizer b22aa2e3fca3a87d"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),
@@ -714,7 +713,6 @@ class Palletizer(OffsetKinematics, TwistChoice):
         axis_a1 = offset_a1 + angle_a1 * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        arm_along_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2
         # sine squared, times the squared scale
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -723,14 +721,13 @@ class Palletizer(OffsetKinematics, TwistChoice):
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        arm_across_a2 = link_length_2 * cos_a3_from_a2
-        # rotation by a2 that takes the arm to its target point
-        along_a2 = arm_across_a2 * wrist_a1_radius + arm_along_a2 * wrist_z
-        across_a2 = arm_along_a2 * wrist_a1_radius - arm_across_a2 * wrist_z
-        # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle and across_a2 * across_a2 + along_a2 * along_a2 > 0.0:
-            direction_x_a2 = along_a2
-            direction_y_a2 = across_a2
+        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
+        if reach > machine_scale_times_free_angle:
+            arm_along_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2
+            arm_across_a2 = link_length_2 * cos_a3_from_a2
+            direction_x_a2 = arm_across_a2 * wrist_a1_radius + arm_along_a2 * wrist_z
+            direction_y_a2 = arm_along_a2 * wrist_a1_radius - arm_across_a2 * wrist_z
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_a2 = cos(reference_a2)
@@ -916,9 +913,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        offset_a4, product_in_lost_digits_17 = k.offset_a4, k.product_in_lost_digits_17
-        product_in_lost_digits_29 = k.product_in_lost_digits_29
-        product_in_lost_digits_29_2, product_in_within_29 = k.product_in_lost_digits_29_2, k.product_in_within_29
+        offset_a4, product_in_away_a2 = k.offset_a4, k.product_in_away_a2
+        product_in_lost_digits_17, product_in_lost_digits_30 = k.product_in_lost_digits_17, k.product_in_lost_digits_30
+        product_in_lost_digits_30_2 = k.product_in_lost_digits_30_2
         quotient_in_closed_cos_swing_a3_from_a2, rounding_a1 = k.quotient_in_closed_cos_swing_a3_from_a2, k.rounding_a1
         shoulder_offset, single_a1, single_a2, single_a3 = k.shoulder_offset, k.single_a1, k.single_a2, k.single_a3
         wrist_offset_x, wrist_offset_z = k.wrist_offset_x, k.wrist_offset_z
@@ -973,20 +970,19 @@ class Palletizer(OffsetKinematics, TwistChoice):
         )
         arm_along_a2 = link_length_2 * cos_a3_from_a2
         arm_across_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2
-        size_in_within_29 = abs(arm_across_a2 * arm_across_a2 + arm_along_a2 * arm_along_a2 - reach * reach)
-        within_29 = (reach > product_in_lost_digits_17) or (
-            size_in_within_29 - (machine_scale_times_rounding + reach) * product_in_within_29 <= 0.0
+        away_a2 = (
+            0.0
+            if reach > product_in_lost_digits_17
+            else abs(arm_across_a2 * arm_across_a2 + arm_along_a2 * arm_along_a2 - reach * reach)
+            / (product_in_away_a2 + reach)
         )
-        lost_digits_29 = (not within_29) and (
+        within_30 = away_a2 <= machine_scale_times_rounding
+        lost_digits_30 = (not within_30) and (
             (abs(ahead_a1) <= product_in_lost_digits_17)
-            or (abs(cos_a3_from_a2) * product_in_lost_digits_29_2 <= product_in_lost_digits_29)
+            or (abs(cos_a3_from_a2) * product_in_lost_digits_30_2 <= product_in_lost_digits_30)
         )
         # a2: out of reach
-        if not (
-            lost_digits_29
-            or (reach > product_in_lost_digits_17)
-            or (size_in_within_29 - product_in_within_29 * (product_in_within_29 + reach) <= 0.0)
-        ):
+        if not (lost_digits_30 or (away_a2 <= product_in_away_a2)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_a1 > machine_scale_times_free_angle:
@@ -1026,7 +1022,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_17 or lost_digits_29:
+        if lost_digits_17 or lost_digits_30:
             found = self._meet_point(
                 (
                     point_x,
@@ -1060,11 +1056,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
         # a2: out of reach
-        if not (
-            met
-            or (reach > product_in_lost_digits_17)
-            or (size_in_within_29 - product_in_within_29 * (product_in_within_29 + reach) <= 0.0)
-        ):
+        if not (met or (away_a2 <= product_in_away_a2)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return (
             (found_a1 if met else axis_a1),

@@ -19,9 +19,9 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 11 additions, 8 multiplications, 0 divisions, 0 square roots, 5 sines
-    inverse: 29 additions, 27 multiplications, 2 divisions, 2 square roots, 2 sines
-    inverse, all 2 branches: 57 additions, 46 multiplications, 4 divisions, 3 square roots, 4 sines
-    a branch at a singular pose, in addition: 1 additions, 1 multiplications, 0 divisions, 0 square roots, 2
+    inverse: 28 additions, 25 multiplications, 2 divisions, 2 square roots, 2 sines
+    inverse, all 2 branches: 56 additions, 43 multiplications, 4 divisions, 3 square roots, 4 sines
+    a branch at a singular pose, in addition: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2
     sines
 
 Angles are right-handed about +Z.
@@ -90,7 +90,7 @@ class PCC(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_PCC"
-    KEY = "pcc 1c4fb68c608b3436"
+    KEY = "pcc fc915a8e08510de0"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Inner arm about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Outer arm about Z, its absolute angle", multi_turn=True),
@@ -247,7 +247,6 @@ class PCC(OffsetKinematics):
         if not (abs(cos_a2_from_a1) <= bound_of_cos_a2_from_a1):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
-        arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
@@ -255,13 +254,13 @@ class PCC(OffsetKinematics):
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        arm_across_a1 = link_length_2 * sin_a2_from_a1
-        along_a1 = arm_across_a1 * y + arm_along_a1 * x  # rotation by a1 that takes the arm to its target point
-        across_a1 = arm_along_a1 * y - arm_across_a1 * x
-        # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            direction_x_a1 = along_a1
-            direction_y_a1 = across_a1
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
+        if reach > machine_scale_times_free_angle:
+            arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
+            arm_across_a1 = link_length_2 * sin_a2_from_a1
+            direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
+            direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(reference_a1)
@@ -397,7 +396,6 @@ class PCC(OffsetKinematics):
         if not (abs(cos_a2_from_a1) <= bound_of_cos_a2_from_a1):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
-        arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
@@ -405,14 +403,13 @@ class PCC(OffsetKinematics):
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        arm_across_a1 = link_length_2 * sin_a2_from_a1
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1 * flange_y + arm_along_a1 * flange_x
-        across_a1 = arm_along_a1 * flange_y - arm_across_a1 * flange_x
-        # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            direction_x_a1 = along_a1
-            direction_y_a1 = across_a1
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
+        if reach > machine_scale_times_free_angle:
+            arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
+            arm_across_a1 = link_length_2 * sin_a2_from_a1
+            direction_x_a1 = arm_across_a1 * flange_y + arm_along_a1 * flange_x
+            direction_y_a1 = arm_along_a1 * flange_y - arm_across_a1 * flange_x
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(reference_a1)

@@ -24,8 +24,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
-    inverse: 54 additions, 49 multiplications, 7 divisions, 4 square roots, 3 sines
-    inverse, all 4 branches: 191 additions, 156 multiplications, 20 divisions, 9 square roots, 10 sines
+    inverse: 51 additions, 46 multiplications, 8 divisions, 4 square roots, 3 sines
+    inverse, all 4 branches: 179 additions, 144 multiplications, 24 divisions, 9 square roots, 10 sines
     a branch at a singular pose, in addition: 28375 additions, 40998 multiplications, 3083 divisions, 928
     square roots, 4317 sines
     steps of damped least squares on the closure, from one start after the other: at most 308 passes, all of
@@ -73,11 +73,11 @@ class Constants:
         a2_times_shortest_link = 1e-9 * a2
         product_in_lost_digits_19 = 0.01 * machine_scale
         a2_minus_effective_q3_2 = a2 - effective_q3_2
+        product_in_away_q2 = 1e-11 * machine_scale
         machine_scale_times_rounding = 1e-12 * machine_scale
-        product_in_lost_digits_31 = 0.02 * a2 * effective_q3_2
-        product_in_within_31 = 1e-11 * machine_scale
+        product_in_lost_digits_32 = 0.02 * a2 * effective_q3_2
         machine_scale_times_free_angle = 2e-12 * machine_scale
-        product_in_lost_digits_33 = 0.02 * a2 * machine_scale
+        product_in_lost_digits_34 = 0.02 * a2 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         one_by_effective_q3_2 = 1.0 / effective_q3_2
         a2_plus_effective_q3_2 = a2 + effective_q3_2
@@ -90,11 +90,11 @@ class Constants:
         self.offset_a2, self.offset_a3, self.machine_scale = offset_a2, offset_a3, machine_scale
         self.effective_q3_2, self.rounding_q1 = effective_q3_2, rounding_q1
         self.a2_times_shortest_link, self.product_in_lost_digits_19 = a2_times_shortest_link, product_in_lost_digits_19
-        self.a2_minus_effective_q3_2 = a2_minus_effective_q3_2
+        self.a2_minus_effective_q3_2, self.product_in_away_q2 = a2_minus_effective_q3_2, product_in_away_q2
         self.machine_scale_times_rounding = machine_scale_times_rounding
-        self.product_in_lost_digits_31, self.product_in_within_31 = product_in_lost_digits_31, product_in_within_31
+        self.product_in_lost_digits_32 = product_in_lost_digits_32
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.product_in_lost_digits_33, self.one_by_machine_scale = product_in_lost_digits_33, one_by_machine_scale
+        self.product_in_lost_digits_34, self.one_by_machine_scale = product_in_lost_digits_34, one_by_machine_scale
         self.one_by_effective_q3_2, self.a2_plus_effective_q3_2 = one_by_effective_q3_2, a2_plus_effective_q3_2
         self.d4_by_effective_q3_2, self.a3_by_effective_q3_2 = d4_by_effective_q3_2, a3_by_effective_q3_2
         self.a2_times_a3_times_2, self.a2_times_d4_times_2 = a2_times_a3_times_2, a2_times_d4_times_2
@@ -110,7 +110,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr ffc48aa680eeba90"
+    KEY = "pos_rrr c4d7cd23bcfb6d5a"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -884,8 +884,8 @@ class PosRRR(OffsetKinematics):
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        product_in_lost_digits_19, product_in_lost_digits_31 = k.product_in_lost_digits_19, k.product_in_lost_digits_31
-        product_in_within_31, rounding_q1, single_a1 = k.product_in_within_31, k.rounding_q1, k.single_a1
+        product_in_away_q2, product_in_lost_digits_19 = k.product_in_away_q2, k.product_in_lost_digits_19
+        product_in_lost_digits_32, rounding_q1, single_a1 = k.product_in_lost_digits_32, k.rounding_q1, k.single_a1
         single_a2, single_a3 = k.single_a2, k.single_a3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
@@ -920,23 +920,22 @@ class PosRRR(OffsetKinematics):
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         arm_along_q2 = -effective_q3_2 * sin_swing_q3
         arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
-        size_in_within_31 = abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+        away_q2 = (
+            0.0
+            if reach > product_in_lost_digits_19
+            else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            / (product_in_away_q2 + reach)
+        )
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = a3_by_effective_q3_2 * cos_swing_q3 - d4_by_effective_q3_2 * sin_swing_q3
         sin_q3 = a3_by_effective_q3_2 * sin_swing_q3 + d4_by_effective_q3_2 * cos_swing_q3
-        within_31 = (reach > product_in_lost_digits_19) or (
-            size_in_within_31 - (machine_scale_times_rounding + reach) * product_in_within_31 <= 0.0
-        )
-        lost_digits_31 = (not within_31) and (
+        within_32 = away_q2 <= machine_scale_times_rounding
+        lost_digits_32 = (not within_32) and (
             (abs(ahead_q1) <= product_in_lost_digits_19)
-            or (abs(a2_times_a3_times_2 * sin_q3 - a2_times_d4_times_2 * cos_q3) <= product_in_lost_digits_31)
+            or (abs(a2_times_a3_times_2 * sin_q3 - a2_times_d4_times_2 * cos_q3) <= product_in_lost_digits_32)
         )
         # q2: out of reach
-        if not (
-            lost_digits_31
-            or (reach > product_in_lost_digits_19)
-            or (size_in_within_31 - product_in_within_31 * (product_in_within_31 + reach) <= 0.0)
-        ):
+        if not (lost_digits_32 or (away_q2 <= product_in_away_q2)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
@@ -973,7 +972,7 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_19 or lost_digits_31:
+        if lost_digits_19 or lost_digits_32:
             found = self._meet_pose(
                 (
                     ref_a1,
@@ -1002,11 +1001,7 @@ class PosRRR(OffsetKinematics):
             missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # q2: out of reach
-        if not (
-            met
-            or (reach > product_in_lost_digits_19)
-            or (size_in_within_31 - product_in_within_31 * (product_in_within_31 + reach) <= 0.0)
-        ):
+        if not (met or (away_q2 <= product_in_away_q2)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 
@@ -1121,8 +1116,8 @@ class PosRRR(OffsetKinematics):
         machine_scale_times_free_angle = k.machine_scale_times_free_angle
         machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        product_in_lost_digits_19, product_in_lost_digits_33 = k.product_in_lost_digits_19, k.product_in_lost_digits_33
-        product_in_within_31, rounding_q1, single_a1 = k.product_in_within_31, k.rounding_q1, k.single_a1
+        product_in_away_q2, product_in_lost_digits_19 = k.product_in_away_q2, k.product_in_lost_digits_19
+        product_in_lost_digits_34, rounding_q1, single_a1 = k.product_in_lost_digits_34, k.rounding_q1, k.single_a1
         single_a2, single_a3, twice_a2 = k.single_a2, k.single_a3, k.twice_a2
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
@@ -1169,19 +1164,18 @@ class PosRRR(OffsetKinematics):
         sin_q3 = (tool_x * cos_swing_q3 + tool_z * sin_swing_q3) / effective_q3
         arm_along_q2 = tool_x * cos_q3 - tool_z * sin_q3
         arm_across_q2 = a2 + tool_z * cos_q3 + tool_x * sin_q3
-        size_in_within_33 = abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
-        within_33 = (reach > product_in_lost_digits_19) or (
-            size_in_within_33 - (machine_scale_times_rounding + reach) * product_in_within_31 <= 0.0
+        away_q2 = (
+            0.0
+            if reach > product_in_lost_digits_19
+            else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            / (product_in_away_q2 + reach)
         )
-        lost_digits_33 = (not within_33) and (
-            (abs(ahead_q1) <= product_in_lost_digits_19) or (abs(arm_along_q2 * twice_a2) <= product_in_lost_digits_33)
+        within_34 = away_q2 <= machine_scale_times_rounding
+        lost_digits_34 = (not within_34) and (
+            (abs(ahead_q1) <= product_in_lost_digits_19) or (abs(arm_along_q2 * twice_a2) <= product_in_lost_digits_34)
         )
         # q2: out of reach
-        if not (
-            lost_digits_33
-            or (reach > product_in_lost_digits_19)
-            or (size_in_within_33 - product_in_within_31 * (product_in_within_31 + reach) <= 0.0)
-        ):
+        if not (lost_digits_34 or (away_q2 <= product_in_away_q2)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
@@ -1218,7 +1212,7 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_21 or lost_digits_33:
+        if lost_digits_21 or lost_digits_34:
             found = self._meet_point(
                 (
                     point_x,
@@ -1250,11 +1244,7 @@ class PosRRR(OffsetKinematics):
             missing = max(abs(a2 - effective_q3) - reach, -a2_minus_reach - effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # q2: out of reach
-        if not (
-            met
-            or (reach > product_in_lost_digits_19)
-            or (size_in_within_33 - product_in_within_31 * (product_in_within_31 + reach) <= 0.0)
-        ):
+        if not (met or (away_q2 <= product_in_away_q2)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 

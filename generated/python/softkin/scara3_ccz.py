@@ -20,9 +20,9 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 12 additions, 8 multiplications, 0 divisions, 0 square roots, 5 sines
-    inverse: 26 additions, 24 multiplications, 2 divisions, 2 square roots, 2 sines
-    inverse, all 2 branches: 53 additions, 43 multiplications, 4 divisions, 3 square roots, 4 sines
-    a branch at a singular pose, in addition: 1 additions, 1 multiplications, 0 divisions, 0 square roots, 2
+    inverse: 25 additions, 22 multiplications, 2 divisions, 2 square roots, 2 sines
+    inverse, all 2 branches: 52 additions, 40 multiplications, 4 divisions, 3 square roots, 4 sines
+    a branch at a singular pose, in addition: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2
     sines
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -90,7 +90,7 @@ class Scara3CCZ(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_CCZ"
-    KEY = "scara3_ccz 92264bfb35c03198"
+    KEY = "scara3_ccz 33cf2d6b22d4e16b"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -249,20 +249,19 @@ class Scara3CCZ(OffsetKinematics):
         if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
             (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        arm_across_a1 = link_length_2 * sin_a2
-        along_a1 = arm_across_a1 * y + arm_along_a1 * x  # rotation by a1 that takes the arm to its target point
-        across_a1 = arm_along_a1 * y - arm_across_a1 * x
-        # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            direction_x_a1 = along_a1
-            direction_y_a1 = across_a1
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
+        if reach > machine_scale_times_free_angle:
+            arm_along_a1 = link_length_1 + link_length_2 * cos_a2
+            arm_across_a1 = link_length_2 * sin_a2
+            direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
+            direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(reference_a1)
@@ -374,14 +373,13 @@ class Scara3CCZ(OffsetKinematics):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + point_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - point_y * cos_swing_a2) / effective_a2
-        arm_along_a1 = link_length_1 + tool_x * cos_a2 - point_y * sin_a2
-        arm_across_a1 = point_y * cos_a2 + tool_x * sin_a2
-        along_a1 = arm_across_a1 * y + arm_along_a1 * x  # rotation by a1 that takes the arm to its target point
-        across_a1 = arm_along_a1 * y - arm_across_a1 * x
-        # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            direction_x_a1 = along_a1
-            direction_y_a1 = across_a1
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
+        if reach > machine_scale_times_free_angle:
+            arm_along_a1 = link_length_1 + tool_x * cos_a2 - point_y * sin_a2
+            arm_across_a1 = point_y * cos_a2 + tool_x * sin_a2
+            direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
+            direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(reference_a1)

@@ -21,10 +21,10 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 19 additions, 12 multiplications, 0 divisions, 0 square roots, 7 sines
-    inverse: 40 additions, 32 multiplications, 5 divisions, 3 square roots, 3 sines
-    inverse, all 2 branches: 80 additions, 56 multiplications, 7 divisions, 4 square roots, 5 sines
+    inverse: 39 additions, 30 multiplications, 5 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches: 79 additions, 53 multiplications, 7 divisions, 4 square roots, 5 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 1 additions, 1 multiplications, 0 divisions, 0 square roots, 2
+    a branch at a singular pose, in addition: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2
     sines
 
 As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset interface.
@@ -92,7 +92,7 @@ class Scara3Z(TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_Z"
-    KEY = "scara3_z 96dfc64feed9a345"
+    KEY = "scara3_z f177072bc3d7d9c6"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -288,19 +288,17 @@ class Scara3Z(TwistChoice):
         if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(arm_length_1_minus_arm_length_2) - reach, reach - arm_length_1_plus_arm_length_2)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        arm_along_a1 = arm_length_1 + arm_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
             (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow * half_by_arm_length_1_by_arm_length_2
         )
-        arm_across_a1 = arm_length_2 * sin_a2
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
-        across_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
-        # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            direction_x_a1 = along_a1
-            direction_y_a1 = across_a1
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
+        if reach > machine_scale_times_free_angle:
+            arm_along_a1 = arm_length_1 + arm_length_2 * cos_a2
+            arm_across_a1 = arm_length_2 * sin_a2
+            direction_x_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
+            direction_y_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(reference_a1)

@@ -21,10 +21,10 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 19 additions, 12 multiplications, 0 divisions, 0 square roots, 7 sines
-    inverse: 40 additions, 32 multiplications, 5 divisions, 3 square roots, 3 sines
-    inverse, all 2 branches: 80 additions, 56 multiplications, 7 divisions, 4 square roots, 5 sines
+    inverse: 39 additions, 30 multiplications, 5 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches: 79 additions, 53 multiplications, 7 divisions, 4 square roots, 5 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 1 additions, 1 multiplications, 0 divisions, 0 square roots, 2
+    a branch at a singular pose, in addition: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2
     sines
 
 The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
@@ -101,7 +101,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCCC"
-    KEY = "scara4_zccc 2c80cf4879ff188d"
+    KEY = "scara4_zccc c418b750fe2ea7ae"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Column along Z, up", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
@@ -298,21 +298,19 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         axis_a1 = offset_a1 + z
-        arm_along_a2 = link_length_1 + link_length_2 * cos_a3
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = (
             (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        arm_across_a2 = link_length_2 * sin_a3
-        # rotation by a2 that takes the arm to its target point
-        along_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
-        across_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
-        # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle and across_a2 * across_a2 + along_a2 * along_a2 > 0.0:
-            direction_x_a2 = along_a2
-            direction_y_a2 = across_a2
+        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
+        if reach > machine_scale_times_free_angle:
+            arm_along_a2 = link_length_1 + link_length_2 * cos_a3
+            arm_across_a2 = link_length_2 * sin_a3
+            direction_x_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
+            direction_y_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_a2 = cos(reference_a2)
@@ -466,14 +464,13 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3 = (tool_x * cos_swing_a3 + tool_y * sin_swing_a3) / effective_a3
         sin_a3 = (tool_x * sin_swing_a3 - tool_y * cos_swing_a3) / effective_a3
-        arm_along_a2 = link_length_1 + tool_x * cos_a3 - tool_y * sin_a3
-        arm_across_a2 = tool_y * cos_a3 + tool_x * sin_a3
-        along_a2 = arm_across_a2 * y + arm_along_a2 * x  # rotation by a2 that takes the arm to its target point
-        across_a2 = arm_along_a2 * y - arm_across_a2 * x
-        # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle and across_a2 * across_a2 + along_a2 * along_a2 > 0.0:
-            direction_x_a2 = along_a2
-            direction_y_a2 = across_a2
+        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
+        if reach > machine_scale_times_free_angle:
+            arm_along_a2 = link_length_1 + tool_x * cos_a3 - tool_y * sin_a3
+            arm_across_a2 = tool_y * cos_a3 + tool_x * sin_a3
+            direction_x_a2 = arm_across_a2 * y + arm_along_a2 * x
+            direction_y_a2 = arm_along_a2 * y - arm_across_a2 * x
         else:
             reference_a2 = (ref_a2 - offset_a2) * DEGREE
             direction_x_a2 = cos(reference_a2)

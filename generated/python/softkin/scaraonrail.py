@@ -23,10 +23,10 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 19 additions, 10 multiplications, 0 divisions, 0 square roots, 7 sines
-    inverse: 39 additions, 28 multiplications, 3 divisions, 2 square roots, 3 sines
-    inverse, all 2 branches: 79 additions, 52 multiplications, 5 divisions, 3 square roots, 5 sines
+    inverse: 38 additions, 26 multiplications, 3 divisions, 2 square roots, 3 sines
+    inverse, all 2 branches: 78 additions, 49 multiplications, 5 divisions, 3 square roots, 5 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 1 additions, 1 multiplications, 0 divisions, 0 square roots, 2
+    a branch at a singular pose, in addition: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2
     sines
 
 E1 is held: inverse kinematics leaves it where the reference has it (aRef in a block), and solves for the
@@ -100,7 +100,7 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_ScaraOnRail"
-    KEY = "scaraonrail f48b5e40e0d88139"
+    KEY = "scaraonrail a59e29ec1fc13d4d"
     AXES = (
         Axis(name="E1", kind="linear", unit="u", meaning="Rail along X: carries the arm", multi_turn=False),
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
@@ -304,21 +304,19 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
             (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        arm_across_a1 = link_length_2 * sin_a2
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1 * y + arm_along_a1 * wrist_x
-        across_a1 = arm_along_a1 * y - arm_across_a1 * wrist_x
-        # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            direction_x_a1 = along_a1
-            direction_y_a1 = across_a1
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
+        if reach > machine_scale_times_free_angle:
+            arm_along_a1 = link_length_1 + link_length_2 * cos_a2
+            arm_across_a1 = link_length_2 * sin_a2
+            direction_x_a1 = arm_across_a1 * y + arm_along_a1 * wrist_x
+            direction_y_a1 = arm_along_a1 * y - arm_across_a1 * wrist_x
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(reference_a1)
@@ -466,15 +464,13 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + tool_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - tool_y * cos_swing_a2) / effective_a2
-        arm_along_a1 = link_length_1 + tool_x * cos_a2 - tool_y * sin_a2
-        arm_across_a1 = tool_y * cos_a2 + tool_x * sin_a2
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1 * y + arm_along_a1 * wrist_x
-        across_a1 = arm_along_a1 * y - arm_across_a1 * wrist_x
-        # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            direction_x_a1 = along_a1
-            direction_y_a1 = across_a1
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
+        if reach > machine_scale_times_free_angle:
+            arm_along_a1 = link_length_1 + tool_x * cos_a2 - tool_y * sin_a2
+            arm_across_a1 = tool_y * cos_a2 + tool_x * sin_a2
+            direction_x_a1 = arm_across_a1 * y + arm_along_a1 * wrist_x
+            direction_y_a1 = arm_along_a1 * y - arm_across_a1 * wrist_x
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(reference_a1)

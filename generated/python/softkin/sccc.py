@@ -21,10 +21,10 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 21 additions, 15 multiplications, 0 divisions, 0 square roots, 7 sines
-    inverse: 50 additions, 45 multiplications, 5 divisions, 3 square roots, 3 sines
-    inverse, all 2 branches: 97 additions, 76 multiplications, 7 divisions, 4 square roots, 5 sines
+    inverse: 49 additions, 43 multiplications, 5 divisions, 3 square roots, 3 sines
+    inverse, all 2 branches: 96 additions, 73 multiplications, 7 divisions, 4 square roots, 5 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 10 additions, 9 multiplications, 0 divisions, 0 square roots, 2
+    a branch at a singular pose, in addition: 9 additions, 8 multiplications, 0 divisions, 0 square roots, 2
     sines
 
 A belt arm with all motors in the base typically has coupling_12 = coupling_23 = -1.
@@ -116,7 +116,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_SCCC"
-    KEY = "sccc 1341c7b6b1466e58"
+    KEY = "sccc 44de60f530721870"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Link 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Link 2 about Z", multi_turn=True),
@@ -337,21 +337,19 @@ class SCCC(OffsetKinematics, TwistChoice):
         if not (abs(cos_a2) <= bound_of_cos_a2):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
             (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        arm_across_a1 = link_length_2 * sin_a2
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
-        across_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
-        # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            direction_x_a1 = along_a1
-            direction_y_a1 = across_a1
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
+        if reach > machine_scale_times_free_angle:
+            arm_along_a1 = link_length_1 + link_length_2 * cos_a2
+            arm_across_a1 = link_length_2 * sin_a2
+            direction_x_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
+            direction_y_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             direction_x_a1 = cos(reference_a1)
@@ -595,14 +593,13 @@ class SCCC(OffsetKinematics, TwistChoice):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (tool_x * cos_swing_a2 + tool_y * sin_swing_a2) / effective_a2
         sin_a2 = (tool_x * sin_swing_a2 - tool_y * cos_swing_a2) / effective_a2
-        arm_along_a1 = link_length_1 + tool_x * cos_a2 - tool_y * sin_a2
-        arm_across_a1 = tool_y * cos_a2 + tool_x * sin_a2
-        along_a1 = arm_across_a1 * y + arm_along_a1 * x  # rotation by a1 that takes the arm to its target point
-        across_a1 = arm_along_a1 * y - arm_across_a1 * x
-        # at a singularity: the angle of the reference
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            direction_x_a1 = along_a1
-            direction_y_a1 = across_a1
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
+        if reach > machine_scale_times_free_angle:
+            arm_along_a1 = link_length_1 + tool_x * cos_a2 - tool_y * sin_a2
+            arm_across_a1 = tool_y * cos_a2 + tool_x * sin_a2
+            direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
+            direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
         else:
             direction_x_a1 = cos(reference_a1)
             direction_y_a1 = sin(reference_a1)

@@ -82,6 +82,9 @@ def placed(*points: tuple[float, float]) -> dict[str, float]:
 RAILS = placed((0.0, 150.0), (-130.0, -75.0), (130.0, -75.0))
 SMALL = {"tcp_displacement": 20.0}
 LINE = placed((100.0, 10.0), (200.0, 20.0), (300.0, 30.0))
+WIDE = {f"azimuth_{i}": a for i, a in zip("123", (0.0, 90.0, -90.0), strict=True)}
+WIDE |= {f"base_radius_{i}": 9000.0 for i in "123"}
+EVEN = {f"{name}_{i}": v for i in (1, 2, 3) for name, v in (("azimuth", 120.0 * i), ("base_radius", 700.0))}
 IMPOSSIBLE = {
     "a plate smaller than its joints": (
         "Kin_Tripod_Rotary",
@@ -110,6 +113,10 @@ IMPOSSIBLE = {
         {"azimuth_1": 0.0, "azimuth_2": 90.0, "azimuth_3": 90.0},
         "azimuth",
     ),
+    "drives too far apart": ("Kin_Delta_P3C_Type3", DELTA, WIDE, "reach the plate"),
+    "arms that meet two and two": ("Kin_Delta_P3C_Type3", DELTA, EVEN, "reach the plate"),
+    "rods too short for the rails": ("Kin_Tripod_P3Z", RAILS, {"arm_length": 20.0}, "reach the plate"),
+    "rods that meet two and two": ("Kin_Tripod_P3Z", RAILS, {"arm_length": 140.0}, "reach the plate"),
 }
 POSSIBLE = {
     "a plate as small as its joints": ("Kin_Tripod_Rotary", TRIPOD, {"stewart_radius": 20.0, "distance": 40.0}),

@@ -12,7 +12,8 @@ import pytest
 from derive.description.mechanism import Mechanism
 from tests.catalogue.closure import Closure
 from tests.catalogue.loops.edges import EDGES, OTHER_WAY_ROUND, PLACES
-from tests.catalogue.loops.test_bounds import IMPOSSIBLE
+from tests.catalogue.loops.test_impossible import EDGES as ENDS
+from tests.catalogue.loops.test_impossible import IMPOSSIBLE
 from tests.text import (
     test_axis_settings,
     test_blocks_alone,
@@ -88,9 +89,11 @@ def run_the_tests(mechanism: Mechanism, loops: tuple[Loop, ...]) -> None:
     test_refusals.test_every_limit_refuses_alone(loops)
     check_other_turns(loops[1], loops[1].regular[0])
     test_axis_settings.every_statement_of_the_settings(mechanism)
-    for name, given, changes, _ in IMPOSSIBLE.values():
-        if name == mechanism.name:
-            assert Controller(loops[0].library, mechanism).initialise(given | changes) == NOT_INITIALIZED
+    impossible = [given | changes for name, given, changes, _ in IMPOSSIBLE.values() if name == mechanism.name]
+    own = type(loops[0].robot).__name__
+    impossible += [beyond(1e-6) for name, (beyond, _) in ENDS.items() if name == own]
+    for given in impossible:
+        assert Controller(loops[0].library, mechanism).initialise(given) == NOT_INITIALIZED
 
 
 def go_out(loop: Loop) -> None:

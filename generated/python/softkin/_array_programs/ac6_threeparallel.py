@@ -778,11 +778,14 @@ class ArrayPrograms(Programs):
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = root(sine_square_q3) * sigma_elbow * k.quotient_in_closed_sin_q3
         arm_across_q2 = k.a3 * sin_q3
-        size_in_within_48 = absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
-        within_48 = (reach > k.product_in_lost_digits_38) | (
-            size_in_within_48 - (k.machine_scale_times_rounding + reach) * k.product_in_within_48 <= 0.0
+        away_q2 = select(
+            reach > k.product_in_lost_digits_38,
+            0.0,
+            absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            / (k.product_in_away_q2 + reach),
         )
-        lost_digits_48 = (opposite(within_48)) & (
+        within_49 = away_q2 <= k.machine_scale_times_rounding
+        lost_digits_49 = (opposite(within_49)) & (
             (absolute(q6_radius_of_q5) <= 0.01)
             | (absolute(radius_q6) <= 0.01)
             | (absolute(sin_q3) <= 0.01)
@@ -832,16 +835,10 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, lost_digits_38 | (absolute(cos_q3) <= k.bound_of_cos_q3), Status.UNREACHABLE)
         # q2: out of reach
-        require(
-            status,
-            lost_digits_48
-            | (reach > k.product_in_lost_digits_38)
-            | (size_in_within_48 - k.product_in_within_48 * (k.product_in_within_48 + reach) <= 0.0),
-            Status.UNREACHABLE,
-        )
+        require(status, lost_digits_49 | (away_q2 <= k.product_in_away_q2), Status.UNREACHABLE)
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
-            lost_digits_38 | lost_digits_48,
+            lost_digits_38 | lost_digits_49,
             self.meet_pose,
             (
                 ref_a1,
@@ -885,13 +882,7 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, met | (absolute(cos_q3) <= k.bound_of_cos_q3), Status.UNREACHABLE)
         # q2: out of reach
-        require(
-            status,
-            met
-            | (reach > k.product_in_lost_digits_38)
-            | (size_in_within_48 - k.product_in_within_48 * (k.product_in_within_48 + reach) <= 0.0),
-            Status.UNREACHABLE,
-        )
+        require(status, met | (away_q2 <= k.product_in_away_q2), Status.UNREACHABLE)
         return (
             select(met, found_a1, axis_a1),
             select(met, found_a2, axis_a2),

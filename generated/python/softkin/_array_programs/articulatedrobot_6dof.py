@@ -793,16 +793,19 @@ class ArrayPrograms(Programs):
         sin_swing_q3 = -2.0 * root(sine_square_q3) * sigma_elbow / divisor_of_cos_q3
         arm_along_q2 = -k.effective_q3 * sin_swing_q3
         arm_across_q2 = k.a2 + k.effective_q3 * cos_swing_q3
-        size_in_within_35 = absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+        away_q2 = select(
+            reach > k.product_in_lost_digits_23,
+            0.0,
+            absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            / (k.product_in_away_q2 + reach),
+        )
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = k.a3_by_effective_q3 * cos_swing_q3 - k.d4_by_effective_q3 * sin_swing_q3
         sin_q3 = k.a3_by_effective_q3 * sin_swing_q3 + k.d4_by_effective_q3 * cos_swing_q3
-        within_35 = (reach > k.product_in_lost_digits_23) | (
-            size_in_within_35 - (k.machine_scale_times_rounding + reach) * k.product_in_within_35 <= 0.0
-        )
-        lost_digits_35 = (opposite(within_35)) & (
+        within_36 = away_q2 <= k.machine_scale_times_rounding
+        lost_digits_36 = (opposite(within_36)) & (
             (absolute(ahead_q1) <= k.product_in_lost_digits_23)
-            | (absolute(k.a2_times_a3_times_2 * sin_q3 - k.a2_times_d4_times_2 * cos_q3) <= k.product_in_lost_digits_35)
+            | (absolute(k.a2_times_a3_times_2 * sin_q3 - k.a2_times_d4_times_2 * cos_q3) <= k.product_in_lost_digits_36)
         )
 
         def elsewhere_cos_q1(ref_a1: Real) -> Reals:
@@ -896,16 +899,10 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, lost_digits_23 | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
         # q2: out of reach
-        require(
-            status,
-            lost_digits_35
-            | (reach > k.product_in_lost_digits_23)
-            | (size_in_within_35 - k.product_in_within_35 * (k.product_in_within_35 + reach) <= 0.0),
-            Status.UNREACHABLE,
-        )
+        require(status, lost_digits_36 | (away_q2 <= k.product_in_away_q2), Status.UNREACHABLE)
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
-            lost_digits_23 | lost_digits_35,
+            lost_digits_23 | lost_digits_36,
             self.meet_pose,
             (
                 ref_a1,
@@ -949,13 +946,7 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, met | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
         # q2: out of reach
-        require(
-            status,
-            met
-            | (reach > k.product_in_lost_digits_23)
-            | (size_in_within_35 - k.product_in_within_35 * (k.product_in_within_35 + reach) <= 0.0),
-            Status.UNREACHABLE,
-        )
+        require(status, met | (away_q2 <= k.product_in_away_q2), Status.UNREACHABLE)
         return (
             select(met, found_a1, axis_a1),
             select(met, found_a2, axis_a2),

@@ -37,7 +37,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 259
+    VALUES = 257
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def meet_point(self, given: Values, status: Codes) -> Values:
@@ -464,15 +464,10 @@ class ArrayPrograms(Programs):
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + angle_a1 / DEGREE, near_a1)  # A1: whole turns added
-        arm_along_a2 = k.link_length_1 - k.link_length_2 * cos_swing_a3_from_a2
         # sine squared, times the squared scale
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3_from_a2 = root(sine_square_a3_from_a2) * sigma_elbow * k.half_by_link_length_1_by_link_length_2
-        arm_across_a2 = k.link_length_2 * cos_a3_from_a2
-        # rotation by a2 that takes the arm to its target point
-        along_a2 = arm_across_a2 * wrist_a1_radius + arm_along_a2 * wrist_z
-        across_a2 = arm_along_a2 * wrist_a1_radius - arm_across_a2 * wrist_z
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
@@ -480,10 +475,15 @@ class ArrayPrograms(Programs):
             direction_y_a2 = sin(reference_a2)
             return (direction_x_a2, direction_y_a2)
 
-        # at a singularity: the angle of the reference
+        arm_along_a2 = k.link_length_1 - k.link_length_2 * cos_swing_a3_from_a2
+        arm_across_a2 = k.link_length_2 * cos_a3_from_a2
+        direction_x_a2 = arm_across_a2 * wrist_a1_radius + arm_along_a2 * wrist_z
+        direction_y_a2 = arm_along_a2 * wrist_a1_radius - arm_across_a2 * wrist_z
+        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
         direction_x_a2, direction_y_a2 = elsewhere(
-            (reach > k.machine_scale_times_free_angle) & (across_a2 * across_a2 + along_a2 * along_a2 > 0.0),
-            (along_a2, across_a2),
+            reach > k.machine_scale_times_free_angle,
+            (direction_x_a2, direction_y_a2),
             elsewhere_direction_x_a2,
             (ref_a2,),
         )

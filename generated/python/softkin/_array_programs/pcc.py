@@ -32,7 +32,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 45
+    VALUES = 43
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -74,13 +74,9 @@ class ArrayPrograms(Programs):
             k.link_length_1_minus_link_length_2 + reach
         )
         cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1) * k.quotient_in_cos_a2_from_a1
-        arm_along_a1 = k.link_length_1 + k.link_length_2 * cos_a2_from_a1
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
         sin_a2_from_a1 = root(sine_square_a2_from_a1) * sigma_elbow * k.half_by_link_length_1_by_link_length_2
-        arm_across_a1 = k.link_length_2 * sin_a2_from_a1
-        along_a1 = arm_across_a1 * y + arm_along_a1 * x  # rotation by a1 that takes the arm to its target point
-        across_a1 = arm_along_a1 * y - arm_across_a1 * x
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
@@ -88,10 +84,15 @@ class ArrayPrograms(Programs):
             direction_y_a1 = sin(reference_a1)
             return (direction_x_a1, direction_y_a1)
 
-        # at a singularity: the angle of the reference
+        arm_along_a1 = k.link_length_1 + k.link_length_2 * cos_a2_from_a1
+        arm_across_a1 = k.link_length_2 * sin_a2_from_a1
+        direction_x_a1 = arm_across_a1 * y + arm_along_a1 * x
+        direction_y_a1 = arm_along_a1 * y - arm_across_a1 * x
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
         direction_x_a1, direction_y_a1 = elsewhere(
-            (reach > k.machine_scale_times_free_angle) & (across_a1 * across_a1 + along_a1 * along_a1 > 0.0),
-            (along_a1, across_a1),
+            reach > k.machine_scale_times_free_angle,
+            (direction_x_a1, direction_y_a1),
             elsewhere_direction_x_a1,
             (ref_a1,),
         )

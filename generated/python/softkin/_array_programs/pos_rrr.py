@@ -704,16 +704,19 @@ class ArrayPrograms(Programs):
         sin_swing_q3 = -2.0 * root(sine_square_q3) * sigma_elbow / divisor_of_cos_q3
         arm_along_q2 = -k.effective_q3_2 * sin_swing_q3
         arm_across_q2 = k.a2 + k.effective_q3_2 * cos_swing_q3
-        size_in_within_31 = absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+        away_q2 = select(
+            reach > k.product_in_lost_digits_19,
+            0.0,
+            absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            / (k.product_in_away_q2 + reach),
+        )
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = k.a3_by_effective_q3_2 * cos_swing_q3 - k.d4_by_effective_q3_2 * sin_swing_q3
         sin_q3 = k.a3_by_effective_q3_2 * sin_swing_q3 + k.d4_by_effective_q3_2 * cos_swing_q3
-        within_31 = (reach > k.product_in_lost_digits_19) | (
-            size_in_within_31 - (k.machine_scale_times_rounding + reach) * k.product_in_within_31 <= 0.0
-        )
-        lost_digits_31 = (opposite(within_31)) & (
+        within_32 = away_q2 <= k.machine_scale_times_rounding
+        lost_digits_32 = (opposite(within_32)) & (
             (absolute(ahead_q1) <= k.product_in_lost_digits_19)
-            | (absolute(k.a2_times_a3_times_2 * sin_q3 - k.a2_times_d4_times_2 * cos_q3) <= k.product_in_lost_digits_31)
+            | (absolute(k.a2_times_a3_times_2 * sin_q3 - k.a2_times_d4_times_2 * cos_q3) <= k.product_in_lost_digits_32)
         )
 
         def elsewhere_cos_q1(ref_a1: Real) -> Reals:
@@ -760,16 +763,10 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, lost_digits_19 | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
         # q2: out of reach
-        require(
-            status,
-            lost_digits_31
-            | (reach > k.product_in_lost_digits_19)
-            | (size_in_within_31 - k.product_in_within_31 * (k.product_in_within_31 + reach) <= 0.0),
-            Status.UNREACHABLE,
-        )
+        require(status, lost_digits_32 | (away_q2 <= k.product_in_away_q2), Status.UNREACHABLE)
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
-            lost_digits_19 | lost_digits_31,
+            lost_digits_19 | lost_digits_32,
             self.meet_pose,
             (
                 ref_a1,
@@ -794,13 +791,7 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, met | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
         # q2: out of reach
-        require(
-            status,
-            met
-            | (reach > k.product_in_lost_digits_19)
-            | (size_in_within_31 - k.product_in_within_31 * (k.product_in_within_31 + reach) <= 0.0),
-            Status.UNREACHABLE,
-        )
+        require(status, met | (away_q2 <= k.product_in_away_q2), Status.UNREACHABLE)
         return (select(met, found_a1, axis_a1), select(met, found_a2, axis_a2), select(met, found_a3, axis_a3)), status
 
     def limits(self, axes: Reals) -> Codes:

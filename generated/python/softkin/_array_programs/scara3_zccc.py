@@ -32,7 +32,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 68
+    VALUES = 66
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
@@ -91,13 +91,8 @@ class ArrayPrograms(Programs):
         one_plus_cos_a3 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
         cos_a3 = (one_plus_cos_a3 - one_less_cos_a3) * k.quotient_in_cos_a3
         axis_a1 = k.offset_a1 + z
-        arm_along_a2 = k.link_length_1 + k.link_length_2 * cos_a3
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = root(sine_square_a3) * sigma_elbow * k.half_by_link_length_1_by_link_length_2
-        arm_across_a2 = k.link_length_2 * sin_a3
-        # rotation by a2 that takes the arm to its target point
-        along_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
-        across_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
             reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
@@ -105,10 +100,15 @@ class ArrayPrograms(Programs):
             direction_y_a2 = sin(reference_a2)
             return (direction_x_a2, direction_y_a2)
 
-        # at a singularity: the angle of the reference
+        arm_along_a2 = k.link_length_1 + k.link_length_2 * cos_a3
+        arm_across_a2 = k.link_length_2 * sin_a3
+        direction_x_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
+        direction_y_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
+        # rotation by a2 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
         direction_x_a2, direction_y_a2 = elsewhere(
-            (reach > k.machine_scale_times_free_angle) & (across_a2 * across_a2 + along_a2 * along_a2 > 0.0),
-            (along_a2, across_a2),
+            reach > k.machine_scale_times_free_angle,
+            (direction_x_a2, direction_y_a2),
             elsewhere_direction_x_a2,
             (ref_a2,),
         )

@@ -32,7 +32,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 65
+    VALUES = 63
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
@@ -85,13 +85,8 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_a2 = (reach - k.link_length_1_minus_link_length_2) * (k.link_length_1_minus_link_length_2 + reach)
         cos_a2 = (one_plus_cos_a2 - one_less_cos_a2) * k.quotient_in_cos_a2
-        arm_along_a1 = k.link_length_1 + k.link_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = root(sine_square_a2) * sigma_elbow * k.half_by_link_length_1_by_link_length_2
-        arm_across_a1 = k.link_length_2 * sin_a2
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1 * y + arm_along_a1 * wrist_x
-        across_a1 = arm_along_a1 * y - arm_across_a1 * wrist_x
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
@@ -99,10 +94,15 @@ class ArrayPrograms(Programs):
             direction_y_a1 = sin(reference_a1)
             return (direction_x_a1, direction_y_a1)
 
-        # at a singularity: the angle of the reference
+        arm_along_a1 = k.link_length_1 + k.link_length_2 * cos_a2
+        arm_across_a1 = k.link_length_2 * sin_a2
+        direction_x_a1 = arm_across_a1 * y + arm_along_a1 * wrist_x
+        direction_y_a1 = arm_along_a1 * y - arm_across_a1 * wrist_x
+        # rotation by a1 that takes the arm to its target point; at a singularity: the angle of the
+        # reference
         direction_x_a1, direction_y_a1 = elsewhere(
-            (reach > k.machine_scale_times_free_angle) & (across_a1 * across_a1 + along_a1 * along_a1 > 0.0),
-            (along_a1, across_a1),
+            reach > k.machine_scale_times_free_angle,
+            (direction_x_a1, direction_y_a1),
             elsewhere_direction_x_a1,
             (ref_a1,),
         )

@@ -27,8 +27,8 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
     mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
     offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-    offset_a6, product_in_lost_digits_38 = k.offset_a6, k.product_in_lost_digits_38
-    product_in_within_48, quotient_in_closed_cos_q3 = k.product_in_within_48, k.quotient_in_closed_cos_q3
+    offset_a6, product_in_away_q2 = k.offset_a6, k.product_in_away_q2
+    product_in_lost_digits_38, quotient_in_closed_cos_q3 = k.product_in_lost_digits_38, k.quotient_in_closed_cos_q3
     quotient_in_closed_sin_q3, rounding_q1, single_a1 = k.quotient_in_closed_sin_q3, k.rounding_q1, k.single_a1
     single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
     single_a6 = k.single_a6
@@ -227,98 +227,99 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q3_left_up_down = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
         arm_along_q2_left_down = a2 + a3 * cos_q3_left_down
         arm_across_q2_left_up_down = a3 * sin_q3_left_up_down
-        size_in_within_48_left_up_down = abs(
-            arm_across_q2_left_up_down * arm_across_q2_left_up_down
-            + arm_along_q2_left_down * arm_along_q2_left_down
-            - reach_left_down * reach_left_down
+        away_q2_left_up_down = (
+            0.0
+            if reach_left_down > product_in_lost_digits_38
+            else abs(
+                arm_across_q2_left_up_down * arm_across_q2_left_up_down
+                + arm_along_q2_left_down * arm_along_q2_left_down
+                - reach_left_down * reach_left_down
+            )
+            / (product_in_away_q2 + reach_left_down)
         )
-        within_48 = (reach_left_down > product_in_lost_digits_38) or (
-            size_in_within_48_left_up_down - (machine_scale_times_rounding + reach_left_down) * product_in_within_48
-            <= 0.0
-        )
-        lost_digits_48_down = (not within_48) and (
+        within_49 = away_q2_left_up_down <= machine_scale_times_rounding
+        lost_digits_49_down = (not within_49) and (
             (-0.01 <= radius_q6_left <= 0.01)
             or (-0.01 <= sin_q3_left_up_down <= 0.01)
             or (abs(ahead_q1) <= product_in_lost_digits_38)
         )
         # digits may be lost
-        if not (not lost_digits_48_down):
+        if not (not lost_digits_49_down):
             return ()
         sine_square_q3 = one_less_cos_q3_left_up * one_plus_cos_q3_left_up  # sine squared, times the squared scale
         sin_q3_left_up_up = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
         arm_along_q2_left_up = a2 + a3 * cos_q3_left_up
         arm_across_q2_left_up_up = a3 * sin_q3_left_up_up
-        size_in_within_48_left_up_up = abs(
-            arm_across_q2_left_up_up * arm_across_q2_left_up_up
-            + arm_along_q2_left_up * arm_along_q2_left_up
-            - reach_left_up * reach_left_up
+        away_q2_left_up_up = (
+            0.0
+            if reach_left_up > product_in_lost_digits_38
+            else abs(
+                arm_across_q2_left_up_up * arm_across_q2_left_up_up
+                + arm_along_q2_left_up * arm_along_q2_left_up
+                - reach_left_up * reach_left_up
+            )
+            / (product_in_away_q2 + reach_left_up)
         )
-        within_48 = (reach_left_up > product_in_lost_digits_38) or (
-            size_in_within_48_left_up_up - (machine_scale_times_rounding + reach_left_up) * product_in_within_48 <= 0.0
-        )
-        lost_digits_48_up = (not within_48) and (
+        within_49 = away_q2_left_up_up <= machine_scale_times_rounding
+        lost_digits_49_up = (not within_49) and (
             (-0.01 <= radius_q6_left <= 0.01)
             or (-0.01 <= sin_q3_left_up_up <= 0.01)
             or (abs(ahead_q1) <= product_in_lost_digits_38)
         )
         # digits may be lost
-        if not ((not lost_digits_48_up) and (not lost_digits_48_down) and (not lost_digits_48_up)):
+        if not ((not lost_digits_49_up) and (not lost_digits_49_down) and (not lost_digits_49_up)):
             return ()
         # sine squared, times the squared scale
         sine_square_q3 = one_less_cos_q3_right_down * one_plus_cos_q3_right_down
         sin_q3_right_up_down = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
         arm_along_q2_right_down = a2 + a3 * cos_q3_right_down
         arm_across_q2_right_up_down = a3 * sin_q3_right_up_down
-        size_in_within_48_right_up_down = abs(
-            arm_across_q2_right_up_down * arm_across_q2_right_up_down
-            + arm_along_q2_right_down * arm_along_q2_right_down
-            - reach_right_down * reach_right_down
+        away_q2_right_up_down = (
+            0.0
+            if reach_right_down > product_in_lost_digits_38
+            else abs(
+                arm_across_q2_right_up_down * arm_across_q2_right_up_down
+                + arm_along_q2_right_down * arm_along_q2_right_down
+                - reach_right_down * reach_right_down
+            )
+            / (product_in_away_q2 + reach_right_down)
         )
-        within_48 = (reach_right_down > product_in_lost_digits_38) or (
-            size_in_within_48_right_up_down - (machine_scale_times_rounding + reach_right_down) * product_in_within_48
-            <= 0.0
-        )
-        lost_digits_48_down = (not within_48) and (
+        within_49 = away_q2_right_up_down <= machine_scale_times_rounding
+        lost_digits_49_down = (not within_49) and (
             (-0.01 <= radius_q6_right <= 0.01)
             or (-0.01 <= sin_q3_right_up_down <= 0.01)
             or (abs(ahead_q1) <= product_in_lost_digits_38)
         )
         # digits may be lost
-        if not (not lost_digits_48_down):
+        if not (not lost_digits_49_down):
             return ()
         # sine squared, times the squared scale
         sine_square_q3 = one_less_cos_q3_right_up * one_plus_cos_q3_right_up
         sin_q3_right_up_up = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
         arm_along_q2_right_up = a2 + a3 * cos_q3_right_up
         arm_across_q2_right_up_up = a3 * sin_q3_right_up_up
-        size_in_within_48_right_up_up = abs(
-            arm_across_q2_right_up_up * arm_across_q2_right_up_up
-            + arm_along_q2_right_up * arm_along_q2_right_up
-            - reach_right_up * reach_right_up
+        away_q2_right_up_up = (
+            0.0
+            if reach_right_up > product_in_lost_digits_38
+            else abs(
+                arm_across_q2_right_up_up * arm_across_q2_right_up_up
+                + arm_along_q2_right_up * arm_along_q2_right_up
+                - reach_right_up * reach_right_up
+            )
+            / (product_in_away_q2 + reach_right_up)
         )
-        within_48 = (reach_right_up > product_in_lost_digits_38) or (
-            size_in_within_48_right_up_up - (machine_scale_times_rounding + reach_right_up) * product_in_within_48
-            <= 0.0
-        )
-        lost_digits_48_up = (not within_48) and (
+        within_49 = away_q2_right_up_up <= machine_scale_times_rounding
+        lost_digits_49_up = (not within_49) and (
             (-0.01 <= radius_q6_right <= 0.01)
             or (-0.01 <= sin_q3_right_up_up <= 0.01)
             or (abs(ahead_q1) <= product_in_lost_digits_38)
         )
         # digits may be lost
-        if not ((not lost_digits_48_up) and (not lost_digits_48_down) and (not lost_digits_48_up)):
+        if not ((not lost_digits_49_up) and (not lost_digits_49_down) and (not lost_digits_49_up)):
             return ()
         # q2: out of reach
         if abs(cos_q3_left_down) <= bound_of_cos_q3:
-            refusal_left_up_down = (
-                0
-                if (reach_left_down > product_in_lost_digits_38)
-                or (
-                    size_in_within_48_left_up_down - product_in_within_48 * (product_in_within_48 + reach_left_down)
-                    <= 0.0
-                )
-                else 3
-            )
+            refusal_left_up_down = 0 if away_q2_left_up_down <= product_in_away_q2 else 3
         else:
             refusal_left_up_down = 3
         axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left) * RADIAN
@@ -348,12 +349,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_left_down = offset_a6 + arctan2(sin_q6_left_down, cos_q6_left_down) * RADIAN
         # q2: out of reach
         if abs(cos_q3_left_up) <= bound_of_cos_q3:
-            refusal_left_up_up = (
-                0
-                if (reach_left_up > product_in_lost_digits_38)
-                or (size_in_within_48_left_up_up - product_in_within_48 * (product_in_within_48 + reach_left_up) <= 0.0)
-                else 3
-            )
+            refusal_left_up_up = 0 if away_q2_left_up_up <= product_in_away_q2 else 3
         else:
             refusal_left_up_up = 3
         angle_of_arm_along_q2_up = arctan2(arm_across_q2_left_up_up, arm_along_q2_left_up)
@@ -404,15 +400,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_left_down_up) * RADIAN
         # q2: out of reach
         if abs(cos_q3_right_down) <= bound_of_cos_q3:
-            refusal_right_up_down = (
-                0
-                if (reach_right_down > product_in_lost_digits_38)
-                or (
-                    size_in_within_48_right_up_down - product_in_within_48 * (product_in_within_48 + reach_right_down)
-                    <= 0.0
-                )
-                else 3
-            )
+            refusal_right_up_down = 0 if away_q2_right_up_down <= product_in_away_q2 else 3
         else:
             refusal_right_up_down = 3
         axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right) * RADIAN
@@ -441,15 +429,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_right_down = offset_a6 + arctan2(sin_q6_right_down, cos_q6_right_down) * RADIAN
         # q2: out of reach
         if abs(cos_q3_right_up) <= bound_of_cos_q3:
-            refusal_right_up_up = (
-                0
-                if (reach_right_up > product_in_lost_digits_38)
-                or (
-                    size_in_within_48_right_up_up - product_in_within_48 * (product_in_within_48 + reach_right_up)
-                    <= 0.0
-                )
-                else 3
-            )
+            refusal_right_up_up = 0 if away_q2_right_up_up <= product_in_away_q2 else 3
         else:
             refusal_right_up_up = 3
         angle_of_arm_along_q2_up = arctan2(arm_across_q2_right_up_up, arm_along_q2_right_up)
@@ -648,24 +628,24 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_closed_sin_q3
         arm_along_q2 = a2 + a3 * cos_q3
         arm_across_q2 = a3 * sin_q3
-        size_in_within_48 = abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
-        within_48 = (reach > product_in_lost_digits_38) or (
-            size_in_within_48 - (machine_scale_times_rounding + reach) * product_in_within_48 <= 0.0
+        away_q2 = (
+            0.0
+            if reach > product_in_lost_digits_38
+            else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            / (product_in_away_q2 + reach)
         )
-        lost_digits_48 = (not within_48) and (
+        within_49 = away_q2 <= machine_scale_times_rounding
+        lost_digits_49 = (not within_49) and (
             (-0.01 <= q6_radius_of_q5 <= 0.01)
             or (-0.01 <= radius_q6 <= 0.01)
             or (-0.01 <= sin_q3 <= 0.01)
             or (abs(ahead_q1) <= product_in_lost_digits_38)
         )
         # digits may be lost
-        if not (not lost_digits_48):
+        if not (not lost_digits_49):
             return ()
         # q2: out of reach
-        if not (
-            (reach > product_in_lost_digits_38)
-            or (size_in_within_48 - product_in_within_48 * (product_in_within_48 + reach) <= 0.0)
-        ):
+        if not (away_q2 <= product_in_away_q2):
             return None
         # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1

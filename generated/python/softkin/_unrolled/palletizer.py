@@ -43,77 +43,49 @@ def unrolled(k: Constants) -> Unrolled:
             return 4 * (refused[Status.UNREACHABLE],)
         radius_a1 = sqrt(x * x + y * y)  # polar coordinates: the radius at angle a1
         # coordinate of the point that the remaining links must reach
-        wrist_a1_radius = radius_a1 - shoulder_offset_plus_wrist_offset_x
+        wrist_a1_radius_front = radius_a1 - shoulder_offset_plus_wrist_offset_x
         wrist_z = z - base_height_plus_wrist_offset_z  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
-        reach = sqrt(wrist_a1_radius * wrist_a1_radius + wrist_z * wrist_z)
+        reach_front = sqrt(wrist_a1_radius_front * wrist_a1_radius_front + wrist_z * wrist_z)
         # law of cosines for a3_from_a2 (z² + a1 radius²): 1 - cosine, times a scale
-        one_less_cos_a3_from_a2 = (reach - link_length_1_minus_link_length_2) * (
-            link_length_1_minus_link_length_2 + reach
+        one_less_cos_a3_from_a2 = (reach_front - link_length_1_minus_link_length_2) * (
+            link_length_1_minus_link_length_2 + reach_front
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach) * (
-            link_length_1_plus_link_length_2 - reach
+        one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach_front) * (
+            link_length_1_plus_link_length_2 - reach_front
         )
-        cos_swing_a3_from_a2 = (
+        cos_swing_a3_from_a2_front = (
             one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
         ) * quotient_in_closed_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
-        refusal_front = 0 if abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2 else 3
-        arm_along_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2
+        refusal_front = 0 if abs(cos_swing_a3_from_a2_front) <= bound_of_cos_swing_a3_from_a2 else 3
         # sine squared, times the squared scale
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3_from_a2 = (
             sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0
         ) * half_by_link_length_1_by_link_length_2
-        arm_across_a2 = link_length_2 * cos_a3_from_a2
-        angle_of_arm_along_a2 = arctan2(arm_across_a2, arm_along_a2)
-        angle_of_wrist_z = arctan2(wrist_a1_radius, wrist_z)
-        reference_a2 = (ref_a2 - offset_a2) * DEGREE
-        arm_along_a2_front_times_wrist_z = arm_along_a2 * wrist_z
-        product_in_along_a2 = arm_across_a2 * wrist_a1_radius
-        # rotation by a2 that takes the arm to its target point
-        along_a2 = arm_along_a2_front_times_wrist_z + product_in_along_a2
-        arm_across_a2_front_up_times_wrist_z = arm_across_a2 * wrist_z
-        product_in_across_a2 = arm_along_a2 * wrist_a1_radius
-        across_a2 = product_in_across_a2 - arm_across_a2_front_up_times_wrist_z
-        angle_a2_front_up = (
-            angle_of_wrist_z - angle_of_arm_along_a2
-            if (reach > machine_scale_times_free_angle) and (across_a2 * across_a2 + along_a2 * along_a2 > 0.0)
-            else reference_a2
-        )
-        angle_a3_from_a2 = arctan2(cos_swing_a3_from_a2, cos_a3_from_a2)
-        # a3 from the sum a3_from_a2 of angles about parallel axes
-        axis_a3_front_up = offset_a3 + (angle_a2_front_up + angle_a3_from_a2) * RADIAN
+        angle_a3_from_a2 = arctan2(cos_swing_a3_from_a2_front, cos_a3_from_a2)
         angle_heading = arctan2(heading_across, heading_along)
-        # rotation by a2 that takes the arm to its target point
-        along_a2 = arm_along_a2_front_times_wrist_z - product_in_along_a2
-        across_a2 = arm_across_a2_front_up_times_wrist_z + product_in_across_a2
-        angle_a2_front_down = (
-            angle_of_arm_along_a2 + angle_of_wrist_z
-            if (reach > machine_scale_times_free_angle) and (across_a2 * across_a2 + along_a2 * along_a2 > 0.0)
-            else reference_a2
-        )
-        # a3 from the sum a3_from_a2 of angles about parallel axes
-        axis_a3_front_down = offset_a3 + (angle_a2_front_down + (180.0 * DEGREE - angle_a3_from_a2)) * RADIAN
         # coordinate of the point that the remaining links must reach
-        wrist_a1_radius = -radius_a1 - shoulder_offset_plus_wrist_offset_x
+        wrist_a1_radius_back = -radius_a1 - shoulder_offset_plus_wrist_offset_x
         # distance that the remaining links must span
-        reach = sqrt(wrist_a1_radius * wrist_a1_radius + wrist_z * wrist_z)
+        reach_back = sqrt(wrist_a1_radius_back * wrist_a1_radius_back + wrist_z * wrist_z)
         # law of cosines for a3_from_a2 (z² + a1 radius²): 1 - cosine, times a scale
-        one_less_cos_a3_from_a2 = (reach - link_length_1_minus_link_length_2) * (
-            link_length_1_minus_link_length_2 + reach
+        one_less_cos_a3_from_a2 = (reach_back - link_length_1_minus_link_length_2) * (
+            link_length_1_minus_link_length_2 + reach_back
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach) * (
-            link_length_1_plus_link_length_2 - reach
+        one_plus_cos_a3_from_a2 = (link_length_1_plus_link_length_2 + reach_back) * (
+            link_length_1_plus_link_length_2 - reach_back
         )
-        cos_swing_a3_from_a2 = (
+        cos_swing_a3_from_a2_back = (
             one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
         ) * quotient_in_closed_cos_swing_a3_from_a2
         # a3_from_a2: out of reach
-        refusal_back = 0 if abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2 else 3
+        refusal_back = 0 if abs(cos_swing_a3_from_a2_back) <= bound_of_cos_swing_a3_from_a2 else 3
+        # a3 from the sum a3_from_a2 of angles about parallel axes
         # cosine and sine of a4 from the cos heading and sin heading equations
         if radius_a1 > machine_scale_times_free_angle:
             # polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the
@@ -122,7 +94,22 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a1 = y
             angle_a1_front = arctan2(direction_y_a1, direction_x_a1_front)
             axis_a1_front = offset_a1 + angle_a1_front * RADIAN
+            if reach_front > machine_scale_times_free_angle:
+                arm_along_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2_front
+                arm_across_a2 = link_length_2 * cos_a3_from_a2
+                angle_of_arm_along_a2 = arctan2(arm_across_a2, arm_along_a2)
+                angle_of_wrist_z = arctan2(wrist_a1_radius_front, wrist_z)
+                angle_a2_up = angle_of_wrist_z - angle_of_arm_along_a2
+                angle_a2_down = angle_of_arm_along_a2 + angle_of_wrist_z
+            else:
+                reference_a2 = (ref_a2 - offset_a2) * DEGREE
+                angle_a2_up = reference_a2
+                angle_a2_down = reference_a2
+            axis_a2_up = offset_a2 + angle_a2_up * RADIAN
+            axis_a3_front_up = offset_a3 + (angle_a2_up + angle_a3_from_a2) * RADIAN
             axis_a4_front = offset_a4 + (angle_heading - angle_a1_front) * RADIAN
+            axis_a2_down = offset_a2 + angle_a2_down * RADIAN
+            axis_a3_front_down = offset_a3 + (angle_a2_down + (180.0 * DEGREE - angle_a3_from_a2)) * RADIAN
             axis_a1_back = 180.0 + axis_a1_front
             axis_a4_back = 180.0 + axis_a4_front
         else:
@@ -136,56 +123,58 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_a1_back = direction_x_a1_front
             angle_a1_front = arctan2(direction_y_a1, direction_x_a1_front)
             axis_a1_front = offset_a1 + angle_a1_front * RADIAN
+            if reach_front > machine_scale_times_free_angle:
+                arm_along_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2_front
+                arm_across_a2 = link_length_2 * cos_a3_from_a2
+                angle_of_arm_along_a2 = arctan2(arm_across_a2, arm_along_a2)
+                angle_of_wrist_z = arctan2(wrist_a1_radius_front, wrist_z)
+                angle_a2_up = angle_of_wrist_z - angle_of_arm_along_a2
+                angle_a2_down = angle_of_arm_along_a2 + angle_of_wrist_z
+            else:
+                reference_a2 = (ref_a2 - offset_a2) * DEGREE
+                angle_a2_up = reference_a2
+                angle_a2_down = reference_a2
+            axis_a2_up = offset_a2 + angle_a2_up * RADIAN
+            axis_a3_front_up = offset_a3 + (angle_a2_up + angle_a3_from_a2) * RADIAN
             axis_a4_front = offset_a4 + (angle_heading - angle_a1_front) * RADIAN
+            axis_a2_down = offset_a2 + angle_a2_down * RADIAN
+            axis_a3_front_down = offset_a3 + (angle_a2_down + (180.0 * DEGREE - angle_a3_from_a2)) * RADIAN
             angle_a1_back = arctan2(direction_y_a1, direction_x_a1_back)
             axis_a1_back = offset_a1 + angle_a1_back * RADIAN
             axis_a4_back = offset_a4 + (angle_heading - angle_a1_back) * RADIAN
-        arm_along_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2
         # sine squared, times the squared scale
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a3_from_a2 = (
             sqrt(sine_square_a3_from_a2) if sine_square_a3_from_a2 > 0.0 else 0.0
         ) * half_by_link_length_1_by_link_length_2
-        arm_across_a2 = link_length_2 * cos_a3_from_a2
-        angle_of_arm_along_a2 = arctan2(arm_across_a2, arm_along_a2)
-        angle_of_wrist_z = arctan2(wrist_a1_radius, wrist_z)
-        arm_along_a2_back_times_wrist_z = arm_along_a2 * wrist_z
-        product_in_along_a2 = arm_across_a2 * wrist_a1_radius
-        # rotation by a2 that takes the arm to its target point
-        along_a2 = arm_along_a2_back_times_wrist_z + product_in_along_a2
-        arm_across_a2_back_up_times_wrist_z = arm_across_a2 * wrist_z
-        product_in_across_a2 = arm_along_a2 * wrist_a1_radius
-        across_a2 = product_in_across_a2 - arm_across_a2_back_up_times_wrist_z
-        angle_a2_back_up = (
-            angle_of_wrist_z - angle_of_arm_along_a2
-            if (reach > machine_scale_times_free_angle) and (across_a2 * across_a2 + along_a2 * along_a2 > 0.0)
-            else reference_a2
-        )
-        angle_a3_from_a2 = arctan2(cos_swing_a3_from_a2, cos_a3_from_a2)
+        if reach_back > machine_scale_times_free_angle:
+            angle_of_arm_along_a2 = arctan2(
+                link_length_2 * cos_a3_from_a2, link_length_1 - link_length_2 * cos_swing_a3_from_a2_back
+            )
+            angle_of_wrist_z = arctan2(wrist_a1_radius_back, wrist_z)
+            angle_a2_up = angle_of_wrist_z - angle_of_arm_along_a2
+            angle_a2_down = angle_of_arm_along_a2 + angle_of_wrist_z
+        else:
+            reference_a2 = (ref_a2 - offset_a2) * DEGREE
+            angle_a2_up = reference_a2
+            angle_a2_down = reference_a2
+        angle_a3_from_a2 = arctan2(cos_swing_a3_from_a2_back, cos_a3_from_a2)
         # a3 from the sum a3_from_a2 of angles about parallel axes
-        axis_a3_back_up = offset_a3 + (angle_a2_back_up + angle_a3_from_a2) * RADIAN
-        # rotation by a2 that takes the arm to its target point
-        along_a2 = arm_along_a2_back_times_wrist_z - product_in_along_a2
-        across_a2 = arm_across_a2_back_up_times_wrist_z + product_in_across_a2
-        angle_a2_back_down = (
-            angle_of_arm_along_a2 + angle_of_wrist_z
-            if (reach > machine_scale_times_free_angle) and (across_a2 * across_a2 + along_a2 * along_a2 > 0.0)
-            else reference_a2
-        )
+        axis_a3_back_up = offset_a3 + (angle_a2_up + angle_a3_from_a2) * RADIAN
         # a3 from the sum a3_from_a2 of angles about parallel axes
-        axis_a3_back_down = offset_a3 + (angle_a2_back_down + (180.0 * DEGREE - angle_a3_from_a2)) * RADIAN
+        axis_a3_back_down = offset_a3 + (angle_a2_down + (180.0 * DEGREE - angle_a3_from_a2)) * RADIAN
         return (
-            (axis_a1_front, offset_a2 + angle_a2_front_up * RADIAN, axis_a3_front_up, axis_a4_front)
+            (axis_a1_front, axis_a2_up, axis_a3_front_up, axis_a4_front)
             if refusal_front == 0
             else refused[refusal_front],
-            (axis_a1_back, offset_a2 + angle_a2_back_up * RADIAN, axis_a3_back_up, axis_a4_back)
+            (axis_a1_back, offset_a2 + angle_a2_up * RADIAN, axis_a3_back_up, axis_a4_back)
             if refusal_back == 0
             else refused[refusal_back],
-            (axis_a1_front, offset_a2 + angle_a2_front_down * RADIAN, axis_a3_front_down, axis_a4_front)
+            (axis_a1_front, axis_a2_down, axis_a3_front_down, axis_a4_front)
             if refusal_front == 0
             else refused[refusal_front],
-            (axis_a1_back, offset_a2 + angle_a2_back_down * RADIAN, axis_a3_back_down, axis_a4_back)
+            (axis_a1_back, offset_a2 + angle_a2_down * RADIAN, axis_a3_back_down, axis_a4_back)
             if refusal_back == 0
             else refused[refusal_back],
         )
@@ -232,7 +221,6 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_a1 = cos(reference_a1)
             direction_y_a1 = sin(reference_a1)
         angle_a1 = arctan2(direction_y_a1, direction_x_a1)
-        arm_along_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2
         # sine squared, times the squared scale
         sine_square_a3_from_a2 = one_less_cos_a3_from_a2 * one_plus_cos_a3_from_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -241,12 +229,10 @@ def unrolled(k: Constants) -> Unrolled:
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        arm_across_a2 = link_length_2 * cos_a3_from_a2
-        # rotation by a2 that takes the arm to its target point
-        along_a2 = arm_across_a2 * wrist_a1_radius + arm_along_a2 * wrist_z
-        across_a2 = arm_along_a2 * wrist_a1_radius - arm_across_a2 * wrist_z
-        if reach > machine_scale_times_free_angle and across_a2 * across_a2 + along_a2 * along_a2 > 0.0:
-            angle_a2 = arctan2(wrist_a1_radius, wrist_z) - arctan2(arm_across_a2, arm_along_a2)
+        if reach > machine_scale_times_free_angle:
+            angle_a2 = arctan2(wrist_a1_radius, wrist_z) - arctan2(
+                link_length_2 * cos_a3_from_a2, link_length_1 - link_length_2 * cos_swing_a3_from_a2
+            )
         else:
             angle_a2 = (ref_a2 - offset_a2) * DEGREE
         # a3 from the sum a3_from_a2 of angles about parallel axes

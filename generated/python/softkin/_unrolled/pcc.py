@@ -46,39 +46,24 @@ def unrolled(k: Constants) -> Unrolled:
         # a2_from_a1: out of reach
         if not (abs(cos_a2_from_a1) <= bound_of_cos_a2_from_a1):
             return 2 * (refused[Status.UNREACHABLE],)
-        arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
             sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0
         ) * half_by_link_length_1_by_link_length_2
-        arm_across_a1 = link_length_2 * sin_a2_from_a1
-        angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
-        angle_of_x = arctan2(y, x)
-        reference_a1 = (ref_a1 - offset_a1) * DEGREE
-        arm_along_a1_times_x = arm_along_a1 * x
-        arm_across_a1_right_times_y = arm_across_a1 * y
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1_right_times_y + arm_along_a1_times_x
-        arm_along_a1_times_y = arm_along_a1 * y
-        arm_across_a1_right_times_x = arm_across_a1 * x
-        across_a1 = arm_along_a1_times_y - arm_across_a1_right_times_x
-        angle_a1_right = (
-            angle_of_x - angle_of_arm_along_a1
-            if (reach > machine_scale_times_free_angle) and (across_a1 * across_a1 + along_a1 * along_a1 > 0.0)
-            else reference_a1
-        )
+        if reach > machine_scale_times_free_angle:
+            angle_of_arm_along_a1 = arctan2(
+                link_length_2 * sin_a2_from_a1, link_length_1 + link_length_2 * cos_a2_from_a1
+            )
+            angle_of_x = arctan2(y, x)
+            angle_a1_right = angle_of_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_x
+        else:
+            angle_a1_right = (ref_a1 - offset_a1) * DEGREE
+            angle_a1_left = angle_a1_right
         angle_a2_from_a1 = arctan2(sin_a2_from_a1, cos_a2_from_a1)
         # a2 from the sum a2_from_a1 of angles about parallel axes
         axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1) * RADIAN
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_along_a1_times_x - arm_across_a1_right_times_y
-        across_a1 = arm_across_a1_right_times_x + arm_along_a1_times_y
-        angle_a1_left = (
-            angle_of_arm_along_a1 + angle_of_x
-            if (reach > machine_scale_times_free_angle) and (across_a1 * across_a1 + along_a1 * along_a1 > 0.0)
-            else reference_a1
-        )
         # a2 from the sum a2_from_a1 of angles about parallel axes
         axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1) * RADIAN
         return (
@@ -105,7 +90,6 @@ def unrolled(k: Constants) -> Unrolled:
         # a2_from_a1: out of reach
         if not (abs(cos_a2_from_a1) <= bound_of_cos_a2_from_a1):
             return None
-        arm_along_a1 = link_length_1 + link_length_2 * cos_a2_from_a1
         # sine squared, times the squared scale
         sine_square_a2_from_a1 = one_less_cos_a2_from_a1 * one_plus_cos_a2_from_a1
         sin_a2_from_a1 = (
@@ -113,11 +97,10 @@ def unrolled(k: Constants) -> Unrolled:
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        arm_across_a1 = link_length_2 * sin_a2_from_a1
-        along_a1 = arm_across_a1 * y + arm_along_a1 * x  # rotation by a1 that takes the arm to its target point
-        across_a1 = arm_along_a1 * y - arm_across_a1 * x
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            angle_a1 = arctan2(y, x) - arctan2(arm_across_a1, arm_along_a1)
+        if reach > machine_scale_times_free_angle:
+            angle_a1 = arctan2(y, x) - arctan2(
+                link_length_2 * sin_a2_from_a1, link_length_1 + link_length_2 * cos_a2_from_a1
+            )
         else:
             angle_a1 = (ref_a1 - offset_a1) * DEGREE
         # a2 from the sum a2_from_a1 of angles about parallel axes

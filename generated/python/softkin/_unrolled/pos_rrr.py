@@ -24,9 +24,9 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_a3, machine_scale_times_free_angle = k.lowest_a3, k.machine_scale_times_free_angle
     machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
     mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-    product_in_lost_digits_19, product_in_within_31 = k.product_in_lost_digits_19, k.product_in_within_31
+    product_in_away_q2, product_in_lost_digits_19 = k.product_in_away_q2, k.product_in_lost_digits_19
     rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-    product_in_lost_digits_31_front_down = 0.02 * a2 * effective_q3_2
+    product_in_lost_digits_32_front_down = 0.02 * a2 * effective_q3_2
     a2_plus_effective_q3_2_2 = a2 + effective_q3_2
     a2_minus_effective_q3_2_2 = a2 - effective_q3_2
     d4_by_effective_q3_2_2 = d4 / effective_q3_2
@@ -91,36 +91,39 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q3_front_down = product_in_sin_q3 - product_in_sin_q3_front_down_2
         arm_along_q2_front_down = effective_q3_2 * sin_swing_q3
         arm_across_q2_front = a2 + effective_q3_2 * cos_swing_q3_front
-        size_in_within_31_front_down = abs(
-            arm_across_q2_front * arm_across_q2_front
-            + arm_along_q2_front_down * arm_along_q2_front_down
-            - reach_front * reach_front
+        away_q2_front_down = (
+            0.0
+            if reach_front > product_in_lost_digits_19
+            else abs(
+                arm_across_q2_front * arm_across_q2_front
+                + arm_along_q2_front_down * arm_along_q2_front_down
+                - reach_front * reach_front
+            )
+            / (product_in_away_q2 + reach_front)
         )
-        within_31 = (reach_front > product_in_lost_digits_19) or (
-            size_in_within_31_front_down - (machine_scale_times_rounding + reach_front) * product_in_within_31 <= 0.0
-        )
-        lost_digits_31 = (not within_31) and (
+        within_32 = away_q2_front_down <= machine_scale_times_rounding
+        lost_digits_32 = (not within_32) and (
             (abs(ahead_q1) <= product_in_lost_digits_19)
             or (
                 abs(a2_times_a3_times_2 * sin_q3_front_down - a2_times_d4_times_2 * cos_q3_front_down)
-                <= product_in_lost_digits_31_front_down
+                <= product_in_lost_digits_32_front_down
             )
         )
         # digits may be lost
-        if not (not lost_digits_31):
+        if not (not lost_digits_32):
             return ()
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3
         sin_q3_front_up = product_in_sin_q3 + product_in_sin_q3_front_down_2
-        lost_digits_31 = (not within_31) and (
+        lost_digits_32 = (not within_32) and (
             (abs(ahead_q1) <= product_in_lost_digits_19)
             or (
                 abs(a2_times_a3_times_2 * sin_q3_front_up - a2_times_d4_times_2 * cos_q3_front_up)
-                <= product_in_lost_digits_31_front_down
+                <= product_in_lost_digits_32_front_down
             )
         )
         # digits may be lost
-        if not (not lost_digits_31):
+        if not (not lost_digits_32):
             return ()
         sine_square_q3 = one_less_cos_q3_back * one_plus_cos_q3_back  # sine squared, times the squared scale
         sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_back
@@ -133,45 +136,43 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q3_back_down = product_in_sin_q3 - product_in_sin_q3_back_down_2
         arm_along_q2_back_down = effective_q3_2 * sin_swing_q3
         arm_across_q2_back = a2 + effective_q3_2 * cos_swing_q3_back
-        size_in_within_31_back_down = abs(
-            arm_across_q2_back * arm_across_q2_back
-            + arm_along_q2_back_down * arm_along_q2_back_down
-            - reach_back * reach_back
+        away_q2_back_down = (
+            0.0
+            if reach_back > product_in_lost_digits_19
+            else abs(
+                arm_across_q2_back * arm_across_q2_back
+                + arm_along_q2_back_down * arm_along_q2_back_down
+                - reach_back * reach_back
+            )
+            / (product_in_away_q2 + reach_back)
         )
-        within_31 = (reach_back > product_in_lost_digits_19) or (
-            size_in_within_31_back_down - (machine_scale_times_rounding + reach_back) * product_in_within_31 <= 0.0
-        )
-        lost_digits_31 = (not within_31) and (
+        within_32 = away_q2_back_down <= machine_scale_times_rounding
+        lost_digits_32 = (not within_32) and (
             (abs(ahead_q1) <= product_in_lost_digits_19)
             or (
                 abs(a2_times_a3_times_2 * sin_q3_back_down - a2_times_d4_times_2 * cos_q3_back_down)
-                <= product_in_lost_digits_31_front_down
+                <= product_in_lost_digits_32_front_down
             )
         )
         # digits may be lost
-        if not (not lost_digits_31):
+        if not (not lost_digits_32):
             return ()
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3
         sin_q3_back_up = product_in_sin_q3 + product_in_sin_q3_back_down_2
-        lost_digits_31 = (not within_31) and (
+        lost_digits_32 = (not within_32) and (
             (abs(ahead_q1) <= product_in_lost_digits_19)
             or (
                 abs(a2_times_a3_times_2 * sin_q3_back_up - a2_times_d4_times_2 * cos_q3_back_up)
-                <= product_in_lost_digits_31_front_down
+                <= product_in_lost_digits_32_front_down
             )
         )
         # digits may be lost
-        if not (not lost_digits_31):
+        if not (not lost_digits_32):
             return ()
         # q2: out of reach
         if -1.0000000000005 <= cos_swing_q3_front <= 1.0000000000005:
-            refusal_front_down = (
-                0
-                if (reach_front > product_in_lost_digits_19)
-                or (size_in_within_31_front_down - product_in_within_31 * (product_in_within_31 + reach_front) <= 0.0)
-                else 3
-            )
+            refusal_front_down = 0 if away_q2_front_down <= product_in_away_q2 else 3
         else:
             refusal_front_down = 3
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
@@ -217,12 +218,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # q2: out of reach
         if -1.0000000000005 <= cos_swing_q3_back <= 1.0000000000005:
-            refusal_back_down = (
-                0
-                if (reach_back > product_in_lost_digits_19)
-                or (size_in_within_31_back_down - product_in_within_31 * (product_in_within_31 + reach_back) <= 0.0)
-                else 3
-            )
+            refusal_back_down = 0 if away_q2_back_down <= product_in_away_q2 else 3
         else:
             refusal_back_down = 3
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back) * RADIAN
@@ -318,24 +314,24 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q3 = a3_by_effective_q3_2_2 * sin_swing_q3 + d4_by_effective_q3_2_2 * cos_swing_q3
         arm_along_q2 = -effective_q3_2 * sin_swing_q3
         arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
-        size_in_within_31 = abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
-        within_31 = (reach > product_in_lost_digits_19) or (
-            size_in_within_31 - (machine_scale_times_rounding + reach) * product_in_within_31 <= 0.0
+        away_q2 = (
+            0.0
+            if reach > product_in_lost_digits_19
+            else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            / (product_in_away_q2 + reach)
         )
-        lost_digits_31 = (not within_31) and (
+        within_32 = away_q2 <= machine_scale_times_rounding
+        lost_digits_32 = (not within_32) and (
             (abs(ahead_q1) <= product_in_lost_digits_19)
             or (
-                abs(a2_times_a3_times_2 * sin_q3 - a2_times_d4_times_2 * cos_q3) <= product_in_lost_digits_31_front_down
+                abs(a2_times_a3_times_2 * sin_q3 - a2_times_d4_times_2 * cos_q3) <= product_in_lost_digits_32_front_down
             )
         )
         # digits may be lost
-        if not (not lost_digits_31):
+        if not (not lost_digits_32):
             return ()
         # q2: out of reach
-        if not (
-            (reach > product_in_lost_digits_19)
-            or (size_in_within_31 - product_in_within_31 * (product_in_within_31 + reach) <= 0.0)
-        ):
+        if not (away_q2 <= product_in_away_q2):
             return None
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:

@@ -43,35 +43,18 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (abs(cos_a2) <= bound_of_cos_a2):
             return 2 * (refused[Status.UNREACHABLE],)
-        arm_along_a1 = arm_length_1 + arm_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * half_by_arm_length_1_by_arm_length_2
-        arm_across_a1 = arm_length_2 * sin_a2
-        angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
-        angle_of_x = arctan2(y, x)
-        reference_a1 = (ref_a1 - offset_a1) * DEGREE
-        arm_along_a1_times_x = arm_along_a1 * x
-        arm_across_a1_right_times_y = arm_across_a1 * y
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1_right_times_y + arm_along_a1_times_x
-        arm_along_a1_times_y = arm_along_a1 * y
-        arm_across_a1_right_times_x = arm_across_a1 * x
-        across_a1 = arm_along_a1_times_y - arm_across_a1_right_times_x
-        angle_a1_right = (
-            angle_of_x - angle_of_arm_along_a1
-            if (reach > machine_scale_times_free_angle) and (across_a1 * across_a1 + along_a1 * along_a1 > 0.0)
-            else reference_a1
-        )
+        if reach > machine_scale_times_free_angle:
+            angle_of_arm_along_a1 = arctan2(arm_length_2 * sin_a2, arm_length_1 + arm_length_2 * cos_a2)
+            angle_of_x = arctan2(y, x)
+            angle_a1_right = angle_of_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_x
+        else:
+            angle_a1_right = (ref_a1 - offset_a1) * DEGREE
+            angle_a1_left = angle_a1_right
         quotient_in_axis_a2 = arctan2(sin_a2, cos_a2) * RADIAN
         axis_z = offset_z + z
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_along_a1_times_x - arm_across_a1_right_times_y
-        across_a1 = arm_across_a1_right_times_x + arm_along_a1_times_y
-        angle_a1_left = (
-            angle_of_arm_along_a1 + angle_of_x
-            if (reach > machine_scale_times_free_angle) and (across_a1 * across_a1 + along_a1 * along_a1 > 0.0)
-            else reference_a1
-        )
         return (
             (offset_a1 + angle_a1_right * RADIAN, offset_a2 + quotient_in_axis_a2, axis_z),
             (offset_a1 + angle_a1_left * RADIAN, offset_a2 - quotient_in_axis_a2, axis_z),
@@ -91,16 +74,12 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (abs(cos_a2) <= bound_of_cos_a2):
             return None
-        arm_along_a1 = arm_length_1 + arm_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
             (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow * half_by_arm_length_1_by_arm_length_2
         )
-        arm_across_a1 = arm_length_2 * sin_a2
-        along_a1 = arm_across_a1 * y + arm_along_a1 * x  # rotation by a1 that takes the arm to its target point
-        across_a1 = arm_along_a1 * y - arm_across_a1 * x
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            angle_a1 = arctan2(y, x) - arctan2(arm_across_a1, arm_along_a1)
+        if reach > machine_scale_times_free_angle:
+            angle_a1 = arctan2(y, x) - arctan2(arm_length_2 * sin_a2, arm_length_1 + arm_length_2 * cos_a2)
         else:
             angle_a1 = (ref_a1 - offset_a1) * DEGREE
         if no_offsets:

@@ -58,39 +58,22 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (abs(cos_a2) <= bound_of_cos_a2):
             return 2 * (refused[Status.UNREACHABLE],)
-        arm_along_a1 = arm_length_1 + arm_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * half_by_arm_length_1_by_arm_length_2
-        arm_across_a1 = arm_length_2 * sin_a2
-        angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
-        angle_of_wrist_x = arctan2(wrist_y, wrist_x)
-        reference_a1 = (ref_a1 - offset_a1) * DEGREE
-        arm_along_a1_times_wrist_x = arm_along_a1 * wrist_x
-        arm_across_a1_right_times_wrist_y = arm_across_a1 * wrist_y
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1_right_times_wrist_y + arm_along_a1_times_wrist_x
-        arm_along_a1_times_wrist_y = arm_along_a1 * wrist_y
-        arm_across_a1_right_times_wrist_x = arm_across_a1 * wrist_x
-        across_a1 = arm_along_a1_times_wrist_y - arm_across_a1_right_times_wrist_x
-        angle_a1_right = (
-            angle_of_wrist_x - angle_of_arm_along_a1
-            if (reach > machine_scale_times_free_angle) and (across_a1 * across_a1 + along_a1 * along_a1 > 0.0)
-            else reference_a1
-        )
+        if reach > machine_scale_times_free_angle:
+            angle_of_arm_along_a1 = arctan2(arm_length_2 * sin_a2, arm_length_1 + arm_length_2 * cos_a2)
+            angle_of_wrist_x = arctan2(wrist_y, wrist_x)
+            angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
+        else:
+            angle_a1_right = (ref_a1 - offset_a1) * DEGREE
+            angle_a1_left = angle_a1_right
         angle_a2 = arctan2(sin_a2, cos_a2)
         quotient_in_axis_a2 = angle_a2 * RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)
         # a3 from the sum a123 of angles about parallel axes
         axis_a3_right = offset_a3 + (angle_heading - angle_a1_right - angle_a2) * RADIAN
         axis_z = offset_z + z
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_along_a1_times_wrist_x - arm_across_a1_right_times_wrist_y
-        across_a1 = arm_across_a1_right_times_wrist_x + arm_along_a1_times_wrist_y
-        angle_a1_left = (
-            angle_of_arm_along_a1 + angle_of_wrist_x
-            if (reach > machine_scale_times_free_angle) and (across_a1 * across_a1 + along_a1 * along_a1 > 0.0)
-            else reference_a1
-        )
         # a3 from the sum a123 of angles about parallel axes
         axis_a3_left = offset_a3 + (angle_a2 + angle_heading - angle_a1_left) * RADIAN
         return (
@@ -125,17 +108,12 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (abs(cos_a2) <= bound_of_cos_a2):
             return None
-        arm_along_a1 = arm_length_1 + arm_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
             (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_elbow * half_by_arm_length_1_by_arm_length_2
         )
-        arm_across_a1 = arm_length_2 * sin_a2
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
-        across_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(arm_across_a1, arm_along_a1)
+        if reach > machine_scale_times_free_angle:
+            angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(arm_length_2 * sin_a2, arm_length_1 + arm_length_2 * cos_a2)
         else:
             angle_a1 = (ref_a1 - offset_a1) * DEGREE
         angle_a2 = arctan2(sin_a2, cos_a2)

@@ -59,38 +59,21 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(cos_a3) <= bound_of_cos_a3):
             return 2 * (refused[Status.UNREACHABLE],)
         axis_a1 = offset_a1 + z
-        arm_along_a2 = link_length_1 + link_length_2 * cos_a3
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0) * half_by_link_length_1_by_link_length_2
-        arm_across_a2 = link_length_2 * sin_a3
-        angle_of_arm_along_a2 = arctan2(arm_across_a2, arm_along_a2)
-        angle_of_wrist_x = arctan2(wrist_y, wrist_x)
-        reference_a2 = (ref_a2 - offset_a2) * DEGREE
-        arm_along_a2_times_wrist_x = arm_along_a2 * wrist_x
-        arm_across_a2_right_times_wrist_y = arm_across_a2 * wrist_y
-        # rotation by a2 that takes the arm to its target point
-        along_a2 = arm_across_a2_right_times_wrist_y + arm_along_a2_times_wrist_x
-        arm_along_a2_times_wrist_y = arm_along_a2 * wrist_y
-        arm_across_a2_right_times_wrist_x = arm_across_a2 * wrist_x
-        across_a2 = arm_along_a2_times_wrist_y - arm_across_a2_right_times_wrist_x
-        angle_a2_right = (
-            angle_of_wrist_x - angle_of_arm_along_a2
-            if (reach > machine_scale_times_free_angle) and (across_a2 * across_a2 + along_a2 * along_a2 > 0.0)
-            else reference_a2
-        )
+        if reach > machine_scale_times_free_angle:
+            angle_of_arm_along_a2 = arctan2(link_length_2 * sin_a3, link_length_1 + link_length_2 * cos_a3)
+            angle_of_wrist_x = arctan2(wrist_y, wrist_x)
+            angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
+            angle_a2_left = angle_of_arm_along_a2 + angle_of_wrist_x
+        else:
+            angle_a2_right = (ref_a2 - offset_a2) * DEGREE
+            angle_a2_left = angle_a2_right
         angle_a3 = arctan2(sin_a3, cos_a3)
         quotient_in_axis_a3 = angle_a3 * RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)
         # a4 from the sum a234 of angles about parallel axes
         axis_a4_right = offset_a4 + (angle_heading - angle_a2_right - angle_a3) * RADIAN
-        # rotation by a2 that takes the arm to its target point
-        along_a2 = arm_along_a2_times_wrist_x - arm_across_a2_right_times_wrist_y
-        across_a2 = arm_across_a2_right_times_wrist_x + arm_along_a2_times_wrist_y
-        angle_a2_left = (
-            angle_of_arm_along_a2 + angle_of_wrist_x
-            if (reach > machine_scale_times_free_angle) and (across_a2 * across_a2 + along_a2 * along_a2 > 0.0)
-            else reference_a2
-        )
         # a4 from the sum a234 of angles about parallel axes
         axis_a4_left = offset_a4 + (angle_a3 + angle_heading - angle_a2_left) * RADIAN
         return (
@@ -125,19 +108,16 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: out of reach
         if not (abs(cos_a3) <= bound_of_cos_a3):
             return None
-        arm_along_a2 = link_length_1 + link_length_2 * cos_a3
         sine_square_a3 = one_less_cos_a3 * one_plus_cos_a3  # sine squared, times the squared scale
         sin_a3 = (
             (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        arm_across_a2 = link_length_2 * sin_a3
-        # rotation by a2 that takes the arm to its target point
-        along_a2 = arm_across_a2 * wrist_y + arm_along_a2 * wrist_x
-        across_a2 = arm_along_a2 * wrist_y - arm_across_a2 * wrist_x
-        if reach > machine_scale_times_free_angle and across_a2 * across_a2 + along_a2 * along_a2 > 0.0:
-            angle_a2 = arctan2(wrist_y, wrist_x) - arctan2(arm_across_a2, arm_along_a2)
+        if reach > machine_scale_times_free_angle:
+            angle_a2 = arctan2(wrist_y, wrist_x) - arctan2(
+                link_length_2 * sin_a3, link_length_1 + link_length_2 * cos_a3
+            )
         else:
             angle_a2 = (ref_a2 - offset_a2) * DEGREE
         angle_a3 = arctan2(sin_a3, cos_a3)

@@ -51,25 +51,16 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (abs(cos_a2) <= bound_of_cos_a2):
             return 2 * (refused[Status.UNREACHABLE],)
-        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * half_by_link_length_1_by_link_length_2
-        arm_across_a1 = link_length_2 * sin_a2
-        angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
-        angle_of_x = arctan2(y, x)
-        reference_a1 = (ref_a1 - offset_a1) * DEGREE
-        arm_along_a1_times_x = arm_along_a1 * x
-        arm_across_a1_right_times_y = arm_across_a1 * y
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1_right_times_y + arm_along_a1_times_x
-        arm_along_a1_times_y = arm_along_a1 * y
-        arm_across_a1_right_times_x = arm_across_a1 * x
-        across_a1 = arm_along_a1_times_y - arm_across_a1_right_times_x
-        angle_a1_right = (
-            angle_of_x - angle_of_arm_along_a1
-            if (reach > machine_scale_times_free_angle) and (across_a1 * across_a1 + along_a1 * along_a1 > 0.0)
-            else reference_a1
-        )
+        if reach > machine_scale_times_free_angle:
+            angle_of_arm_along_a1 = arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
+            angle_of_x = arctan2(y, x)
+            angle_a1_right = angle_of_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_x
+        else:
+            angle_a1_right = (ref_a1 - offset_a1) * DEGREE
+            angle_a1_left = angle_a1_right
         angle_a2 = arctan2(sin_a2, cos_a2)
         quotient_in_axis_a2 = angle_a2 * RADIAN
         angle_heading = arctan2(heading_across, heading_along)
@@ -80,14 +71,6 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
         a4 = DEGREE * (axis_a4_right - offset_a4)  # A4: joint value with its whole turns
         a3_right = z + a4 * quotient_in_z  # a3 from the z equation, which is linear in it
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_along_a1_times_x - arm_across_a1_right_times_y
-        across_a1 = arm_across_a1_right_times_x + arm_along_a1_times_y
-        angle_a1_left = (
-            angle_of_arm_along_a1 + angle_of_x
-            if (reach > machine_scale_times_free_angle) and (across_a1 * across_a1 + along_a1 * along_a1 > 0.0)
-            else reference_a1
-        )
         # cosine and sine of a4 from the cos heading and sin heading equations; A4: whole turns added
         axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left) * RADIAN
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
@@ -120,18 +103,14 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (abs(cos_a2) <= bound_of_cos_a2):
             return None
-        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
             (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        arm_across_a1 = link_length_2 * sin_a2
-        along_a1 = arm_across_a1 * y + arm_along_a1 * x  # rotation by a1 that takes the arm to its target point
-        across_a1 = arm_along_a1 * y - arm_across_a1 * x
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            angle_a1 = arctan2(y, x) - arctan2(arm_across_a1, arm_along_a1)
+        if reach > machine_scale_times_free_angle:
+            angle_a1 = arctan2(y, x) - arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
         else:
             angle_a1 = (ref_a1 - offset_a1) * DEGREE
         angle_a2 = arctan2(sin_a2, cos_a2)

@@ -58,39 +58,23 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (abs(cos_a2) <= bound_of_cos_a2):
             return 2 * (refused[Status.UNREACHABLE],)
-        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * half_by_link_length_1_by_link_length_2
-        arm_across_a1 = link_length_2 * sin_a2
-        angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
-        angle_of_wrist_x = arctan2(wrist_y, wrist_x)
-        reference_a1 = (ref_a1 - offset_a1) * DEGREE
-        arm_along_a1_times_wrist_x = arm_along_a1 * wrist_x
-        arm_across_a1_right_times_wrist_y = arm_across_a1 * wrist_y
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1_right_times_wrist_y + arm_along_a1_times_wrist_x
-        arm_along_a1_times_wrist_y = arm_along_a1 * wrist_y
-        arm_across_a1_right_times_wrist_x = arm_across_a1 * wrist_x
-        across_a1 = arm_along_a1_times_wrist_y - arm_across_a1_right_times_wrist_x
-        angle_a1_right = (
-            angle_of_wrist_x - angle_of_arm_along_a1
-            if (reach > machine_scale_times_free_angle) and (across_a1 * across_a1 + along_a1 * along_a1 > 0.0)
-            else reference_a1
-        )
+        if reach > machine_scale_times_free_angle:
+            angle_of_arm_along_a1 = arctan2(link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2)
+            angle_of_wrist_x = arctan2(wrist_y, wrist_x)
+            angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
+        else:
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
+            angle_a1_right = reference_a1
+            angle_a1_left = reference_a1
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         axis_a1_right = offset_a1 + angle_a1_right * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         motor_a1_right = DEGREE * (axis_a1_right - offset_a1)
         sum_in_axis_a2_right = offset_a2 - motor_a1_right * quotient_in_open_a2
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_along_a1_times_wrist_x - arm_across_a1_right_times_wrist_y
-        across_a1 = arm_across_a1_right_times_wrist_x + arm_along_a1_times_wrist_y
-        angle_a1_left = (
-            angle_of_arm_along_a1 + angle_of_wrist_x
-            if (reach > machine_scale_times_free_angle) and (across_a1 * across_a1 + along_a1 * along_a1 > 0.0)
-            else reference_a1
-        )
         axis_a1_left = offset_a1 + angle_a1_left * RADIAN  # A1: whole turns added
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
@@ -101,6 +85,7 @@ def unrolled(k: Constants) -> Unrolled:
             open_a2_right = mid_a2
             open_a2_left = mid_a2
         else:
+            reference_a1 = (ref_a1 - offset_a1) * DEGREE
             quotient_in_open_a2_right = ((ref_a2 - offset_a2) * DEGREE + coupling_12 * reference_a1) * RADIAN
             open_a2_right = quotient_in_open_a2_right + sum_in_axis_a2_right
             open_a2_left = quotient_in_open_a2_right + sum_in_axis_a2_left
@@ -169,19 +154,16 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (abs(cos_a2) <= bound_of_cos_a2):
             return None
-        arm_along_a1 = link_length_1 + link_length_2 * cos_a2
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
         sin_a2 = (
             (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
             * sigma_elbow
             * half_by_link_length_1_by_link_length_2
         )
-        arm_across_a1 = link_length_2 * sin_a2
-        # rotation by a1 that takes the arm to its target point
-        along_a1 = arm_across_a1 * wrist_y + arm_along_a1 * wrist_x
-        across_a1 = arm_along_a1 * wrist_y - arm_across_a1 * wrist_x
-        if reach > machine_scale_times_free_angle and across_a1 * across_a1 + along_a1 * along_a1 > 0.0:
-            angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(arm_across_a1, arm_along_a1)
+        if reach > machine_scale_times_free_angle:
+            angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(
+                link_length_2 * sin_a2, link_length_1 + link_length_2 * cos_a2
+            )
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             angle_a1 = reference_a1
