@@ -80,15 +80,15 @@ def _free_at_zero(statements: Sequence[Statement], angle: sp.Symbol) -> list[Sta
 
 
 def _alike(step: Conditioning) -> tuple[Let, Require]:
-    """By how much the lengths of a step differ, 0 if they are so large that their squares have the digits; and the
-    condition that they are alike.
+    """By which part of the scale the lengths of a step differ, 0 if they are so large that their squares have the
+    digits; and the condition that they are alike.
     """
     assert step.missed is not None
-    away, bound = real(f"away_{step.angle.name}"), CONVERGED * step.scale
-    differ = sp.Abs(step.missed) / (step.value + bound)
+    away = real(f"away_{step.angle.name}")
+    differ = sp.Abs(step.missed) / ((step.value + CONVERGED * step.scale) * step.scale)
     rare = Select(sp.Gt(step.value, DOUBTFUL * step.scale), sp.Integer(0), differ)
-    condition = sp.Le(away, bound)
-    return Let(away, rare), Require(condition, Status.UNREACHABLE, reason=about_joint(step.angle, Why.OUT_OF_REACH))
+    is_alike = sp.Le(away, CONVERGED)
+    return Let(away, rare), Require(is_alike, Status.UNREACHABLE, reason=about_joint(step.angle, Why.OUT_OF_REACH))
 
 
 def _doubts(machine: Machine, statements: Sequence[Statement], place: int) -> list[sp.Basic]:

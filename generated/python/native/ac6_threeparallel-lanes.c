@@ -11,11 +11,10 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
   const ac6_threeparallel_machine *k = machine;
   const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3, a3 = k->a3,
       bound_of_cos_q3 = k->bound_of_cos_q3, d1 = k->d1, d4 = k->d4, d5 = k->d5, d6 = k->d6,
-      machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      machine_scale_times_rounding = k->machine_scale_times_rounding, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
-      mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, product_in_away_q2 = k->product_in_away_q2,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
       product_in_lost_digits_38 = k->product_in_lost_digits_38,
       quotient_in_closed_cos_q3 = k->quotient_in_closed_cos_q3,
       quotient_in_closed_sin_q3 = k->quotient_in_closed_sin_q3, rounding_q1 = k->rounding_q1,
@@ -87,19 +86,13 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     /* q3: out of reach */
     missed += fabs(cos_q3) <= bound_of_cos_q3 ? 0.0 : 1.0;
     missed += reach > product_in_lost_digits_38 ? 0.0 : 1.0;
+    /* digits may be lost */
+    missed += true ? 0.0 : 1.0;
+    const double arm_along_q2 = a2 + a3*cos_q3;
     const double sign_elbow = sigma_elbow; /* elbow: +1 up, -1 down */
     /* sine squared, times the squared scale */
     const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
     const double sin_q3 = softkin_lane_root(sine_square_q3)*quotient_in_closed_sin_q3*sign_elbow;
-    const bool within_49 = 0.0 <= machine_scale_times_rounding;
-    const bool lost_digits_49 = (!within_49)
-        && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01) || (fabs(sin_q3) <= 0.01)
-        || (fabs(ahead_q1) <= product_in_lost_digits_38));
-    /* digits may be lost */
-    missed += !lost_digits_49 ? 0.0 : 1.0;
-    /* q2: out of reach */
-    missed += 0.0 <= product_in_away_q2 ? 0.0 : 1.0;
-    const double arm_along_q2 = a2 + a3*cos_q3;
     const double arm_across_q2 = a3*sin_q3;
     /* rotation by q2 that takes the arm to its target point */
     const double along_q2 = arm_across_q2*wrist_z_from_q1 + arm_along_q2*wrist_x_from_q1;
@@ -139,11 +132,10 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
   const ac6_threeparallel_machine *k = machine;
   const double a2 = k->a2, a2_minus_a3 = k->a2_minus_a3, a2_plus_a3 = k->a2_plus_a3, a3 = k->a3,
       bound_of_cos_q3 = k->bound_of_cos_q3, d1 = k->d1, d4 = k->d4, d5 = k->d5, d6 = k->d6,
-      machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      machine_scale_times_rounding = k->machine_scale_times_rounding, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
-      mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, product_in_away_q2 = k->product_in_away_q2,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
       product_in_lost_digits_38 = k->product_in_lost_digits_38,
       quotient_in_closed_cos_q3 = k->quotient_in_closed_cos_q3,
       quotient_in_closed_sin_q3 = k->quotient_in_closed_sin_q3, rounding_q1 = k->rounding_q1,
@@ -299,48 +291,16 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* digits may be lost */
     missed += !lost_digits_38_right_up ? 0.0 : 1.0;
     missed += reach_left_down > product_in_lost_digits_38 ? 0.0 : 1.0;
+    /* digits may be lost */
+    missed += true ? 0.0 : 1.0;
+    missed += reach_left_up > product_in_lost_digits_38 ? 0.0 : 1.0;
+    missed += reach_right_down > product_in_lost_digits_38 ? 0.0 : 1.0;
+    missed += reach_right_up > product_in_lost_digits_38 ? 0.0 : 1.0;
+    const double arm_along_q2_left_down = a2 + a3*cos_q3_left_down;
+    const double product_in_along_q2_left_up_down = arm_along_q2_left_down*wrist_x_from_q1_left_down;
     /* sine squared, times the squared scale */
     const double sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down;
     const double sin_q3_left_up_down = softkin_lane_root(sine_square_q3_left_down)*quotient_in_closed_sin_q3;
-    const bool within_49_left_up_down = 0.0 <= machine_scale_times_rounding;
-    const bool lost_digits_49_left_up_down = (!within_49_left_up_down)
-        && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_down) <= 0.01)
-        || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
-    /* digits may be lost */
-    missed += !lost_digits_49_left_up_down ? 0.0 : 1.0;
-    missed += reach_left_up > product_in_lost_digits_38 ? 0.0 : 1.0;
-    /* sine squared, times the squared scale */
-    const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
-    const double sin_q3_left_up_up = softkin_lane_root(sine_square_q3_left_up)*quotient_in_closed_sin_q3;
-    const bool within_49_left_up_up = 0.0 <= machine_scale_times_rounding;
-    const bool lost_digits_49_left_up_up = (!within_49_left_up_up)
-        && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_up) <= 0.01)
-        || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
-    /* digits may be lost */
-    missed += !lost_digits_49_left_up_up ? 0.0 : 1.0;
-    missed += reach_right_down > product_in_lost_digits_38 ? 0.0 : 1.0;
-    /* sine squared, times the squared scale */
-    const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
-    const double sin_q3_right_up_down = softkin_lane_root(sine_square_q3_right_down)
-        *quotient_in_closed_sin_q3;
-    const bool within_49_right_up_down = 0.0 <= machine_scale_times_rounding;
-    const bool lost_digits_49_right_up_down = (!within_49_right_up_down)
-        && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_down) <= 0.01)
-        || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
-    /* digits may be lost */
-    missed += !lost_digits_49_right_up_down ? 0.0 : 1.0;
-    missed += reach_right_up > product_in_lost_digits_38 ? 0.0 : 1.0;
-    /* sine squared, times the squared scale */
-    const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
-    const double sin_q3_right_up_up = softkin_lane_root(sine_square_q3_right_up)*quotient_in_closed_sin_q3;
-    const bool within_49_right_up_up = 0.0 <= machine_scale_times_rounding;
-    const bool lost_digits_49_right_up_up = (!within_49_right_up_up)
-        && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_up) <= 0.01)
-        || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
-    /* digits may be lost */
-    missed += !lost_digits_49_right_up_up ? 0.0 : 1.0;
-    const double arm_along_q2_left_down = a2 + a3*cos_q3_left_down;
-    const double product_in_along_q2_left_up_down = arm_along_q2_left_down*wrist_x_from_q1_left_down;
     const double arm_across_q2_left_up_down = a3*sin_q3_left_up_down;
     const double product_in_along_q2_left_up_down_2 = arm_across_q2_left_up_down*wrist_z_from_q1_left_down;
     /* rotation by q2 that takes the arm to its target point */
@@ -355,6 +315,9 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         + along_q2_left_up_down*along_q2_left_up_down > 0.0 ? 0.0 : 1.0;
     const double arm_along_q2_left_up = a2 + a3*cos_q3_left_up;
     const double product_in_along_q2_left_up_up = arm_along_q2_left_up*wrist_x_from_q1_left_up;
+    /* sine squared, times the squared scale */
+    const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
+    const double sin_q3_left_up_up = softkin_lane_root(sine_square_q3_left_up)*quotient_in_closed_sin_q3;
     const double arm_across_q2_left_up_up = a3*sin_q3_left_up_up;
     const double product_in_along_q2_left_up_up_2 = arm_across_q2_left_up_up*wrist_z_from_q1_left_up;
     /* rotation by q2 that takes the arm to its target point */
@@ -379,6 +342,10 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         + along_q2_left_down_up*along_q2_left_down_up > 0.0 ? 0.0 : 1.0;
     const double arm_along_q2_right_down = a2 + a3*cos_q3_right_down;
     const double product_in_along_q2_right_up_down = arm_along_q2_right_down*wrist_x_from_q1_right_down;
+    /* sine squared, times the squared scale */
+    const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
+    const double sin_q3_right_up_down = softkin_lane_root(sine_square_q3_right_down)
+        *quotient_in_closed_sin_q3;
     const double arm_across_q2_right_up_down = a3*sin_q3_right_up_down;
     const double product_in_along_q2_right_up_down_2 = arm_across_q2_right_up_down*wrist_z_from_q1_right_down;
     /* rotation by q2 that takes the arm to its target point */
@@ -393,6 +360,9 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         + along_q2_right_up_down*along_q2_right_up_down > 0.0 ? 0.0 : 1.0;
     const double arm_along_q2_right_up = a2 + a3*cos_q3_right_up;
     const double product_in_along_q2_right_up_up = arm_along_q2_right_up*wrist_x_from_q1_right_up;
+    /* sine squared, times the squared scale */
+    const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
+    const double sin_q3_right_up_up = softkin_lane_root(sine_square_q3_right_up)*quotient_in_closed_sin_q3;
     const double arm_across_q2_right_up_up = a3*sin_q3_right_up_up;
     const double product_in_along_q2_right_up_up_2 = arm_across_q2_right_up_up*wrist_z_from_q1_right_up;
     /* rotation by q2 that takes the arm to its target point */
@@ -420,8 +390,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* q3: out of reach */
     const double refusal_left_down = fabs(cos_q3_left_down) <= bound_of_cos_q3 ? 0 : 3;
     /* q2: out of reach */
-    const double refusal_left_up_down = refusal_left_down > 0 ? refusal_left_down
-        : (0.0 <= product_in_away_q2 ? 0 : 3);
+    const double refusal_left_up_down = refusal_left_down > 0 ? refusal_left_down : 0;
     const double axis_a1_left = offset_a1 + softkin_lane_angle(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
     const double angle_of_arm_along_q2_left_up_down = softkin_lane_angle(arm_across_q2_left_up_down,
         arm_along_q2_left_down);
@@ -445,9 +414,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         + softkin_lane_angle(r22_from_q1_left_by_radius_q6_left, cos_q6_left_down)*SOFTKIN_RADIAN;
     /* q3: out of reach */
     const double refusal_left_up = fabs(cos_q3_left_up) <= bound_of_cos_q3 ? 0 : 3;
-    /* q2: out of reach */
-    const double refusal_left_up_up = refusal_left_up > 0 ? refusal_left_up
-        : (0.0 <= product_in_away_q2 ? 0 : 3);
+    const double refusal_left_up_up = refusal_left_up > 0 ? refusal_left_up : 0; /* q2: out of reach */
     const double angle_of_arm_along_q2_left_up_up = softkin_lane_angle(arm_across_q2_left_up_up,
         arm_along_q2_left_up);
     const double angle_of_wrist_x_from_q1_left_up = softkin_lane_angle(wrist_z_from_q1_left_up,
@@ -479,8 +446,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* q3: out of reach */
     const double refusal_right_down = fabs(cos_q3_right_down) <= bound_of_cos_q3 ? 0 : 3;
     /* q2: out of reach */
-    const double refusal_right_up_down = refusal_right_down > 0 ? refusal_right_down
-        : (0.0 <= product_in_away_q2 ? 0 : 3);
+    const double refusal_right_up_down = refusal_right_down > 0 ? refusal_right_down : 0;
     const double axis_a1_right = offset_a1 + softkin_lane_angle(sin_q1_right, cos_q1_right)*SOFTKIN_RADIAN;
     const double angle_of_arm_along_q2_right_up_down = softkin_lane_angle(arm_across_q2_right_up_down,
         arm_along_q2_right_down);
@@ -505,8 +471,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     /* q3: out of reach */
     const double refusal_right_up = fabs(cos_q3_right_up) <= bound_of_cos_q3 ? 0 : 3;
     /* q2: out of reach */
-    const double refusal_right_up_up = refusal_right_up > 0 ? refusal_right_up
-        : (0.0 <= product_in_away_q2 ? 0 : 3);
+    const double refusal_right_up_up = refusal_right_up > 0 ? refusal_right_up : 0;
     const double angle_of_arm_along_q2_right_up_up = softkin_lane_angle(arm_across_q2_right_up_up,
         arm_along_q2_right_up);
     const double angle_of_wrist_x_from_q1_right_up = softkin_lane_angle(wrist_z_from_q1_right_up,

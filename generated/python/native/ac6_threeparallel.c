@@ -712,14 +712,14 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sin_q3 = softkin_root(sine_square_q3)*k->quotient_in_closed_sin_q3*sign_elbow;
   const double arm_across_q2 = k->a3*sin_q3;
   const double away_q2 = reach > k->product_in_lost_digits_38 ? 0.0
-      : fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2 - reach*reach)
+      : fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2 - reach*reach)*k->one_by_machine_scale
       /(k->product_in_away_q2 + reach);
-  const bool within_49 = away_q2 <= k->machine_scale_times_rounding;
+  const bool within_49 = away_q2 <= 1e-12;
   const bool lost_digits_49 = (!within_49)
       && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01) || (fabs(sin_q3) <= 0.01)
       || (fabs(ahead_q1) <= k->product_in_lost_digits_38));
   /* q2: out of reach */
-  if (!(lost_digits_49 || (away_q2 <= k->product_in_away_q2))) {
+  if (!(lost_digits_49 || (away_q2 <= 1e-11))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   /* A1: without a commanded turn, the value nearest to this */
@@ -792,7 +792,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
   }
   /* q2: out of reach */
-  if (!(met || (away_q2 <= k->product_in_away_q2))) {
+  if (!(met || (away_q2 <= 1e-11))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
@@ -1333,8 +1333,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double away_q2_left_up_down = reach_left_down > k->product_in_lost_digits_38 ? 0.0
       : fabs(arm_across_q2_left_up_down*arm_across_q2_left_up_down
       + arm_along_q2_left_down*arm_along_q2_left_down - reach_left_down*reach_left_down)
-      /(k->product_in_away_q2 + reach_left_down);
-  const bool within_49_left_up_down = away_q2_left_up_down <= k->machine_scale_times_rounding;
+      *k->one_by_machine_scale/(k->product_in_away_q2 + reach_left_down);
+  const bool within_49_left_up_down = away_q2_left_up_down <= 1e-12;
   const bool lost_digits_49_left_up_down = (!within_49_left_up_down)
       && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_down) <= 0.01)
       || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
@@ -1348,8 +1348,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double arm_across_q2_left_up_up = k->a3*sin_q3_left_up_up;
   const double away_q2_left_up_up = reach_left_up > k->product_in_lost_digits_38 ? 0.0
       : fabs(arm_across_q2_left_up_up*arm_across_q2_left_up_up + arm_along_q2_left_up*arm_along_q2_left_up
-      - reach_left_up*reach_left_up)/(k->product_in_away_q2 + reach_left_up);
-  const bool within_49_left_up_up = away_q2_left_up_up <= k->machine_scale_times_rounding;
+      - reach_left_up*reach_left_up)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_left_up);
+  const bool within_49_left_up_up = away_q2_left_up_up <= 1e-12;
   const bool lost_digits_49_left_up_up = (!within_49_left_up_up)
       && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_up) <= 0.01)
       || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
@@ -1364,8 +1364,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double away_q2_right_up_down = reach_right_down > k->product_in_lost_digits_38 ? 0.0
       : fabs(arm_across_q2_right_up_down*arm_across_q2_right_up_down
       + arm_along_q2_right_down*arm_along_q2_right_down - reach_right_down*reach_right_down)
-      /(k->product_in_away_q2 + reach_right_down);
-  const bool within_49_right_up_down = away_q2_right_up_down <= k->machine_scale_times_rounding;
+      *k->one_by_machine_scale/(k->product_in_away_q2 + reach_right_down);
+  const bool within_49_right_up_down = away_q2_right_up_down <= 1e-12;
   const bool lost_digits_49_right_up_down = (!within_49_right_up_down)
       && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_down) <= 0.01)
       || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
@@ -1379,9 +1379,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double arm_across_q2_right_up_up = k->a3*sin_q3_right_up_up;
   const double away_q2_right_up_up = reach_right_up > k->product_in_lost_digits_38 ? 0.0
       : fabs(arm_across_q2_right_up_up*arm_across_q2_right_up_up
-      + arm_along_q2_right_up*arm_along_q2_right_up - reach_right_up*reach_right_up)
+      + arm_along_q2_right_up*arm_along_q2_right_up - reach_right_up*reach_right_up)*k->one_by_machine_scale
       /(k->product_in_away_q2 + reach_right_up);
-  const bool within_49_right_up_up = away_q2_right_up_up <= k->machine_scale_times_rounding;
+  const bool within_49_right_up_up = away_q2_right_up_up <= 1e-12;
   const bool lost_digits_49_right_up_up = (!within_49_right_up_up)
       && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_up) <= 0.01)
       || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
@@ -1390,7 +1390,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   int refusal_left_up_down;
   if (fabs(cos_q3_left_down) <= k->bound_of_cos_q3) {
-    refusal_left_up_down = away_q2_left_up_down <= k->product_in_away_q2 ? 0 : 3; /* q2: out of reach */
+    refusal_left_up_down = away_q2_left_up_down <= 1e-11 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_left_up_down = 3; /* q2: out of reach */
   }
@@ -1422,7 +1422,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a5_left_down = k->offset_a5 + quotient_in_axis_a5_left_down;
   int refusal_left_up_up;
   if (fabs(cos_q3_left_up) <= k->bound_of_cos_q3) {
-    refusal_left_up_up = away_q2_left_up_up <= k->product_in_away_q2 ? 0 : 3; /* q2: out of reach */
+    refusal_left_up_up = away_q2_left_up_up <= 1e-11 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_left_up_up = 3; /* q2: out of reach */
   }
@@ -1475,8 +1475,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       + (angle_q3_left_up_up + angle_with_q4_left_up - angle_q2_left_down_up)*SOFTKIN_RADIAN;
   int refusal_right_up_down;
   if (fabs(cos_q3_right_down) <= k->bound_of_cos_q3) {
-    /* q2: out of reach */
-    refusal_right_up_down = away_q2_right_up_down <= k->product_in_away_q2 ? 0 : 3;
+    refusal_right_up_down = away_q2_right_up_down <= 1e-11 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_right_up_down = 3; /* q2: out of reach */
   }
@@ -1510,7 +1509,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a5_right_down = k->offset_a5 + quotient_in_axis_a5_right_down;
   int refusal_right_up_up;
   if (fabs(cos_q3_right_up) <= k->bound_of_cos_q3) {
-    refusal_right_up_up = away_q2_right_up_up <= k->product_in_away_q2 ? 0 : 3; /* q2: out of reach */
+    refusal_right_up_up = away_q2_right_up_up <= 1e-11 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_right_up_up = 3; /* q2: out of reach */
   }
@@ -1670,7 +1669,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double product_in_lost_digits_38 = 0.01*machine_scale;
   const double product_in_away_q2 = 1e-11*machine_scale;
-  const double machine_scale_times_rounding = 1e-12*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double a2_plus_a3 = p->a2 + p->a3;
   const double a2_minus_a3 = p->a2 - p->a3;
@@ -1718,7 +1716,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.product_in_lost_digits_38 = product_in_lost_digits_38;
   made.product_in_away_q2 = product_in_away_q2;
-  made.machine_scale_times_rounding = machine_scale_times_rounding;
   made.one_by_machine_scale = one_by_machine_scale;
   made.a2_plus_a3 = a2_plus_a3;
   made.a2_minus_a3 = a2_minus_a3;

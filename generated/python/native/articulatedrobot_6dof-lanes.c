@@ -10,16 +10,13 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     double *SOFTKIN_RESTRICT misses) {
   const articulatedrobot_6dof_machine *k = machine;
   const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3 = k->a2_minus_effective_q3,
-      a2_plus_effective_q3 = k->a2_plus_effective_q3, a2_times_a3_times_2 = k->a2_times_a3_times_2,
-      a2_times_d4_times_2 = k->a2_times_d4_times_2, a3_by_effective_q3 = k->a3_by_effective_q3, d1 = k->d1,
+      a2_plus_effective_q3 = k->a2_plus_effective_q3, a3_by_effective_q3 = k->a3_by_effective_q3, d1 = k->d1,
       d3 = k->d3, d4_by_effective_q3 = k->d4_by_effective_q3, d6 = k->d6, effective_q3 = k->effective_q3,
-      machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      machine_scale_times_rounding = k->machine_scale_times_rounding, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
-      mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, product_in_away_q2 = k->product_in_away_q2,
-      product_in_lost_digits_23 = k->product_in_lost_digits_23,
-      product_in_lost_digits_36 = k->product_in_lost_digits_36, rounding_q1 = k->rounding_q1,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
+      product_in_lost_digits_23 = k->product_in_lost_digits_23, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
       single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0;
@@ -68,22 +65,13 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     /* q3: out of reach */
     missed += fabs(cos_swing_q3) <= 1.0000000000005 ? 0.0 : 1.0;
     missed += reach > product_in_lost_digits_23 ? 0.0 : 1.0;
+    /* digits may be lost */
+    missed += true ? 0.0 : 1.0;
+    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
     /* sine squared, times the squared scale */
     const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
     const double sin_swing_q3 = -2.0*softkin_lane_root(sine_square_q3)*sign_elbow/sum_q3;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3;
-    const double sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3;
-    const bool within_36 = 0.0 <= machine_scale_times_rounding;
-    const bool lost_digits_36 = (!within_36)
-        && ((fabs(ahead_q1) <= product_in_lost_digits_23)
-        || (fabs(a2_times_a3_times_2*sin_q3 - a2_times_d4_times_2*cos_q3) <= product_in_lost_digits_36));
-    /* digits may be lost */
-    missed += !lost_digits_36 ? 0.0 : 1.0;
-    /* q2: out of reach */
-    missed += 0.0 <= product_in_away_q2 ? 0.0 : 1.0;
-    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_q2 = -effective_q3*sin_swing_q3;
     const double arm_across_q2 = a2 + effective_q3*cos_swing_q3;
     /* rotation by q2 that takes the arm to its target point */
@@ -96,6 +84,9 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     const double cos_q1 = (ahead_q1*wrist_x - d3*wrist_y)/distance_q1_squared;
     const double sin_q1 = (ahead_q1*wrist_y + d3*wrist_x)/distance_q1_squared;
     const double r13_from_q1 = r13*cos_q1 + r23*sin_q1;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3;
+    const double sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3;
     const double length_q2 = softkin_lane_root(across_q2_squared_plus_along_q2_squared);
     const double cos_q2 = along_q2/length_q2; /* at a singularity: the angle of the reference */
     const double sin_q2 = across_q2/length_q2;
@@ -149,19 +140,15 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const articulatedrobot_6dof_machine *k = machine;
-  const double a1 = k->a1, a2 = k->a2, a2_times_a3_times_2 = k->a2_times_a3_times_2,
-      a2_times_d4_times_2 = k->a2_times_d4_times_2, a3 = k->a3, d1 = k->d1, d3 = k->d3, d4 = k->d4,
-      d6 = k->d6, effective_q3 = k->effective_q3,
-      machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      machine_scale_times_rounding = k->machine_scale_times_rounding, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
-      mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
-      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
-      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6, product_in_away_q2 = k->product_in_away_q2,
+  const double a1 = k->a1, a2 = k->a2, a3 = k->a3, d1 = k->d1, d3 = k->d3, d4 = k->d4, d6 = k->d6,
+      effective_q3 = k->effective_q3, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5,
+      mid_a6 = k->mid_a6, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
+      offset_a4 = k->offset_a4, offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
       product_in_lost_digits_23 = k->product_in_lost_digits_23, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
       single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0;
-  const double product_in_lost_digits_36_front_down = 0.02*a2*effective_q3;
   const double a2_plus_effective_q3_2 = a2 + effective_q3;
   const double a2_minus_effective_q3_2 = a2 - effective_q3;
   const double d4_by_effective_q3_2 = d4/effective_q3;
@@ -230,60 +217,13 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     /* digits may be lost */
     missed += !lost_digits_23_back ? 0.0 : 1.0;
     missed += reach_front > product_in_lost_digits_23 ? 0.0 : 1.0;
+    /* digits may be lost */
+    missed += true ? 0.0 : 1.0;
+    missed += reach_back > product_in_lost_digits_23 ? 0.0 : 1.0;
+    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
     const double sin_swing_q3_front_up = 2.0*softkin_lane_root(sine_square_q3_front)/sum_q3_front;
-    const double product_in_cos_q3_front_down = d4_by_effective_q3_2*sin_swing_q3_front_up;
-    const double product_in_cos_q3_front_down_2 = a3_by_effective_q3_2*cos_swing_q3_front;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_front_down = product_in_cos_q3_front_down + product_in_cos_q3_front_down_2;
-    const double product_in_sin_q3_front_down = d4_by_effective_q3_2*cos_swing_q3_front;
-    const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2*sin_swing_q3_front_up;
-    const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
-    const bool within_36_front_down = 0.0 <= machine_scale_times_rounding;
-    const bool lost_digits_36_front_down = (!within_36_front_down)
-        && ((fabs(ahead_q1_front) <= product_in_lost_digits_23)
-        || (fabs(a2_times_a3_times_2*sin_q3_front_down
-        - a2_times_d4_times_2*cos_q3_front_down) <= product_in_lost_digits_36_front_down));
-    /* digits may be lost */
-    missed += !lost_digits_36_front_down ? 0.0 : 1.0;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
-    const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
-    const bool lost_digits_36_front_up = (!within_36_front_down)
-        && ((fabs(ahead_q1_front) <= product_in_lost_digits_23)
-        || (fabs(a2_times_a3_times_2*sin_q3_front_up
-        - a2_times_d4_times_2*cos_q3_front_up) <= product_in_lost_digits_36_front_down));
-    /* digits may be lost */
-    missed += !lost_digits_36_front_up ? 0.0 : 1.0;
-    missed += reach_back > product_in_lost_digits_23 ? 0.0 : 1.0;
-    /* sine squared, times the squared scale */
-    const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
-    const double sin_swing_q3_back_up = 2.0*softkin_lane_root(sine_square_q3_back)/sum_q3_back;
-    const double product_in_cos_q3_back_down = d4_by_effective_q3_2*sin_swing_q3_back_up;
-    const double product_in_cos_q3_back_down_2 = a3_by_effective_q3_2*cos_swing_q3_back;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_back_down = product_in_cos_q3_back_down + product_in_cos_q3_back_down_2;
-    const double product_in_sin_q3_back_down = d4_by_effective_q3_2*cos_swing_q3_back;
-    const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2*sin_swing_q3_back_up;
-    const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
-    const bool within_36_back_down = 0.0 <= machine_scale_times_rounding;
-    const bool lost_digits_36_back_down = (!within_36_back_down)
-        && ((fabs(ahead_q1_front) <= product_in_lost_digits_23)
-        || (fabs(a2_times_a3_times_2*sin_q3_back_down
-        - a2_times_d4_times_2*cos_q3_back_down) <= product_in_lost_digits_36_front_down));
-    /* digits may be lost */
-    missed += !lost_digits_36_back_down ? 0.0 : 1.0;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
-    const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
-    const bool lost_digits_36_back_up = (!within_36_back_down)
-        && ((fabs(ahead_q1_front) <= product_in_lost_digits_23)
-        || (fabs(a2_times_a3_times_2*sin_q3_back_up
-        - a2_times_d4_times_2*cos_q3_back_up) <= product_in_lost_digits_36_front_down));
-    /* digits may be lost */
-    missed += !lost_digits_36_back_up ? 0.0 : 1.0;
-    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_q2_front_down = effective_q3*sin_swing_q3_front_up;
     const double product_in_along_q2_front_down = arm_along_q2_front_down*wrist_x_from_q1_front;
     const double arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front;
@@ -305,6 +245,13 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double ahead_q1_front_times_wrist_y = ahead_q1_front*wrist_y;
     const double sin_q1_front = (ahead_q1_front_times_wrist_y + d3_times_wrist_x)/distance_q1_squared;
     const double r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front;
+    const double product_in_cos_q3_front_down = d4_by_effective_q3_2*sin_swing_q3_front_up;
+    const double product_in_cos_q3_front_down_2 = a3_by_effective_q3_2*cos_swing_q3_front;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3_front_down = product_in_cos_q3_front_down + product_in_cos_q3_front_down_2;
+    const double product_in_sin_q3_front_down = d4_by_effective_q3_2*cos_swing_q3_front;
+    const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2*sin_swing_q3_front_up;
+    const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
     const double length_q2_front_down = softkin_lane_root(sum_in_sin_q2_front_down);
     /* at a singularity: the angle of the reference */
     const double cos_q2_front_down = along_q2_front_down/length_q2_front_down;
@@ -327,6 +274,9 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double sum_in_sin_q2_front_up = across_q2_front_up*across_q2_front_up
         + along_q2_front_up*along_q2_front_up;
     missed += sum_in_sin_q2_front_up > 0.0 ? 0.0 : 1.0;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
+    const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
     const double length_q2_front_up = softkin_lane_root(sum_in_sin_q2_front_up);
     /* at a singularity: the angle of the reference */
     const double cos_q2_front_up = along_q2_front_up/length_q2_front_up;
@@ -339,6 +289,9 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
         + r33_from_q123_front_up*r33_from_q123_front_up);
     missed += radius_q4_front_up > 2e-12 ? 0.0 : 1.0;
     missed += radius_q4_front_up > 0.1 ? 0.0 : 1.0;
+    /* sine squared, times the squared scale */
+    const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
+    const double sin_swing_q3_back_up = 2.0*softkin_lane_root(sine_square_q3_back)/sum_q3_back;
     const double arm_along_q2_back_down = effective_q3*sin_swing_q3_back_up;
     const double product_in_along_q2_back_down = arm_along_q2_back_down*wrist_x_from_q1_back;
     const double arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back;
@@ -357,6 +310,13 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double cos_q1_back = (-ahead_q1_front_times_wrist_x - d3_times_wrist_y)/distance_q1_squared;
     const double sin_q1_back = (d3_times_wrist_x - ahead_q1_front_times_wrist_y)/distance_q1_squared;
     const double r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back;
+    const double product_in_cos_q3_back_down = d4_by_effective_q3_2*sin_swing_q3_back_up;
+    const double product_in_cos_q3_back_down_2 = a3_by_effective_q3_2*cos_swing_q3_back;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3_back_down = product_in_cos_q3_back_down + product_in_cos_q3_back_down_2;
+    const double product_in_sin_q3_back_down = d4_by_effective_q3_2*cos_swing_q3_back;
+    const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2*sin_swing_q3_back_up;
+    const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
     const double length_q2_back_down = softkin_lane_root(sum_in_sin_q2_back_down);
     /* at a singularity: the angle of the reference */
     const double cos_q2_back_down = along_q2_back_down/length_q2_back_down;
@@ -377,6 +337,9 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double sum_in_sin_q2_back_up = across_q2_back_up*across_q2_back_up
         + along_q2_back_up*along_q2_back_up;
     missed += sum_in_sin_q2_back_up > 0.0 ? 0.0 : 1.0;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
+    const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
     const double length_q2_back_up = softkin_lane_root(sum_in_sin_q2_back_up);
     /* at a singularity: the angle of the reference */
     const double cos_q2_back_up = along_q2_back_up/length_q2_back_up;
@@ -391,8 +354,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     missed += radius_q4_back_up > 0.1 ? 0.0 : 1.0;
     /* q3: out of reach */
     const double refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
-    /* q2: out of reach */
-    const double refusal_front_down = refusal_front > 0 ? refusal_front : (0.0 <= product_in_away_q2 ? 0 : 3);
+    const double refusal_front_down = refusal_front > 0 ? refusal_front : 0; /* q2: out of reach */
     const double axis_a1_front = offset_a1 + softkin_lane_angle(sin_q1_front, cos_q1_front)*SOFTKIN_RADIAN;
     const double axis_a2_front_down = offset_a2
         + softkin_lane_angle(sin_q2_front_down, cos_q2_front_down)*SOFTKIN_RADIAN;
@@ -446,8 +408,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double axis_a6_front_up_up = 180.0 + axis_a6_front_up_down;
     /* q3: out of reach */
     const double refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3;
-    /* q2: out of reach */
-    const double refusal_back_down = refusal_back > 0 ? refusal_back : (0.0 <= product_in_away_q2 ? 0 : 3);
+    const double refusal_back_down = refusal_back > 0 ? refusal_back : 0; /* q2: out of reach */
     const double axis_a1_back = offset_a1 + softkin_lane_angle(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
     const double axis_a2_back_down = offset_a2
         + softkin_lane_angle(sin_q2_back_down, cos_q2_back_down)*SOFTKIN_RADIAN;

@@ -717,18 +717,18 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double arm_along_q2 = -k->effective_q3*sin_swing_q3;
   const double arm_across_q2 = k->a2 + k->effective_q3*cos_swing_q3;
   const double away_q2 = reach > k->product_in_lost_digits_23 ? 0.0
-      : fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2 - reach*reach)
+      : fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2 - reach*reach)*k->one_by_machine_scale
       /(k->product_in_away_q2 + reach);
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_q3 = k->a3_by_effective_q3*cos_swing_q3 - k->d4_by_effective_q3*sin_swing_q3;
   const double sin_q3 = k->a3_by_effective_q3*sin_swing_q3 + k->d4_by_effective_q3*cos_swing_q3;
-  const bool within_36 = away_q2 <= k->machine_scale_times_rounding;
+  const bool within_36 = away_q2 <= 1e-12;
   const bool lost_digits_36 = (!within_36)
       && ((fabs(ahead_q1) <= k->product_in_lost_digits_23)
       || (fabs(k->a2_times_a3_times_2*sin_q3
       - k->a2_times_d4_times_2*cos_q3) <= k->product_in_lost_digits_36));
   /* q2: out of reach */
-  if (!(lost_digits_36 || (away_q2 <= k->product_in_away_q2))) {
+  if (!(lost_digits_36 || (away_q2 <= 1e-11))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   double cos_q1, sin_q1;
@@ -845,7 +845,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         - k->a2_plus_effective_q3 : fabs(k->a2_minus_effective_q3) - reach), 0);
   }
   /* q2: out of reach */
-  if (!(met || (away_q2 <= k->product_in_away_q2))) {
+  if (!(met || (away_q2 <= 1e-11))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
@@ -1250,8 +1250,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double arm_across_q2_front = k->a2 + k->effective_q3*cos_swing_q3_front;
   const double away_q2_front_down = reach_front > k->product_in_lost_digits_23 ? 0.0
       : fabs(arm_across_q2_front*arm_across_q2_front + arm_along_q2_front_down*arm_along_q2_front_down
-      - reach_front*reach_front)/(k->product_in_away_q2 + reach_front);
-  const bool within_36_front_down = away_q2_front_down <= k->machine_scale_times_rounding;
+      - reach_front*reach_front)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_front);
+  const bool within_36_front_down = away_q2_front_down <= 1e-12;
   const bool lost_digits_36_front_down = (!within_36_front_down)
       && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
       || (fabs(k->a2_times_a3_times_2*sin_q3_front_down
@@ -1283,8 +1283,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double arm_across_q2_back = k->a2 + k->effective_q3*cos_swing_q3_back;
   const double away_q2_back_down = reach_back > k->product_in_lost_digits_23 ? 0.0
       : fabs(arm_across_q2_back*arm_across_q2_back + arm_along_q2_back_down*arm_along_q2_back_down
-      - reach_back*reach_back)/(k->product_in_away_q2 + reach_back);
-  const bool within_36_back_down = away_q2_back_down <= k->machine_scale_times_rounding;
+      - reach_back*reach_back)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_back);
+  const bool within_36_back_down = away_q2_back_down <= 1e-12;
   const bool lost_digits_36_back_down = (!within_36_back_down)
       && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
       || (fabs(k->a2_times_a3_times_2*sin_q3_back_down
@@ -1304,7 +1304,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   }
   int refusal_front_down;
   if (fabs(cos_swing_q3_front) <= 1.0000000000005) {
-    refusal_front_down = away_q2_front_down <= k->product_in_away_q2 ? 0 : 3; /* q2: out of reach */
+    refusal_front_down = away_q2_front_down <= 1e-11 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_front_down = 3; /* q2: out of reach */
   }
@@ -1563,7 +1563,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a5_front_up_up = k->offset_a5 - quotient_in_axis_a5_front_up_down;
   int refusal_back_down;
   if (fabs(cos_swing_q3_back) <= 1.0000000000005) {
-    refusal_back_down = away_q2_back_down <= k->product_in_away_q2 ? 0 : 3; /* q2: out of reach */
+    refusal_back_down = away_q2_back_down <= 1e-11 ? 0 : 3; /* q2: out of reach */
   } else {
     refusal_back_down = 3; /* q2: out of reach */
   }
@@ -1906,7 +1906,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double product_in_lost_digits_23 = 0.01*machine_scale;
   const double a2_minus_effective_q3 = p->a2 - effective_q3;
   const double product_in_away_q2 = 1e-11*machine_scale;
-  const double machine_scale_times_rounding = 1e-12*machine_scale;
   const double product_in_lost_digits_36 = 0.02*p->a2*effective_q3;
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
@@ -1959,7 +1958,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.product_in_lost_digits_23 = product_in_lost_digits_23;
   made.a2_minus_effective_q3 = a2_minus_effective_q3;
   made.product_in_away_q2 = product_in_away_q2;
-  made.machine_scale_times_rounding = machine_scale_times_rounding;
   made.product_in_lost_digits_36 = product_in_lost_digits_36;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;

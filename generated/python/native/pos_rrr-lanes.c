@@ -10,14 +10,12 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     double *SOFTKIN_RESTRICT misses) {
   const pos_rrr_machine *k = machine;
   const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3_2 = k->a2_minus_effective_q3_2,
-      a2_plus_effective_q3_2 = k->a2_plus_effective_q3_2, a2_times_a3_times_2 = k->a2_times_a3_times_2,
-      a2_times_d4_times_2 = k->a2_times_d4_times_2, a3_by_effective_q3_2 = k->a3_by_effective_q3_2,
+      a2_plus_effective_q3_2 = k->a2_plus_effective_q3_2, a3_by_effective_q3_2 = k->a3_by_effective_q3_2,
       d1 = k->d1, d3 = k->d3, d4_by_effective_q3_2 = k->d4_by_effective_q3_2,
       effective_q3_2 = k->effective_q3_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      machine_scale_times_rounding = k->machine_scale_times_rounding, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
-      mid_a3 = k->mid_a3, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
-      product_in_away_q2 = k->product_in_away_q2, product_in_lost_digits_19 = k->product_in_lost_digits_19,
-      product_in_lost_digits_32 = k->product_in_lost_digits_32, rounding_q1 = k->rounding_q1,
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, offset_a1 = k->offset_a1,
+      offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
+      product_in_lost_digits_19 = k->product_in_lost_digits_19, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
@@ -57,22 +55,13 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     /* q3: out of reach */
     missed += fabs(cos_swing_q3) <= 1.0000000000005 ? 0.0 : 1.0;
     missed += reach > product_in_lost_digits_19 ? 0.0 : 1.0;
+    /* digits may be lost */
+    missed += true ? 0.0 : 1.0;
+    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
     /* sine squared, times the squared scale */
     const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
     const double sin_swing_q3 = -2.0*softkin_lane_root(sine_square_q3)*sign_elbow/sum_q3;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3 = a3_by_effective_q3_2*cos_swing_q3 - d4_by_effective_q3_2*sin_swing_q3;
-    const double sin_q3 = a3_by_effective_q3_2*sin_swing_q3 + d4_by_effective_q3_2*cos_swing_q3;
-    const bool within_32 = 0.0 <= machine_scale_times_rounding;
-    const bool lost_digits_32 = (!within_32)
-        && ((fabs(ahead_q1) <= product_in_lost_digits_19)
-        || (fabs(a2_times_a3_times_2*sin_q3 - a2_times_d4_times_2*cos_q3) <= product_in_lost_digits_32));
-    /* digits may be lost */
-    missed += !lost_digits_32 ? 0.0 : 1.0;
-    /* q2: out of reach */
-    missed += 0.0 <= product_in_away_q2 ? 0.0 : 1.0;
-    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_q2 = -effective_q3_2*sin_swing_q3;
     const double arm_across_q2 = a2 + effective_q3_2*cos_swing_q3;
     /* rotation by q2 that takes the arm to its target point */
@@ -85,6 +74,9 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     const double sin_q1 = (ahead_q1*y + d3*x)/distance_q1_squared;
     const double axis_a1 = offset_a1 + softkin_lane_angle(sin_q1, cos_q1)*SOFTKIN_RADIAN;
     const double axis_a2 = offset_a2 + softkin_lane_angle(across_q2, along_q2)*SOFTKIN_RADIAN;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3 = a3_by_effective_q3_2*cos_swing_q3 - d4_by_effective_q3_2*sin_swing_q3;
+    const double sin_q3 = a3_by_effective_q3_2*sin_swing_q3 + d4_by_effective_q3_2*cos_swing_q3;
     const double axis_a3 = offset_a3 + softkin_lane_angle(sin_q3, cos_q3)*SOFTKIN_RADIAN;
     near[0][lane] = single_a1 > 0.0 ? mid_a1 : ref_a1;
     near[1][lane] = single_a2 > 0.0 ? mid_a2 : ref_a2;
@@ -101,15 +93,13 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const pos_rrr_machine *k = machine;
-  const double a1 = k->a1, a2 = k->a2, a2_times_a3_times_2 = k->a2_times_a3_times_2,
-      a2_times_d4_times_2 = k->a2_times_d4_times_2, a3 = k->a3, d1 = k->d1, d3 = k->d3, d4 = k->d4,
+  const double a1 = k->a1, a2 = k->a2, a3 = k->a3, d1 = k->d1, d3 = k->d3, d4 = k->d4,
       effective_q3_2 = k->effective_q3_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      machine_scale_times_rounding = k->machine_scale_times_rounding, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
-      mid_a3 = k->mid_a3, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
-      product_in_away_q2 = k->product_in_away_q2, product_in_lost_digits_19 = k->product_in_lost_digits_19,
-      rounding_q1 = k->rounding_q1, single_a1 = k->single_a1 ? 1.0 : 0.0,
-      single_a2 = k->single_a2 ? 1.0 : 0.0, single_a3 = k->single_a3 ? 1.0 : 0.0;
-  const double product_in_lost_digits_32_front_down = 0.02*a2*effective_q3_2;
+      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, offset_a1 = k->offset_a1,
+      offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
+      product_in_lost_digits_19 = k->product_in_lost_digits_19, rounding_q1 = k->rounding_q1,
+      single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
+      single_a3 = k->single_a3 ? 1.0 : 0.0;
   const double a2_plus_effective_q3_2_2 = a2 + effective_q3_2;
   const double a2_minus_effective_q3_2_2 = a2 - effective_q3_2;
   const double d4_by_effective_q3_2_2 = d4/effective_q3_2;
@@ -171,60 +161,13 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     /* digits may be lost */
     missed += !lost_digits_19_back ? 0.0 : 1.0;
     missed += reach_front > product_in_lost_digits_19 ? 0.0 : 1.0;
+    /* digits may be lost */
+    missed += true ? 0.0 : 1.0;
+    missed += reach_back > product_in_lost_digits_19 ? 0.0 : 1.0;
+    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
     const double sin_swing_q3_front_up = 2.0*softkin_lane_root(sine_square_q3_front)/sum_q3_front;
-    const double product_in_cos_q3_front_down = d4_by_effective_q3_2_2*sin_swing_q3_front_up;
-    const double product_in_cos_q3_front_down_2 = a3_by_effective_q3_2_2*cos_swing_q3_front;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_front_down = product_in_cos_q3_front_down + product_in_cos_q3_front_down_2;
-    const double product_in_sin_q3_front_down = d4_by_effective_q3_2_2*cos_swing_q3_front;
-    const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2_2*sin_swing_q3_front_up;
-    const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
-    const bool within_32_front_down = 0.0 <= machine_scale_times_rounding;
-    const bool lost_digits_32_front_down = (!within_32_front_down)
-        && ((fabs(ahead_q1_front) <= product_in_lost_digits_19)
-        || (fabs(a2_times_a3_times_2*sin_q3_front_down
-        - a2_times_d4_times_2*cos_q3_front_down) <= product_in_lost_digits_32_front_down));
-    /* digits may be lost */
-    missed += !lost_digits_32_front_down ? 0.0 : 1.0;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
-    const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
-    const bool lost_digits_32_front_up = (!within_32_front_down)
-        && ((fabs(ahead_q1_front) <= product_in_lost_digits_19)
-        || (fabs(a2_times_a3_times_2*sin_q3_front_up
-        - a2_times_d4_times_2*cos_q3_front_up) <= product_in_lost_digits_32_front_down));
-    /* digits may be lost */
-    missed += !lost_digits_32_front_up ? 0.0 : 1.0;
-    missed += reach_back > product_in_lost_digits_19 ? 0.0 : 1.0;
-    /* sine squared, times the squared scale */
-    const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
-    const double sin_swing_q3_back_up = 2.0*softkin_lane_root(sine_square_q3_back)/sum_q3_back;
-    const double product_in_cos_q3_back_down = d4_by_effective_q3_2_2*sin_swing_q3_back_up;
-    const double product_in_cos_q3_back_down_2 = a3_by_effective_q3_2_2*cos_swing_q3_back;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_back_down = product_in_cos_q3_back_down + product_in_cos_q3_back_down_2;
-    const double product_in_sin_q3_back_down = d4_by_effective_q3_2_2*cos_swing_q3_back;
-    const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2_2*sin_swing_q3_back_up;
-    const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
-    const bool within_32_back_down = 0.0 <= machine_scale_times_rounding;
-    const bool lost_digits_32_back_down = (!within_32_back_down)
-        && ((fabs(ahead_q1_front) <= product_in_lost_digits_19)
-        || (fabs(a2_times_a3_times_2*sin_q3_back_down
-        - a2_times_d4_times_2*cos_q3_back_down) <= product_in_lost_digits_32_front_down));
-    /* digits may be lost */
-    missed += !lost_digits_32_back_down ? 0.0 : 1.0;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
-    const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
-    const bool lost_digits_32_back_up = (!within_32_back_down)
-        && ((fabs(ahead_q1_front) <= product_in_lost_digits_19)
-        || (fabs(a2_times_a3_times_2*sin_q3_back_up
-        - a2_times_d4_times_2*cos_q3_back_up) <= product_in_lost_digits_32_front_down));
-    /* digits may be lost */
-    missed += !lost_digits_32_back_up ? 0.0 : 1.0;
-    missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double arm_along_q2_front_down = effective_q3_2*sin_swing_q3_front_up;
     const double product_in_along_q2_front_down = arm_along_q2_front_down*wrist_x_from_q1_front;
     const double arm_across_q2_front = a2 + effective_q3_2*cos_swing_q3_front;
@@ -241,6 +184,9 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double along_q2_front_up = product_in_along_q2_front_down_2 - product_in_along_q2_front_down;
     const double across_q2_front_up = -product_in_across_q2_front_down - product_in_across_q2_front_down_2;
     missed += across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0 ? 0.0 : 1.0;
+    /* sine squared, times the squared scale */
+    const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
+    const double sin_swing_q3_back_up = 2.0*softkin_lane_root(sine_square_q3_back)/sum_q3_back;
     const double arm_along_q2_back_down = effective_q3_2*sin_swing_q3_back_up;
     const double product_in_along_q2_back_down = arm_along_q2_back_down*wrist_x_from_q1_back;
     const double arm_across_q2_back = a2 + effective_q3_2*cos_swing_q3_back;
@@ -260,8 +206,7 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     missed += across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0 ? 0.0 : 1.0;
     /* q3: out of reach */
     const double refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
-    /* q2: out of reach */
-    const double refusal_front_down = refusal_front > 0 ? refusal_front : (0.0 <= product_in_away_q2 ? 0 : 3);
+    const double refusal_front_down = refusal_front > 0 ? refusal_front : 0; /* q2: out of reach */
     const double d3_times_y = d3*y;
     const double ahead_q1_front_times_x = ahead_q1_front*x;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
@@ -275,16 +220,25 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double angle_of_wrist_z_from_q1_front = softkin_lane_angle(wrist_x_from_q1_front, wrist_z_from_q1);
     const double angle_q2_front_down = angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
     const double axis_a2_front_down = offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
+    const double product_in_cos_q3_front_down = d4_by_effective_q3_2_2*sin_swing_q3_front_up;
+    const double product_in_cos_q3_front_down_2 = a3_by_effective_q3_2_2*cos_swing_q3_front;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3_front_down = product_in_cos_q3_front_down + product_in_cos_q3_front_down_2;
+    const double product_in_sin_q3_front_down = d4_by_effective_q3_2_2*cos_swing_q3_front;
+    const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2_2*sin_swing_q3_front_up;
+    const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
     const double axis_a3_front_down = offset_a3
         + softkin_lane_angle(sin_q3_front_down, cos_q3_front_down)*SOFTKIN_RADIAN;
     const double angle_q2_front_up = -angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
     const double axis_a2_front_up = offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
+    const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
     const double axis_a3_front_up = offset_a3
         + softkin_lane_angle(sin_q3_front_up, cos_q3_front_up)*SOFTKIN_RADIAN;
     /* q3: out of reach */
     const double refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3;
-    /* q2: out of reach */
-    const double refusal_back_down = refusal_back > 0 ? refusal_back : (0.0 <= product_in_away_q2 ? 0 : 3);
+    const double refusal_back_down = refusal_back > 0 ? refusal_back : 0; /* q2: out of reach */
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_back = (-ahead_q1_front_times_x - d3_times_y)/distance_q1_squared;
     const double sin_q1_back = (d3_times_x - ahead_q1_front_times_y)/distance_q1_squared;
@@ -294,10 +248,20 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double angle_of_wrist_z_from_q1_back = softkin_lane_angle(wrist_x_from_q1_back, wrist_z_from_q1);
     const double angle_q2_back_down = angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
     const double axis_a2_back_down = offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
+    const double product_in_cos_q3_back_down = d4_by_effective_q3_2_2*sin_swing_q3_back_up;
+    const double product_in_cos_q3_back_down_2 = a3_by_effective_q3_2_2*cos_swing_q3_back;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3_back_down = product_in_cos_q3_back_down + product_in_cos_q3_back_down_2;
+    const double product_in_sin_q3_back_down = d4_by_effective_q3_2_2*cos_swing_q3_back;
+    const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2_2*sin_swing_q3_back_up;
+    const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
     const double axis_a3_back_down = offset_a3
         + softkin_lane_angle(sin_q3_back_down, cos_q3_back_down)*SOFTKIN_RADIAN;
     const double angle_q2_back_up = -angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
     const double axis_a2_back_up = offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
+    const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
     const double axis_a3_back_up = offset_a3
         + softkin_lane_angle(sin_q3_back_up, cos_q3_back_up)*SOFTKIN_RADIAN;
     near[0][lane] = single_a1 > 0.0 ? mid_a1 : ref_a1;

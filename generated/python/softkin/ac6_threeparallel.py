@@ -32,8 +32,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 51 additions, 59 multiplications, 0 divisions, 0 square roots, 13 sines
-    inverse: 83 additions, 75 multiplications, 11 divisions, 5 square roots, 6 sines
-    inverse, all 8 branches: 534 additions, 358 multiplications, 50 divisions, 17 square roots, 30 sines
+    inverse: 83 additions, 76 multiplications, 11 divisions, 5 square roots, 6 sines
+    inverse, all 8 branches: 534 additions, 366 multiplications, 50 divisions, 17 square roots, 30 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 108146 additions, 136778 multiplications, 5852 divisions, 1850
     square roots, 7706 sines
@@ -86,7 +86,6 @@ class Constants:
         machine_scale_times_free_angle = 2e-12 * machine_scale
         product_in_lost_digits_38 = 0.01 * machine_scale
         product_in_away_q2 = 1e-11 * machine_scale
-        machine_scale_times_rounding = 1e-12 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         a2_plus_a3 = a2 + a3
         a2_minus_a3 = a2 - a3
@@ -97,7 +96,6 @@ class Constants:
         self.offset_a6, self.machine_scale, self.rounding_q1 = offset_a6, machine_scale, rounding_q1
         self.bound_of_cos_q3, self.machine_scale_times_free_angle = bound_of_cos_q3, machine_scale_times_free_angle
         self.product_in_lost_digits_38, self.product_in_away_q2 = product_in_lost_digits_38, product_in_away_q2
-        self.machine_scale_times_rounding = machine_scale_times_rounding
         self.one_by_machine_scale, self.a2_plus_a3, self.a2_minus_a3 = one_by_machine_scale, a2_plus_a3, a2_minus_a3
         self.quotient_in_closed_cos_q3 = quotient_in_closed_cos_q3
         self.quotient_in_closed_sin_q3 = quotient_in_closed_sin_q3
@@ -112,7 +110,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel e25272860ab0651d"
+    KEY = "ac6_threeparallel 49a2e66b2f93ba64"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -990,11 +988,10 @@ class Ac6ThreeParallel(Mechanism):
         k = self._constants
         a2, a2_minus_a3, a2_plus_a3, a3, bound_of_cos_q3 = k.a2, k.a2_minus_a3, k.a2_plus_a3, k.a3, k.bound_of_cos_q3
         d1, d4, d5, d6, machine_scale = k.d1, k.d4, k.d5, k.d6, k.machine_scale
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, product_in_away_q2 = k.offset_a6, k.product_in_away_q2
+        offset_a6, one_by_machine_scale, product_in_away_q2 = k.offset_a6, k.one_by_machine_scale, k.product_in_away_q2
         product_in_lost_digits_38, quotient_in_closed_cos_q3 = k.product_in_lost_digits_38, k.quotient_in_closed_cos_q3
         quotient_in_closed_sin_q3, rounding_q1, single_a1 = k.quotient_in_closed_sin_q3, k.rounding_q1, k.single_a1
         single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
@@ -1069,9 +1066,10 @@ class Ac6ThreeParallel(Mechanism):
             0.0
             if reach > product_in_lost_digits_38
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            * one_by_machine_scale
             / (product_in_away_q2 + reach)
         )
-        within_49 = away_q2 <= machine_scale_times_rounding
+        within_49 = away_q2 <= 1e-12
         lost_digits_49 = (not within_49) and (
             (-0.01 <= q6_radius_of_q5 <= 0.01)
             or (-0.01 <= radius_q6 <= 0.01)
@@ -1079,7 +1077,7 @@ class Ac6ThreeParallel(Mechanism):
             or (abs(ahead_q1) <= product_in_lost_digits_38)
         )
         # q2: out of reach
-        if not (lost_digits_49 or (away_q2 <= product_in_away_q2)):
+        if not (lost_digits_49 or (away_q2 <= 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
@@ -1175,7 +1173,7 @@ class Ac6ThreeParallel(Mechanism):
             missing = max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # q2: out of reach
-        if not (met or (away_q2 <= product_in_away_q2)):
+        if not (met or (away_q2 <= 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return (
             (found_a1 if met else axis_a1),

@@ -32,8 +32,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 59 additions, 74 multiplications, 0 divisions, 0 square roots, 14 sines
-    inverse: 90 additions, 94 multiplications, 13 divisions, 6 square roots, 6 sines
-    inverse, all 8 branches: 561 additions, 462 multiplications, 68 divisions, 25 square roots, 38 sines
+    inverse: 90 additions, 95 multiplications, 13 divisions, 6 square roots, 6 sines
+    inverse, all 8 branches: 561 additions, 466 multiplications, 68 divisions, 25 square roots, 38 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 111247 additions, 146040 multiplications, 5547 divisions, 1544
     square roots, 7707 sines
@@ -85,7 +85,6 @@ class Constants:
         product_in_lost_digits_23 = 0.01 * machine_scale
         a2_minus_effective_q3 = a2 - effective_q3
         product_in_away_q2 = 1e-11 * machine_scale
-        machine_scale_times_rounding = 1e-12 * machine_scale
         product_in_lost_digits_36 = 0.02 * a2 * effective_q3
         machine_scale_times_free_angle = 2e-12 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
@@ -100,8 +99,7 @@ class Constants:
         self.offset_a5, self.offset_a6, self.machine_scale = offset_a5, offset_a6, machine_scale
         self.effective_q3, self.rounding_q1 = effective_q3, rounding_q1
         self.product_in_lost_digits_23, self.a2_minus_effective_q3 = product_in_lost_digits_23, a2_minus_effective_q3
-        self.product_in_away_q2, self.machine_scale_times_rounding = product_in_away_q2, machine_scale_times_rounding
-        self.product_in_lost_digits_36 = product_in_lost_digits_36
+        self.product_in_away_q2, self.product_in_lost_digits_36 = product_in_away_q2, product_in_lost_digits_36
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.one_by_machine_scale, self.one_by_effective_q3 = one_by_machine_scale, one_by_effective_q3
         self.a2_plus_effective_q3, self.d4_by_effective_q3 = a2_plus_effective_q3, d4_by_effective_q3
@@ -118,7 +116,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof 40695f8df7e67a6f"
+    KEY = "articulatedrobot_6dof b10b1d4632deed9a"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1068,11 +1066,10 @@ class ArticulatedRobot6DOF(Mechanism):
         a2_plus_effective_q3, a2_times_a3_times_2 = k.a2_plus_effective_q3, k.a2_times_a3_times_2
         a2_times_d4_times_2, a3_by_effective_q3, d1, d3 = k.a2_times_d4_times_2, k.a3_by_effective_q3, k.d1, k.d3
         d4_by_effective_q3, d6, effective_q3 = k.d4_by_effective_q3, k.d6, k.effective_q3
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, product_in_away_q2 = k.offset_a6, k.product_in_away_q2
+        offset_a6, one_by_machine_scale, product_in_away_q2 = k.offset_a6, k.one_by_machine_scale, k.product_in_away_q2
         product_in_lost_digits_23, product_in_lost_digits_36 = k.product_in_lost_digits_23, k.product_in_lost_digits_36
         rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
         single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
@@ -1116,18 +1113,19 @@ class ArticulatedRobot6DOF(Mechanism):
             0.0
             if reach > product_in_lost_digits_23
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            * one_by_machine_scale
             / (product_in_away_q2 + reach)
         )
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = a3_by_effective_q3 * cos_swing_q3 - d4_by_effective_q3 * sin_swing_q3
         sin_q3 = a3_by_effective_q3 * sin_swing_q3 + d4_by_effective_q3 * cos_swing_q3
-        within_36 = away_q2 <= machine_scale_times_rounding
+        within_36 = away_q2 <= 1e-12
         lost_digits_36 = (not within_36) and (
             (abs(ahead_q1) <= product_in_lost_digits_23)
             or (abs(a2_times_a3_times_2 * sin_q3 - a2_times_d4_times_2 * cos_q3) <= product_in_lost_digits_36)
         )
         # q2: out of reach
-        if not (lost_digits_36 or (away_q2 <= product_in_away_q2)):
+        if not (lost_digits_36 or (away_q2 <= 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
@@ -1258,7 +1256,7 @@ class ArticulatedRobot6DOF(Mechanism):
             missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # q2: out of reach
-        if not (met or (away_q2 <= product_in_away_q2)):
+        if not (met or (away_q2 <= 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return (
             (found_a1 if met else axis_a1),

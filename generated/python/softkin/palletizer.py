@@ -86,7 +86,6 @@ class Constants:
         machine_scale_times_free_angle = 2e-12 * machine_scale
         product_in_lost_digits_17 = 0.01 * machine_scale
         product_in_away_a2 = 1e-11 * machine_scale
-        machine_scale_times_rounding = 1e-12 * machine_scale
         product_in_lost_digits_30 = 0.02 * link_length_1 * link_length_2
         one_by_machine_scale = 1.0 / machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
@@ -102,7 +101,6 @@ class Constants:
         self.rounding_a1, self.link_length_1_minus_link_length_2 = rounding_a1, link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.product_in_lost_digits_17, self.product_in_away_a2 = product_in_lost_digits_17, product_in_away_a2
-        self.machine_scale_times_rounding = machine_scale_times_rounding
         self.product_in_lost_digits_30, self.one_by_machine_scale = product_in_lost_digits_30, one_by_machine_scale
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
@@ -910,10 +908,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
         half_by_link_length_1_by_link_length_2 = k.half_by_link_length_1_by_link_length_2
         link_length_1, link_length_1_minus_link_length_2 = k.link_length_1, k.link_length_1_minus_link_length_2
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        offset_a4, product_in_away_a2 = k.offset_a4, k.product_in_away_a2
+        offset_a4, one_by_machine_scale, product_in_away_a2 = k.offset_a4, k.one_by_machine_scale, k.product_in_away_a2
         product_in_lost_digits_17, product_in_lost_digits_30 = k.product_in_lost_digits_17, k.product_in_lost_digits_30
         product_in_lost_digits_30_2 = k.product_in_lost_digits_30_2
         quotient_in_closed_cos_swing_a3_from_a2, rounding_a1 = k.quotient_in_closed_cos_swing_a3_from_a2, k.rounding_a1
@@ -974,15 +971,16 @@ class Palletizer(OffsetKinematics, TwistChoice):
             0.0
             if reach > product_in_lost_digits_17
             else abs(arm_across_a2 * arm_across_a2 + arm_along_a2 * arm_along_a2 - reach * reach)
+            * one_by_machine_scale
             / (product_in_away_a2 + reach)
         )
-        within_30 = away_a2 <= machine_scale_times_rounding
+        within_30 = away_a2 <= 1e-12
         lost_digits_30 = (not within_30) and (
             (abs(ahead_a1) <= product_in_lost_digits_17)
             or (abs(cos_a3_from_a2) * product_in_lost_digits_30_2 <= product_in_lost_digits_30)
         )
         # a2: out of reach
-        if not (lost_digits_30 or (away_a2 <= product_in_away_a2)):
+        if not (lost_digits_30 or (away_a2 <= 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_a1 > machine_scale_times_free_angle:
@@ -1056,7 +1054,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
         # a2: out of reach
-        if not (met or (away_a2 <= product_in_away_a2)):
+        if not (met or (away_a2 <= 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return (
             (found_a1 if met else axis_a1),

@@ -24,8 +24,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
-    inverse: 51 additions, 46 multiplications, 8 divisions, 4 square roots, 3 sines
-    inverse, all 4 branches: 179 additions, 144 multiplications, 24 divisions, 9 square roots, 10 sines
+    inverse: 51 additions, 47 multiplications, 8 divisions, 4 square roots, 3 sines
+    inverse, all 4 branches: 179 additions, 148 multiplications, 24 divisions, 9 square roots, 10 sines
     a branch at a singular pose, in addition: 28375 additions, 40998 multiplications, 3083 divisions, 928
     square roots, 4317 sines
     steps of damped least squares on the closure, from one start after the other: at most 308 passes, all of
@@ -74,7 +74,6 @@ class Constants:
         product_in_lost_digits_19 = 0.01 * machine_scale
         a2_minus_effective_q3_2 = a2 - effective_q3_2
         product_in_away_q2 = 1e-11 * machine_scale
-        machine_scale_times_rounding = 1e-12 * machine_scale
         product_in_lost_digits_32 = 0.02 * a2 * effective_q3_2
         machine_scale_times_free_angle = 2e-12 * machine_scale
         product_in_lost_digits_34 = 0.02 * a2 * machine_scale
@@ -91,7 +90,6 @@ class Constants:
         self.effective_q3_2, self.rounding_q1 = effective_q3_2, rounding_q1
         self.a2_times_shortest_link, self.product_in_lost_digits_19 = a2_times_shortest_link, product_in_lost_digits_19
         self.a2_minus_effective_q3_2, self.product_in_away_q2 = a2_minus_effective_q3_2, product_in_away_q2
-        self.machine_scale_times_rounding = machine_scale_times_rounding
         self.product_in_lost_digits_32 = product_in_lost_digits_32
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.product_in_lost_digits_34, self.one_by_machine_scale = product_in_lost_digits_34, one_by_machine_scale
@@ -110,7 +108,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr c4d7cd23bcfb6d5a"
+    KEY = "pos_rrr cccabdbcf232dce0"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -881,12 +879,11 @@ class PosRRR(OffsetKinematics):
         a2_plus_effective_q3_2, a2_times_a3_times_2 = k.a2_plus_effective_q3_2, k.a2_times_a3_times_2
         a2_times_d4_times_2, a3_by_effective_q3_2, d1, d3 = k.a2_times_d4_times_2, k.a3_by_effective_q3_2, k.d1, k.d3
         d4_by_effective_q3_2, effective_q3_2 = k.d4_by_effective_q3_2, k.effective_q3_2
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        product_in_away_q2, product_in_lost_digits_19 = k.product_in_away_q2, k.product_in_lost_digits_19
-        product_in_lost_digits_32, rounding_q1, single_a1 = k.product_in_lost_digits_32, k.rounding_q1, k.single_a1
-        single_a2, single_a3 = k.single_a2, k.single_a3
+        one_by_machine_scale, product_in_away_q2 = k.one_by_machine_scale, k.product_in_away_q2
+        product_in_lost_digits_19, product_in_lost_digits_32 = k.product_in_lost_digits_19, k.product_in_lost_digits_32
+        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
@@ -924,18 +921,19 @@ class PosRRR(OffsetKinematics):
             0.0
             if reach > product_in_lost_digits_19
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            * one_by_machine_scale
             / (product_in_away_q2 + reach)
         )
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = a3_by_effective_q3_2 * cos_swing_q3 - d4_by_effective_q3_2 * sin_swing_q3
         sin_q3 = a3_by_effective_q3_2 * sin_swing_q3 + d4_by_effective_q3_2 * cos_swing_q3
-        within_32 = away_q2 <= machine_scale_times_rounding
+        within_32 = away_q2 <= 1e-12
         lost_digits_32 = (not within_32) and (
             (abs(ahead_q1) <= product_in_lost_digits_19)
             or (abs(a2_times_a3_times_2 * sin_q3 - a2_times_d4_times_2 * cos_q3) <= product_in_lost_digits_32)
         )
         # q2: out of reach
-        if not (lost_digits_32 or (away_q2 <= product_in_away_q2)):
+        if not (lost_digits_32 or (away_q2 <= 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
@@ -1001,7 +999,7 @@ class PosRRR(OffsetKinematics):
             missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # q2: out of reach
-        if not (met or (away_q2 <= product_in_away_q2)):
+        if not (met or (away_q2 <= 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 
@@ -1113,12 +1111,12 @@ class PosRRR(OffsetKinematics):
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
         a1, a2, a2_times_shortest_link, a3, d1, d3, d4 = k.a1, k.a2, k.a2_times_shortest_link, k.a3, k.d1, k.d3, k.d4
-        machine_scale_times_free_angle = k.machine_scale_times_free_angle
-        machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+        machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        product_in_away_q2, product_in_lost_digits_19 = k.product_in_away_q2, k.product_in_lost_digits_19
-        product_in_lost_digits_34, rounding_q1, single_a1 = k.product_in_lost_digits_34, k.rounding_q1, k.single_a1
-        single_a2, single_a3, twice_a2 = k.single_a2, k.single_a3, k.twice_a2
+        one_by_machine_scale, product_in_away_q2 = k.one_by_machine_scale, k.product_in_away_q2
+        product_in_lost_digits_19, product_in_lost_digits_34 = k.product_in_lost_digits_19, k.product_in_lost_digits_34
+        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
+        twice_a2 = k.twice_a2
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
@@ -1168,14 +1166,15 @@ class PosRRR(OffsetKinematics):
             0.0
             if reach > product_in_lost_digits_19
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            * one_by_machine_scale
             / (product_in_away_q2 + reach)
         )
-        within_34 = away_q2 <= machine_scale_times_rounding
+        within_34 = away_q2 <= 1e-12
         lost_digits_34 = (not within_34) and (
             (abs(ahead_q1) <= product_in_lost_digits_19) or (abs(arm_along_q2 * twice_a2) <= product_in_lost_digits_34)
         )
         # q2: out of reach
-        if not (lost_digits_34 or (away_q2 <= product_in_away_q2)):
+        if not (lost_digits_34 or (away_q2 <= 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
@@ -1244,7 +1243,7 @@ class PosRRR(OffsetKinematics):
             missing = max(abs(a2 - effective_q3) - reach, -a2_minus_reach - effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # q2: out of reach
-        if not (met or (away_q2 <= product_in_away_q2)):
+        if not (met or (away_q2 <= 1e-11)):
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 439
+    VALUES = 438
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -782,9 +782,10 @@ class ArrayPrograms(Programs):
             reach > k.product_in_lost_digits_38,
             0.0,
             absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            * k.one_by_machine_scale
             / (k.product_in_away_q2 + reach),
         )
-        within_49 = away_q2 <= k.machine_scale_times_rounding
+        within_49 = away_q2 <= 1e-12
         lost_digits_49 = (opposite(within_49)) & (
             (absolute(q6_radius_of_q5) <= 0.01)
             | (absolute(radius_q6) <= 0.01)
@@ -835,7 +836,7 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, lost_digits_38 | (absolute(cos_q3) <= k.bound_of_cos_q3), Status.UNREACHABLE)
         # q2: out of reach
-        require(status, lost_digits_49 | (away_q2 <= k.product_in_away_q2), Status.UNREACHABLE)
+        require(status, lost_digits_49 | (away_q2 <= 1e-11), Status.UNREACHABLE)
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
             lost_digits_38 | lost_digits_49,
@@ -882,7 +883,7 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, met | (absolute(cos_q3) <= k.bound_of_cos_q3), Status.UNREACHABLE)
         # q2: out of reach
-        require(status, met | (away_q2 <= k.product_in_away_q2), Status.UNREACHABLE)
+        require(status, met | (away_q2 <= 1e-11), Status.UNREACHABLE)
         return (
             select(met, found_a1, axis_a1),
             select(met, found_a2, axis_a2),

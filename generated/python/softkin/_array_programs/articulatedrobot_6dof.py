@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 468
+    VALUES = 467
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -797,12 +797,13 @@ class ArrayPrograms(Programs):
             reach > k.product_in_lost_digits_23,
             0.0,
             absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            * k.one_by_machine_scale
             / (k.product_in_away_q2 + reach),
         )
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = k.a3_by_effective_q3 * cos_swing_q3 - k.d4_by_effective_q3 * sin_swing_q3
         sin_q3 = k.a3_by_effective_q3 * sin_swing_q3 + k.d4_by_effective_q3 * cos_swing_q3
-        within_36 = away_q2 <= k.machine_scale_times_rounding
+        within_36 = away_q2 <= 1e-12
         lost_digits_36 = (opposite(within_36)) & (
             (absolute(ahead_q1) <= k.product_in_lost_digits_23)
             | (absolute(k.a2_times_a3_times_2 * sin_q3 - k.a2_times_d4_times_2 * cos_q3) <= k.product_in_lost_digits_36)
@@ -899,7 +900,7 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, lost_digits_23 | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
         # q2: out of reach
-        require(status, lost_digits_36 | (away_q2 <= k.product_in_away_q2), Status.UNREACHABLE)
+        require(status, lost_digits_36 | (away_q2 <= 1e-11), Status.UNREACHABLE)
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
             lost_digits_23 | lost_digits_36,
@@ -946,7 +947,7 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, met | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
         # q2: out of reach
-        require(status, met | (away_q2 <= k.product_in_away_q2), Status.UNREACHABLE)
+        require(status, met | (away_q2 <= 1e-11), Status.UNREACHABLE)
         return (
             select(met, found_a1, axis_a1),
             select(met, found_a2, axis_a2),

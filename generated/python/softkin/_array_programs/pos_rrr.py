@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 427
+    VALUES = 426
     JACOBIAN_ROWS = (0, 1, 2)
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
@@ -708,12 +708,13 @@ class ArrayPrograms(Programs):
             reach > k.product_in_lost_digits_19,
             0.0,
             absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            * k.one_by_machine_scale
             / (k.product_in_away_q2 + reach),
         )
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3 = k.a3_by_effective_q3_2 * cos_swing_q3 - k.d4_by_effective_q3_2 * sin_swing_q3
         sin_q3 = k.a3_by_effective_q3_2 * sin_swing_q3 + k.d4_by_effective_q3_2 * cos_swing_q3
-        within_32 = away_q2 <= k.machine_scale_times_rounding
+        within_32 = away_q2 <= 1e-12
         lost_digits_32 = (opposite(within_32)) & (
             (absolute(ahead_q1) <= k.product_in_lost_digits_19)
             | (absolute(k.a2_times_a3_times_2 * sin_q3 - k.a2_times_d4_times_2 * cos_q3) <= k.product_in_lost_digits_32)
@@ -763,7 +764,7 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, lost_digits_19 | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
         # q2: out of reach
-        require(status, lost_digits_32 | (away_q2 <= k.product_in_away_q2), Status.UNREACHABLE)
+        require(status, lost_digits_32 | (away_q2 <= 1e-11), Status.UNREACHABLE)
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
             lost_digits_19 | lost_digits_32,
@@ -791,7 +792,7 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, met | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
         # q2: out of reach
-        require(status, met | (away_q2 <= k.product_in_away_q2), Status.UNREACHABLE)
+        require(status, met | (away_q2 <= 1e-11), Status.UNREACHABLE)
         return (select(met, found_a1, axis_a1), select(met, found_a2, axis_a2), select(met, found_a3, axis_a3)), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -23,11 +23,10 @@ def unrolled(k: Constants) -> Unrolled:
     highest_a3, highest_a4, highest_a5, highest_a6 = k.highest_a3, k.highest_a4, k.highest_a5, k.highest_a6
     lowest_a1, lowest_a2, lowest_a3, lowest_a4 = k.lowest_a1, k.lowest_a2, k.lowest_a3, k.lowest_a4
     lowest_a5, lowest_a6 = k.lowest_a5, k.lowest_a6
-    machine_scale_times_free_angle = k.machine_scale_times_free_angle
-    machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
     offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-    offset_a6, product_in_away_q2 = k.offset_a6, k.product_in_away_q2
+    offset_a6, one_by_machine_scale, product_in_away_q2 = k.offset_a6, k.one_by_machine_scale, k.product_in_away_q2
     product_in_lost_digits_38, quotient_in_closed_cos_q3 = k.product_in_lost_digits_38, k.quotient_in_closed_cos_q3
     quotient_in_closed_sin_q3, rounding_q1, single_a1 = k.quotient_in_closed_sin_q3, k.rounding_q1, k.single_a1
     single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
@@ -235,9 +234,10 @@ def unrolled(k: Constants) -> Unrolled:
                 + arm_along_q2_left_down * arm_along_q2_left_down
                 - reach_left_down * reach_left_down
             )
+            * one_by_machine_scale
             / (product_in_away_q2 + reach_left_down)
         )
-        within_49 = away_q2_left_up_down <= machine_scale_times_rounding
+        within_49 = away_q2_left_up_down <= 1e-12
         lost_digits_49_down = (not within_49) and (
             (-0.01 <= radius_q6_left <= 0.01)
             or (-0.01 <= sin_q3_left_up_down <= 0.01)
@@ -258,9 +258,10 @@ def unrolled(k: Constants) -> Unrolled:
                 + arm_along_q2_left_up * arm_along_q2_left_up
                 - reach_left_up * reach_left_up
             )
+            * one_by_machine_scale
             / (product_in_away_q2 + reach_left_up)
         )
-        within_49 = away_q2_left_up_up <= machine_scale_times_rounding
+        within_49 = away_q2_left_up_up <= 1e-12
         lost_digits_49_up = (not within_49) and (
             (-0.01 <= radius_q6_left <= 0.01)
             or (-0.01 <= sin_q3_left_up_up <= 0.01)
@@ -282,9 +283,10 @@ def unrolled(k: Constants) -> Unrolled:
                 + arm_along_q2_right_down * arm_along_q2_right_down
                 - reach_right_down * reach_right_down
             )
+            * one_by_machine_scale
             / (product_in_away_q2 + reach_right_down)
         )
-        within_49 = away_q2_right_up_down <= machine_scale_times_rounding
+        within_49 = away_q2_right_up_down <= 1e-12
         lost_digits_49_down = (not within_49) and (
             (-0.01 <= radius_q6_right <= 0.01)
             or (-0.01 <= sin_q3_right_up_down <= 0.01)
@@ -306,9 +308,10 @@ def unrolled(k: Constants) -> Unrolled:
                 + arm_along_q2_right_up * arm_along_q2_right_up
                 - reach_right_up * reach_right_up
             )
+            * one_by_machine_scale
             / (product_in_away_q2 + reach_right_up)
         )
-        within_49 = away_q2_right_up_up <= machine_scale_times_rounding
+        within_49 = away_q2_right_up_up <= 1e-12
         lost_digits_49_up = (not within_49) and (
             (-0.01 <= radius_q6_right <= 0.01)
             or (-0.01 <= sin_q3_right_up_up <= 0.01)
@@ -319,7 +322,7 @@ def unrolled(k: Constants) -> Unrolled:
             return ()
         # q2: out of reach
         if abs(cos_q3_left_down) <= bound_of_cos_q3:
-            refusal_left_up_down = 0 if away_q2_left_up_down <= product_in_away_q2 else 3
+            refusal_left_up_down = 0 if away_q2_left_up_down <= 1e-11 else 3
         else:
             refusal_left_up_down = 3
         axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left) * RADIAN
@@ -349,7 +352,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_left_down = offset_a6 + arctan2(sin_q6_left_down, cos_q6_left_down) * RADIAN
         # q2: out of reach
         if abs(cos_q3_left_up) <= bound_of_cos_q3:
-            refusal_left_up_up = 0 if away_q2_left_up_up <= product_in_away_q2 else 3
+            refusal_left_up_up = 0 if away_q2_left_up_up <= 1e-11 else 3
         else:
             refusal_left_up_up = 3
         angle_of_arm_along_q2_up = arctan2(arm_across_q2_left_up_up, arm_along_q2_left_up)
@@ -400,7 +403,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_left_down_up) * RADIAN
         # q2: out of reach
         if abs(cos_q3_right_down) <= bound_of_cos_q3:
-            refusal_right_up_down = 0 if away_q2_right_up_down <= product_in_away_q2 else 3
+            refusal_right_up_down = 0 if away_q2_right_up_down <= 1e-11 else 3
         else:
             refusal_right_up_down = 3
         axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right) * RADIAN
@@ -429,7 +432,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_right_down = offset_a6 + arctan2(sin_q6_right_down, cos_q6_right_down) * RADIAN
         # q2: out of reach
         if abs(cos_q3_right_up) <= bound_of_cos_q3:
-            refusal_right_up_up = 0 if away_q2_right_up_up <= product_in_away_q2 else 3
+            refusal_right_up_up = 0 if away_q2_right_up_up <= 1e-11 else 3
         else:
             refusal_right_up_up = 3
         angle_of_arm_along_q2_up = arctan2(arm_across_q2_right_up_up, arm_along_q2_right_up)
@@ -632,9 +635,10 @@ def unrolled(k: Constants) -> Unrolled:
             0.0
             if reach > product_in_lost_digits_38
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            * one_by_machine_scale
             / (product_in_away_q2 + reach)
         )
-        within_49 = away_q2 <= machine_scale_times_rounding
+        within_49 = away_q2 <= 1e-12
         lost_digits_49 = (not within_49) and (
             (-0.01 <= q6_radius_of_q5 <= 0.01)
             or (-0.01 <= radius_q6 <= 0.01)
@@ -645,7 +649,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (not lost_digits_49):
             return ()
         # q2: out of reach
-        if not (away_q2 <= product_in_away_q2):
+        if not (away_q2 <= 1e-11):
             return None
         # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1

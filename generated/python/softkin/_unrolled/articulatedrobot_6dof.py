@@ -23,11 +23,10 @@ def unrolled(k: Constants) -> Unrolled:
     highest_a2, highest_a3, highest_a4, highest_a5 = k.highest_a2, k.highest_a3, k.highest_a4, k.highest_a5
     highest_a6, lowest_a1, lowest_a2, lowest_a3 = k.highest_a6, k.lowest_a1, k.lowest_a2, k.lowest_a3
     lowest_a4, lowest_a5, lowest_a6 = k.lowest_a4, k.lowest_a5, k.lowest_a6
-    machine_scale_times_free_angle = k.machine_scale_times_free_angle
-    machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
+    machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
     offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-    offset_a6, product_in_away_q2 = k.offset_a6, k.product_in_away_q2
+    offset_a6, one_by_machine_scale, product_in_away_q2 = k.offset_a6, k.one_by_machine_scale, k.product_in_away_q2
     product_in_lost_digits_23, rounding_q1, single_a1 = k.product_in_lost_digits_23, k.rounding_q1, k.single_a1
     single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
     single_a6 = k.single_a6
@@ -106,9 +105,10 @@ def unrolled(k: Constants) -> Unrolled:
                 + arm_along_q2_front_down * arm_along_q2_front_down
                 - reach_front * reach_front
             )
+            * one_by_machine_scale
             / (product_in_away_q2 + reach_front)
         )
-        within_36 = away_q2_front_down <= machine_scale_times_rounding
+        within_36 = away_q2_front_down <= 1e-12
         lost_digits_36 = (not within_36) and (
             (abs(ahead_q1) <= product_in_lost_digits_23)
             or (
@@ -151,9 +151,10 @@ def unrolled(k: Constants) -> Unrolled:
                 + arm_along_q2_back_down * arm_along_q2_back_down
                 - reach_back * reach_back
             )
+            * one_by_machine_scale
             / (product_in_away_q2 + reach_back)
         )
-        within_36 = away_q2_back_down <= machine_scale_times_rounding
+        within_36 = away_q2_back_down <= 1e-12
         lost_digits_36 = (not within_36) and (
             (abs(ahead_q1) <= product_in_lost_digits_23)
             or (
@@ -179,7 +180,7 @@ def unrolled(k: Constants) -> Unrolled:
             return ()
         # q2: out of reach
         if -1.0000000000005 <= cos_swing_q3_front <= 1.0000000000005:
-            refusal_front_down = 0 if away_q2_front_down <= product_in_away_q2 else 3
+            refusal_front_down = 0 if away_q2_front_down <= 1e-11 else 3
         else:
             refusal_front_down = 3
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
@@ -356,7 +357,7 @@ def unrolled(k: Constants) -> Unrolled:
                 axis_a6_front_up_up = offset_a6 + arctan2(direction_y_q6_up, direction_x_q6_up) * RADIAN
         # q2: out of reach
         if -1.0000000000005 <= cos_swing_q3_back <= 1.0000000000005:
-            refusal_back_down = 0 if away_q2_back_down <= product_in_away_q2 else 3
+            refusal_back_down = 0 if away_q2_back_down <= 1e-11 else 3
         else:
             refusal_back_down = 3
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back) * RADIAN
@@ -642,9 +643,10 @@ def unrolled(k: Constants) -> Unrolled:
             0.0
             if reach > product_in_lost_digits_23
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            * one_by_machine_scale
             / (product_in_away_q2 + reach)
         )
-        within_36 = away_q2 <= machine_scale_times_rounding
+        within_36 = away_q2 <= 1e-12
         lost_digits_36 = (not within_36) and (
             (abs(ahead_q1) <= product_in_lost_digits_23)
             or (
@@ -655,7 +657,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (not lost_digits_36):
             return ()
         # q2: out of reach
-        if not (away_q2 <= product_in_away_q2):
+        if not (away_q2 <= 1e-11):
             return None
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:

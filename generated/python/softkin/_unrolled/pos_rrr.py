@@ -21,11 +21,11 @@ def unrolled(k: Constants) -> Unrolled:
     a1, a2, a2_times_a3_times_2, a2_times_d4_times_2 = k.a1, k.a2, k.a2_times_a3_times_2, k.a2_times_d4_times_2
     a3, d1, d3, d4, effective_q3_2, highest_a1 = k.a3, k.d1, k.d3, k.d4, k.effective_q3_2, k.highest_a1
     highest_a2, highest_a3, lowest_a1, lowest_a2 = k.highest_a2, k.highest_a3, k.lowest_a1, k.lowest_a2
-    lowest_a3, machine_scale_times_free_angle = k.lowest_a3, k.machine_scale_times_free_angle
-    machine_scale_times_rounding, mid_a1, mid_a2 = k.machine_scale_times_rounding, k.mid_a1, k.mid_a2
-    mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-    product_in_away_q2, product_in_lost_digits_19 = k.product_in_away_q2, k.product_in_lost_digits_19
-    rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
+    lowest_a3, machine_scale_times_free_angle, mid_a1 = k.lowest_a3, k.machine_scale_times_free_angle, k.mid_a1
+    mid_a2, mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a2, k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
+    one_by_machine_scale, product_in_away_q2 = k.one_by_machine_scale, k.product_in_away_q2
+    product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
+    single_a2, single_a3 = k.single_a2, k.single_a3
     product_in_lost_digits_32_front_down = 0.02 * a2 * effective_q3_2
     a2_plus_effective_q3_2_2 = a2 + effective_q3_2
     a2_minus_effective_q3_2_2 = a2 - effective_q3_2
@@ -99,9 +99,10 @@ def unrolled(k: Constants) -> Unrolled:
                 + arm_along_q2_front_down * arm_along_q2_front_down
                 - reach_front * reach_front
             )
+            * one_by_machine_scale
             / (product_in_away_q2 + reach_front)
         )
-        within_32 = away_q2_front_down <= machine_scale_times_rounding
+        within_32 = away_q2_front_down <= 1e-12
         lost_digits_32 = (not within_32) and (
             (abs(ahead_q1) <= product_in_lost_digits_19)
             or (
@@ -144,9 +145,10 @@ def unrolled(k: Constants) -> Unrolled:
                 + arm_along_q2_back_down * arm_along_q2_back_down
                 - reach_back * reach_back
             )
+            * one_by_machine_scale
             / (product_in_away_q2 + reach_back)
         )
-        within_32 = away_q2_back_down <= machine_scale_times_rounding
+        within_32 = away_q2_back_down <= 1e-12
         lost_digits_32 = (not within_32) and (
             (abs(ahead_q1) <= product_in_lost_digits_19)
             or (
@@ -172,7 +174,7 @@ def unrolled(k: Constants) -> Unrolled:
             return ()
         # q2: out of reach
         if -1.0000000000005 <= cos_swing_q3_front <= 1.0000000000005:
-            refusal_front_down = 0 if away_q2_front_down <= product_in_away_q2 else 3
+            refusal_front_down = 0 if away_q2_front_down <= 1e-11 else 3
         else:
             refusal_front_down = 3
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
@@ -218,7 +220,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # q2: out of reach
         if -1.0000000000005 <= cos_swing_q3_back <= 1.0000000000005:
-            refusal_back_down = 0 if away_q2_back_down <= product_in_away_q2 else 3
+            refusal_back_down = 0 if away_q2_back_down <= 1e-11 else 3
         else:
             refusal_back_down = 3
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back) * RADIAN
@@ -318,9 +320,10 @@ def unrolled(k: Constants) -> Unrolled:
             0.0
             if reach > product_in_lost_digits_19
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            * one_by_machine_scale
             / (product_in_away_q2 + reach)
         )
-        within_32 = away_q2 <= machine_scale_times_rounding
+        within_32 = away_q2 <= 1e-12
         lost_digits_32 = (not within_32) and (
             (abs(ahead_q1) <= product_in_lost_digits_19)
             or (
@@ -331,7 +334,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (not lost_digits_32):
             return ()
         # q2: out of reach
-        if not (away_q2 <= product_in_away_q2):
+        if not (away_q2 <= 1e-11):
             return None
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
