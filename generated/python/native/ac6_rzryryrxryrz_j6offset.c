@@ -236,14 +236,6 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
       + k->d4_by_effective_q3_tried*sin_swing_q3_tried;
   const double sin_q3_tried = k->a3_by_effective_q3_tried*sin_swing_q3_tried
       - k->d4_by_effective_q3_tried*cos_swing_q3_tried;
-  const double arm_along_q2_tried = k->a3*sin_q3_tried + k->d4*cos_q3_tried;
-  const double arm_across_q2_tried = k->a2 + k->a3*cos_q3_tried - k->d4*sin_q3_tried;
-  /* rotation by q2 that takes the arm to its target point */
-  const double along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried
-      + arm_along_q2_tried*wrist_x_from_q1_tried;
-  const double across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried
-      - arm_along_q2_tried*wrist_z_from_q1_tried;
-  const double sum_in_cos_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried;
   const double slope_cos_swing_q3_tried = (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
       - slope_divisor_of_cos_q3_tried*cos_swing_q3_tried)*one_by_sum_q3_tried;
   const double slope_sine_square_q3_tried = one_less_cos_q3_tried*slope_one_plus_cos_q3_tried
@@ -258,7 +250,15 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   const double slope_sin_q3_tried = k->a3_by_effective_q3_tried*slope_sin_swing_q3_tried
       - k->d4_by_effective_q3_tried*slope_cos_swing_q3_tried;
   double cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried;
-  if (reach_tried > k->machine_scale_times_free_angle && sum_in_cos_q2_tried > 0.0 && freed != 1) {
+  if (reach_tried > k->machine_scale_times_free_angle && freed != 1) {
+    const double arm_along_q2_tried = k->a3*sin_q3_tried + k->d4*cos_q3_tried;
+    const double arm_across_q2_tried = k->a2 + k->a3*cos_q3_tried - k->d4*sin_q3_tried;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried
+        + arm_along_q2_tried*wrist_x_from_q1_tried;
+    const double across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried
+        - arm_along_q2_tried*wrist_z_from_q1_tried;
+    const double sum_in_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried;
     const double slope_arm_along_q2_tried = k->a3*slope_sin_q3_tried + k->d4*slope_cos_q3_tried;
     const double slope_arm_across_q2_tried = k->a3*slope_cos_q3_tried - k->d4*slope_sin_q3_tried;
     const double slope_along_q2_tried = arm_across_q2_tried*slope_wrist_z_tried
@@ -268,8 +268,8 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
         + slope_arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*slope_wrist_z_tried
         - slope_arm_along_q2_tried*wrist_z_from_q1_tried;
     double length_q2_tried, slope_length_q2_tried;
-    if (reach_tried > k->machine_scale_times_free_angle && sum_in_cos_q2_tried > 0.0) {
-      length_q2_tried = softkin_root(sum_in_cos_q2_tried);
+    if (reach_tried > k->machine_scale_times_free_angle && sum_in_length_q2_tried > 0.0) {
+      length_q2_tried = softkin_root(sum_in_length_q2_tried);
       slope_length_q2_tried = length_q2_tried > 0.0
           ? (across_q2_tried*slope_across_q2_tried + along_q2_tried*slope_along_q2_tried)
           /(length_q2_tried > 0.0 ? length_q2_tried : 1.0) : 0.0;
@@ -390,18 +390,18 @@ static softkin_status find_finish_root(const void *machine, const double *given,
       + k->d4_by_effective_q3_tried*sin_swing_q3_tried;
   const double sin_q3_tried = k->a3_by_effective_q3_tried*sin_swing_q3_tried
       - k->d4_by_effective_q3_tried*cos_swing_q3_tried;
-  const double arm_along_q2_tried = k->a3*sin_q3_tried + k->d4*cos_q3_tried;
-  const double arm_across_q2_tried = k->a2 + k->a3*cos_q3_tried - k->d4*sin_q3_tried;
-  /* rotation by q2 that takes the arm to its target point */
-  const double along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried
-      + arm_along_q2_tried*wrist_x_from_q1_tried;
-  const double across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried
-      - arm_along_q2_tried*wrist_z_from_q1_tried;
-  const double sum_in_sin_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried;
   double cos_q2_tried, sin_q2_tried;
-  if (reach_tried > k->machine_scale_times_free_angle && sum_in_sin_q2_tried > 0.0 && freed != 1) {
+  if (reach_tried > k->machine_scale_times_free_angle && freed != 1) {
+    const double arm_along_q2_tried = k->a3*sin_q3_tried + k->d4*cos_q3_tried;
+    const double arm_across_q2_tried = k->a2 + k->a3*cos_q3_tried - k->d4*sin_q3_tried;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried
+        + arm_along_q2_tried*wrist_x_from_q1_tried;
+    const double across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried
+        - arm_along_q2_tried*wrist_z_from_q1_tried;
+    const double sum_in_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried;
     const double length_q2_tried = (reach_tried > k->machine_scale_times_free_angle)
-        && (sum_in_sin_q2_tried > 0.0) ? softkin_root(sum_in_sin_q2_tried) : 1.0;
+        && (sum_in_length_q2_tried > 0.0) ? softkin_root(sum_in_length_q2_tried) : 1.0;
     cos_q2_tried = along_q2_tried/length_q2_tried; /* at a singularity: the angle of the reference */
     sin_q2_tried = across_q2_tried/length_q2_tried;
   } else {
@@ -950,17 +950,19 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     const double sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed;
     const double sin_swing_q3_closed = 2.0*softkin_root(sine_square_q3_closed)*sign_elbow_closed
         /divisor_of_cos_q3_closed;
-    const double arm_along_q2_closed = k->effective_q3_tried*sin_swing_q3_closed;
-    const double arm_across_q2_closed = k->a2 + k->effective_q3_tried*cos_swing_q3_closed;
-    /* rotation by q2 that takes the arm to its target point */
-    const double along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed
-        + arm_along_q2_closed*wrist_x_from_q1_closed;
-    const double across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed
-        - arm_along_q2_closed*wrist_z_from_q1_closed;
-    const double sum_in_sin_q2_closed = across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed;
     double cos_q2_closed, sin_q2_closed;
-    if (reach_closed > k->machine_scale_times_free_angle && sum_in_sin_q2_closed > 0.0) {
-      const double length_q2_closed = softkin_root(sum_in_sin_q2_closed);
+    if (reach_closed > k->machine_scale_times_free_angle) {
+      const double arm_along_q2_closed = k->effective_q3_tried*sin_swing_q3_closed;
+      const double arm_across_q2_closed = k->a2 + k->effective_q3_tried*cos_swing_q3_closed;
+      /* rotation by q2 that takes the arm to its target point */
+      const double along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed
+          + arm_along_q2_closed*wrist_x_from_q1_closed;
+      const double across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed
+          - arm_along_q2_closed*wrist_z_from_q1_closed;
+      const double sum_in_length_q2_closed = across_q2_closed*across_q2_closed
+          + along_q2_closed*along_q2_closed;
+      const double length_q2_closed = sum_in_length_q2_closed > 0.0 ? softkin_root(sum_in_length_q2_closed)
+          : 1.0;
       cos_q2_closed = along_q2_closed/length_q2_closed; /* at a singularity: the angle of the reference */
       sin_q2_closed = across_q2_closed/length_q2_closed;
     } else {

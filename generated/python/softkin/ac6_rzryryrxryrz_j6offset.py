@@ -117,7 +117,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 8ef20a27d6cfc40a"
+    KEY = "ac6_rzryryrxryrz_j6offset d6b7a937dc986248"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -402,12 +402,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
-        arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
-        arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
-        # rotation by q2 that takes the arm to its target point
-        along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
-        across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
-        sum_in_cos_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
         slope_cos_swing_q3_tried = (
             slope_one_plus_cos_q3_tried
             - slope_one_less_cos_q3_tried
@@ -432,7 +426,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             a3_by_effective_q3_tried * slope_sin_swing_q3_tried - d4_by_effective_q3_tried * slope_cos_swing_q3_tried
         )
         # at a singularity: the angle of the reference
-        if reach_tried > machine_scale_times_free_angle and sum_in_cos_q2_tried > 0.0 and freed != 1:
+        if reach_tried > machine_scale_times_free_angle and freed != 1:
+            arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
+            arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
+            # rotation by q2 that takes the arm to its target point
+            along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
+            across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
+            sum_in_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
             slope_arm_along_q2_tried = a3 * slope_sin_q3_tried + d4 * slope_cos_q3_tried
             slope_arm_across_q2_tried = a3 * slope_cos_q3_tried - d4 * slope_sin_q3_tried
             slope_along_q2_tried = (
@@ -447,8 +447,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 - arm_along_q2_tried * slope_wrist_z_tried
                 - slope_arm_along_q2_tried * wrist_z_from_q1_tried
             )
-            if reach_tried > machine_scale_times_free_angle and sum_in_cos_q2_tried > 0.0:
-                length_q2_tried = sqrt(sum_in_cos_q2_tried) if sum_in_cos_q2_tried > 0.0 else 0.0
+            if reach_tried > machine_scale_times_free_angle and sum_in_length_q2_tried > 0.0:
+                length_q2_tried = sqrt(sum_in_length_q2_tried) if sum_in_length_q2_tried > 0.0 else 0.0
                 slope_length_q2_tried = (
                     (across_q2_tried * slope_across_q2_tried + along_q2_tried * slope_along_q2_tried)
                     / (length_q2_tried if length_q2_tried > 0.0 else 1.0)
@@ -601,17 +601,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = a3_by_effective_q3_tried * cos_swing_q3_tried + d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = a3_by_effective_q3_tried * sin_swing_q3_tried - d4_by_effective_q3_tried * cos_swing_q3_tried
-        arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
-        arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
-        # rotation by q2 that takes the arm to its target point
-        along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
-        across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
-        sum_in_sin_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
         # at a singularity: the angle of the reference
-        if reach_tried > machine_scale_times_free_angle and sum_in_sin_q2_tried > 0.0 and freed != 1:
+        if reach_tried > machine_scale_times_free_angle and freed != 1:
+            arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
+            arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
+            # rotation by q2 that takes the arm to its target point
+            along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
+            across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
+            sum_in_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
             length_q2_tried = (
-                (sqrt(sum_in_sin_q2_tried) if sum_in_sin_q2_tried > 0.0 else 0.0)
-                if (reach_tried > machine_scale_times_free_angle) and (sum_in_sin_q2_tried > 0.0)
+                (sqrt(sum_in_length_q2_tried) if sum_in_length_q2_tried > 0.0 else 0.0)
+                if (reach_tried > machine_scale_times_free_angle) and (sum_in_length_q2_tried > 0.0)
                 else 1.0
             )
             cos_q2_tried = along_q2_tried / length_q2_tried
@@ -1419,19 +1419,19 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 * sigma_elbow
                 / divisor_of_cos_q3_closed
             )
-            arm_along_q2_closed = effective_q3_tried * sin_swing_q3_closed
-            arm_across_q2_closed = a2 + effective_q3_tried * cos_swing_q3_closed
-            # rotation by q2 that takes the arm to its target point
-            along_q2_closed = (
-                arm_across_q2_closed * wrist_z_from_q1_closed + arm_along_q2_closed * wrist_x_from_q1_closed
-            )
-            across_q2_closed = (
-                arm_across_q2_closed * wrist_x_from_q1_closed - arm_along_q2_closed * wrist_z_from_q1_closed
-            )
-            sum_in_sin_q2_closed = across_q2_closed * across_q2_closed + along_q2_closed * along_q2_closed
             # at a singularity: the angle of the reference
-            if reach_closed > machine_scale_times_free_angle and sum_in_sin_q2_closed > 0.0:
-                length_q2_closed = sqrt(sum_in_sin_q2_closed) if sum_in_sin_q2_closed > 0.0 else 0.0
+            if reach_closed > machine_scale_times_free_angle:
+                arm_along_q2_closed = effective_q3_tried * sin_swing_q3_closed
+                arm_across_q2_closed = a2 + effective_q3_tried * cos_swing_q3_closed
+                # rotation by q2 that takes the arm to its target point
+                along_q2_closed = (
+                    arm_across_q2_closed * wrist_z_from_q1_closed + arm_along_q2_closed * wrist_x_from_q1_closed
+                )
+                across_q2_closed = (
+                    arm_across_q2_closed * wrist_x_from_q1_closed - arm_along_q2_closed * wrist_z_from_q1_closed
+                )
+                sum_in_length_q2_closed = across_q2_closed * across_q2_closed + along_q2_closed * along_q2_closed
+                length_q2_closed = sqrt(sum_in_length_q2_closed) if sum_in_length_q2_closed > 0.0 else 1.0
                 cos_q2_closed = along_q2_closed / length_q2_closed
                 sin_q2_closed = across_q2_closed / length_q2_closed
             else:

@@ -157,12 +157,6 @@ class ArrayPrograms(Programs):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
-        arm_along_q2_tried = k.a3 * sin_q3_tried + k.d4 * cos_q3_tried
-        arm_across_q2_tried = k.a2 + k.a3 * cos_q3_tried - k.d4 * sin_q3_tried
-        # rotation by q2 that takes the arm to its target point
-        along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
-        across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
-        sum_in_cos_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
         slope_cos_swing_q3_tried = (
             slope_one_plus_cos_q3_tried
             - slope_one_less_cos_q3_tried
@@ -197,6 +191,12 @@ class ArrayPrograms(Programs):
             sin_q2_tried = sin(chosen_q2)
             return (cos_q2_tried, sin_q2_tried, 0.0, 0.0)
 
+        arm_along_q2_tried = k.a3 * sin_q3_tried + k.d4 * cos_q3_tried
+        arm_across_q2_tried = k.a2 + k.a3 * cos_q3_tried - k.d4 * sin_q3_tried
+        # rotation by q2 that takes the arm to its target point
+        along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
+        across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
+        sum_in_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
         slope_arm_along_q2_tried = k.a3 * slope_sin_q3_tried + k.d4 * slope_cos_q3_tried
         slope_arm_across_q2_tried = k.a3 * slope_cos_q3_tried - k.d4 * slope_sin_q3_tried
         slope_along_q2_tried = (
@@ -211,14 +211,14 @@ class ArrayPrograms(Programs):
             - arm_along_q2_tried * slope_wrist_z_tried
             - slope_arm_along_q2_tried * wrist_z_from_q1_tried
         )
-        length_q2_tried = root(sum_in_cos_q2_tried)
+        length_q2_tried = root(sum_in_length_q2_tried)
         slope_length_q2_tried = select(
             length_q2_tried > 0.0,
             (across_q2_tried * slope_across_q2_tried + along_q2_tried * slope_along_q2_tried)
             / select(length_q2_tried > 0.0, length_q2_tried, 1.0),
             0.0,
         )
-        holds = (reach_tried > k.machine_scale_times_free_angle) & (sum_in_cos_q2_tried > 0.0)
+        holds = (reach_tried > k.machine_scale_times_free_angle) & (sum_in_length_q2_tried > 0.0)
         length_q2_tried = select(holds, length_q2_tried, 1.0)
         slope_length_q2_tried = select(holds, slope_length_q2_tried, 0.0)
         one_by_root_of_length_q2_tried = 1.0 / length_q2_tried
@@ -232,7 +232,7 @@ class ArrayPrograms(Programs):
         ) * one_by_root_of_length_q2_tried
         # at a singularity: the angle of the reference
         cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried = elsewhere(
-            (reach_tried > k.machine_scale_times_free_angle) & (sum_in_cos_q2_tried > 0.0) & (freed != 1),
+            (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
             elsewhere_cos_q2_tried,
             (freed, freed_angle, reference_a2),
@@ -364,12 +364,6 @@ class ArrayPrograms(Programs):
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
         sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
-        arm_along_q2_tried = k.a3 * sin_q3_tried + k.d4 * cos_q3_tried
-        arm_across_q2_tried = k.a2 + k.a3 * cos_q3_tried - k.d4 * sin_q3_tried
-        # rotation by q2 that takes the arm to its target point
-        along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
-        across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
-        sum_in_sin_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
 
         def elsewhere_cos_q2_tried(freed: Whole, freed_angle: Real, reference_a2: Real) -> Reals:
             chosen_q2 = select(freed == 1, freed_angle, reference_a2)  # q2 where the pose leaves it free
@@ -377,16 +371,22 @@ class ArrayPrograms(Programs):
             sin_q2_tried = sin(chosen_q2)
             return (cos_q2_tried, sin_q2_tried)
 
+        arm_along_q2_tried = k.a3 * sin_q3_tried + k.d4 * cos_q3_tried
+        arm_across_q2_tried = k.a2 + k.a3 * cos_q3_tried - k.d4 * sin_q3_tried
+        # rotation by q2 that takes the arm to its target point
+        along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
+        across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
+        sum_in_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
         length_q2_tried = select(
-            (reach_tried > k.machine_scale_times_free_angle) & (sum_in_sin_q2_tried > 0.0),
-            root(sum_in_sin_q2_tried),
+            (reach_tried > k.machine_scale_times_free_angle) & (sum_in_length_q2_tried > 0.0),
+            root(sum_in_length_q2_tried),
             1.0,
         )
         cos_q2_tried = along_q2_tried / length_q2_tried
         sin_q2_tried = across_q2_tried / length_q2_tried
         # at a singularity: the angle of the reference
         cos_q2_tried, sin_q2_tried = elsewhere(
-            (reach_tried > k.machine_scale_times_free_angle) & (sum_in_sin_q2_tried > 0.0) & (freed != 1),
+            (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
             (cos_q2_tried, sin_q2_tried),
             elsewhere_cos_q2_tried,
             (freed, freed_angle, reference_a2),
@@ -1062,6 +1062,12 @@ class ArrayPrograms(Programs):
             # sine squared, times the squared scale
             sine_square_q3_closed = one_less_cos_q3_closed * one_plus_cos_q3_closed
             sin_swing_q3_closed = 2.0 * root(sine_square_q3_closed) * sigma_elbow / divisor_of_cos_q3_closed
+
+            def elsewhere_cos_q2_closed(reference_a2: Real) -> Reals:
+                cos_q2_closed = cos(reference_a2)
+                sin_q2_closed = sin(reference_a2)
+                return (cos_q2_closed, sin_q2_closed)
+
             arm_along_q2_closed = k.effective_q3_tried * sin_swing_q3_closed
             arm_across_q2_closed = k.a2 + k.effective_q3_tried * cos_swing_q3_closed
             # rotation by q2 that takes the arm to its target point
@@ -1071,19 +1077,13 @@ class ArrayPrograms(Programs):
             across_q2_closed = (
                 arm_across_q2_closed * wrist_x_from_q1_closed - arm_along_q2_closed * wrist_z_from_q1_closed
             )
-            sum_in_sin_q2_closed = across_q2_closed * across_q2_closed + along_q2_closed * along_q2_closed
-
-            def elsewhere_cos_q2_closed(reference_a2: Real) -> Reals:
-                cos_q2_closed = cos(reference_a2)
-                sin_q2_closed = sin(reference_a2)
-                return (cos_q2_closed, sin_q2_closed)
-
-            length_q2_closed = root(sum_in_sin_q2_closed)
+            sum_in_length_q2_closed = across_q2_closed * across_q2_closed + along_q2_closed * along_q2_closed
+            length_q2_closed = select(sum_in_length_q2_closed > 0.0, root(sum_in_length_q2_closed), 1.0)
             cos_q2_closed = along_q2_closed / length_q2_closed
             sin_q2_closed = across_q2_closed / length_q2_closed
             # at a singularity: the angle of the reference
             cos_q2_closed, sin_q2_closed = elsewhere(
-                (reach_closed > k.machine_scale_times_free_angle) & (sum_in_sin_q2_closed > 0.0),
+                reach_closed > k.machine_scale_times_free_angle,
                 (cos_q2_closed, sin_q2_closed),
                 elsewhere_cos_q2_closed,
                 (reference_a2,),
