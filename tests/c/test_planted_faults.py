@@ -36,7 +36,7 @@ FAULTS: dict[str, tuple[str, str, str, str]] = {
     "size of an array": (ARM, "softkin", r"axes\[slot\*kind->axis_count \+ i\]", "axes[slot*kind->axis_count + i + 4]"),
     "result of a refusal": (ARM, "softkin", r"status == SOFTKIN_OK && i < kind->axis_count; i",
                             "i < kind->axis_count; i"),
-    "division by zero": (ARM, "scara4", r"fabs\(heading_across\) > 1e-11", "fabs(1.0/heading_across) > 1e-11"),
+    "division by zero": (ARM, "scara4", r"fabs\(heading_across\) > 2e-12", "fabs(1.0/heading_across) > 1e-11"),
     "repair of a rotation": (ELBOW, "softkin_rotation.h", r"<= 0\.0001", "<= 0.01"),
     "wide matrix": (PLATE, "softkin", r"factor\*system\[k\*width \+ j\]", "factor*system[k*width + i]"),
     "no exchange of rows": (PLATE, "softkin", r"determinant = -determinant;", "determinant *= 1.0;"),

@@ -131,14 +131,14 @@ def ask(fmu: Fmu, machines: Sequence[Answer]) -> list[Answer]:
 
 def asked(fmu: Fmu) -> Callable[[Answer], Answer | None]:
     """A question of the corpus as an FMU can be asked: with numbers alone, one branch at a time, without a start. Each
-    third is asked: the C behind it is asked them all.
+    second is asked: the C behind it is asked them all.
     """
     places = count()
     axes, size = len(fmu.names("axes")), len(fmu.names("configuration"))
     starts = [int(one.start) for one in fmu.description.modelVariables if one.name.startswith("configuration.")]
 
     def of(question: Answer) -> Answer | None:
-        if next(places) % 3 or "start" in question or question["call"] == "inverse" and question["reference"] is None:
+        if next(places) % 2 or "start" in question or question["call"] == "inverse" and question["reference"] is None:
             return None
         found = as_arrays(question, axes, size)
         if found is None or "configurations" not in found:

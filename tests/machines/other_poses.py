@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 OWN = ("Z3 head with slides", "3-RRR on a lift")
 """Machines that are in no catalogue: their loops leave out coordinates that the task does not command."""
 CATALOGUE = tuple(m.name for _, m in catalogue() if m.is_platform)
-_DRAWN, _WANTED, _STEP = 3000, 7, 1e-5
+_DRAWN, _WANTED, _STEP = 3000, 12, 1e-5
 _REGULAR = 0.05
 """The least margin of a pose whose Jacobian is compared."""
 

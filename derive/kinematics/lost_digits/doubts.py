@@ -26,6 +26,8 @@ from derive.kinematics.lost_digits.closure_steps import MET, Machine, given_name
 from derive.kinematics.lost_digits.starts import GOAL, LOST
 from derive.work import stage
 
+AWAY, LENGTHS = "away_", f"{LOST}lengths_"
+"""The begins of the names of how far two lengths differ, and of the flags that they do, which is always lost digits."""
 _EXACTLY = {1 + BOUNDARY / 2: sp.Integer(1), BOUNDARY / 2: sp.Integer(0), CONVERGED: BOUNDARY}
 """A bound without what it allows for rounding."""
 
@@ -39,10 +41,11 @@ def with_doubts(machine: Machine, statements: Sequence[Statement]) -> tuple[Stat
         may_refuse = machine.has_steps and isinstance(s, Require) and s.otherwise is Status.UNREACHABLE
         doubts = _doubts(machine, statements, place) if may_refuse else []
         if isinstance(s, Require) and doubts:
-            within, lost = flag(f"within_{place}"), flag(f"{LOST}{place}")
+            is_alone = any(name.name.startswith(AWAY) for name in names_in(s.condition))
+            within, lost = flag(f"within_{place}"), flag(f"{LENGTHS if is_alone else LOST}{place}")
             bounds = {n: sp.Integer(1) for n in names_in(s.condition) if n.name.startswith(BOUND_OF)}
             found.append(Let(within, s.condition.xreplace(_EXACTLY | bounds)))
-            found.append(Let(lost, sp.And(sp.Not(within), sp.Or(*doubts))))
+            found.append(Let(lost, sp.Not(within) if is_alone else sp.And(sp.Not(within), sp.Or(*doubts))))
             found.append(replace(s, condition=sp.Or(s.condition, lost)))
         else:
             found.append(s)
@@ -84,7 +87,7 @@ def _alike(step: Conditioning) -> tuple[Let, Require]:
     digits; and the condition that they are alike.
     """
     assert step.missed is not None
-    away = real(f"away_{step.angle.name}")
+    away = real(f"{AWAY}{step.angle.name}")
     differ = sp.Abs(step.missed) / ((step.value + CONVERGED * step.scale) * step.scale)
     rare = Select(sp.Gt(step.value, DOUBTFUL * step.scale), sp.Integer(0), differ)
     is_alike = sp.Le(away, CONVERGED)
@@ -121,12 +124,15 @@ def meeting(machine: Machine, branch: Program) -> Program:
     names = (MET, *(real(f"found_{j.key}") for j in joints))
     note = "if digits were lost, steps on the closure meet the pose"
     call = Call(meet, arguments, names, note, sp.Or(*flags))
-    refusals: list[Statement] = []
+    refusals: list[Require] = []
     for s in branch.requires():
         own_flags = [f for f in flags if f in names_in(s.condition)]
         refusals += [replace(s, condition=s.condition.xreplace({f: MET})) for f in own_flags]
+    refusals = _joined(refusals)
     outputs = [replace(o, value=Select(MET, name, o.value)) for o, name in zip(branch.outputs, names[1:], strict=True)]
-    return normalise(branch.name, (*branch.body, call, *refusals), outputs)
+    lengths = {f for f in flags if f.name.startswith(LENGTHS)}
+    body = (s for s in branch.body if not (isinstance(s, Require) and names_in(s.condition) & lengths))
+    return normalise(branch.name, (*body, call, *refusals), outputs)
 
 
 def without_meeting(program: Program) -> Program:
@@ -146,3 +152,10 @@ def without_meeting(program: Program) -> Program:
         body.append(s)
     own_values = {o: o.value.args[2] for o in program.outputs if isinstance(o.value, Select)}
     return normalise(program.name, body, [replace(o, value=own_values.get(o, o.value)) for o in program.outputs])
+
+
+def _joined(refusals: Sequence[Require]) -> list[Require]:
+    """The refusals, with the conditions on lengths in the first other one: that digits are lost is no other reason."""
+    lengths = [r for r in refusals if any(name.name.startswith(AWAY) for name in names_in(r.condition))]
+    first, *others = [r for r in refusals if r not in lengths] or lengths[:1]
+    return [replace(first, condition=sp.And(first.condition, *(r.condition for r in lengths))), *others]

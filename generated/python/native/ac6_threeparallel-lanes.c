@@ -85,9 +85,6 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     missed += !lost_digits_38 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_q3) <= bound_of_cos_q3 ? 0.0 : 1.0;
-    missed += reach > product_in_lost_digits_38 ? 0.0 : 1.0;
-    /* digits may be lost */
-    missed += true ? 0.0 : 1.0;
     const double arm_along_q2 = a2 + a3*cos_q3;
     const double sign_elbow = sigma_elbow; /* elbow: +1 up, -1 down */
     /* sine squared, times the squared scale */
@@ -290,12 +287,6 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
     /* digits may be lost */
     missed += !lost_digits_38_right_up ? 0.0 : 1.0;
-    missed += reach_left_down > product_in_lost_digits_38 ? 0.0 : 1.0;
-    /* digits may be lost */
-    missed += true ? 0.0 : 1.0;
-    missed += reach_left_up > product_in_lost_digits_38 ? 0.0 : 1.0;
-    missed += reach_right_down > product_in_lost_digits_38 ? 0.0 : 1.0;
-    missed += reach_right_up > product_in_lost_digits_38 ? 0.0 : 1.0;
     const double arm_along_q2_left_down = a2 + a3*cos_q3_left_down;
     const double product_in_along_q2_left_up_down = arm_along_q2_left_down*wrist_x_from_q1_left_down;
     /* sine squared, times the squared scale */
@@ -389,8 +380,6 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         + along_q2_right_down_up*along_q2_right_down_up > 0.0 ? 0.0 : 1.0;
     /* q3: out of reach */
     const double refusal_left_down = fabs(cos_q3_left_down) <= bound_of_cos_q3 ? 0 : 3;
-    /* q2: out of reach */
-    const double refusal_left_up_down = refusal_left_down > 0 ? refusal_left_down : 0;
     const double axis_a1_left = offset_a1 + softkin_lane_angle(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
     const double angle_of_arm_along_q2_left_up_down = softkin_lane_angle(arm_across_q2_left_up_down,
         arm_along_q2_left_down);
@@ -414,7 +403,6 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         + softkin_lane_angle(r22_from_q1_left_by_radius_q6_left, cos_q6_left_down)*SOFTKIN_RADIAN;
     /* q3: out of reach */
     const double refusal_left_up = fabs(cos_q3_left_up) <= bound_of_cos_q3 ? 0 : 3;
-    const double refusal_left_up_up = refusal_left_up > 0 ? refusal_left_up : 0; /* q2: out of reach */
     const double angle_of_arm_along_q2_left_up_up = softkin_lane_angle(arm_across_q2_left_up_up,
         arm_along_q2_left_up);
     const double angle_of_wrist_x_from_q1_left_up = softkin_lane_angle(wrist_z_from_q1_left_up,
@@ -445,8 +433,6 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         + (angle_q3_left_up_up + angle_with_q4_left_up - angle_q2_left_down_up)*SOFTKIN_RADIAN;
     /* q3: out of reach */
     const double refusal_right_down = fabs(cos_q3_right_down) <= bound_of_cos_q3 ? 0 : 3;
-    /* q2: out of reach */
-    const double refusal_right_up_down = refusal_right_down > 0 ? refusal_right_down : 0;
     const double axis_a1_right = offset_a1 + softkin_lane_angle(sin_q1_right, cos_q1_right)*SOFTKIN_RADIAN;
     const double angle_of_arm_along_q2_right_up_down = softkin_lane_angle(arm_across_q2_right_up_down,
         arm_along_q2_right_down);
@@ -470,8 +456,6 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         + softkin_lane_angle(r22_from_q1_right_by_radius_q6_right, cos_q6_right_down)*SOFTKIN_RADIAN;
     /* q3: out of reach */
     const double refusal_right_up = fabs(cos_q3_right_up) <= bound_of_cos_q3 ? 0 : 3;
-    /* q2: out of reach */
-    const double refusal_right_up_up = refusal_right_up > 0 ? refusal_right_up : 0;
     const double angle_of_arm_along_q2_right_up_up = softkin_lane_angle(arm_across_q2_right_up_up,
         arm_along_q2_right_up);
     const double angle_of_wrist_x_from_q1_right_up = softkin_lane_angle(wrist_z_from_q1_right_up,
@@ -507,56 +491,56 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     near[3][lane] = single_a4 > 0.0 ? mid_a4 : ref_a4;
     near[4][lane] = single_a5 > 0.0 ? mid_a5 : ref_a5;
     near[5][lane] = single_a6 > 0.0 ? mid_a6 : ref_a6;
-    statuses[0][lane] = refusal_left_up_down;
+    statuses[0][lane] = refusal_left_down;
     axes[0][lane] = axis_a1_left;
     axes[1][lane] = axis_a2_left_up_down;
     axes[2][lane] = axis_a3_left_up_down;
     axes[3][lane] = axis_a4_left_up_down;
     axes[4][lane] = axis_a5_left_down;
     axes[5][lane] = axis_a6_left_down;
-    statuses[1][lane] = refusal_right_up_down;
+    statuses[1][lane] = refusal_right_down;
     axes[6][lane] = axis_a1_right;
     axes[7][lane] = axis_a2_right_up_down;
     axes[8][lane] = axis_a3_right_up_down;
     axes[9][lane] = axis_a4_right_up_down;
     axes[10][lane] = axis_a5_right_down;
     axes[11][lane] = axis_a6_right_down;
-    statuses[2][lane] = refusal_left_up_down;
+    statuses[2][lane] = refusal_left_down;
     axes[12][lane] = axis_a1_left;
     axes[13][lane] = axis_a2_left_down_down;
     axes[14][lane] = axis_a3_left_down_down;
     axes[15][lane] = axis_a4_left_down_down;
     axes[16][lane] = axis_a5_left_down;
     axes[17][lane] = axis_a6_left_down;
-    statuses[3][lane] = refusal_right_up_down;
+    statuses[3][lane] = refusal_right_down;
     axes[18][lane] = axis_a1_right;
     axes[19][lane] = axis_a2_right_down_down;
     axes[20][lane] = axis_a3_right_down_down;
     axes[21][lane] = axis_a4_right_down_down;
     axes[22][lane] = axis_a5_right_down;
     axes[23][lane] = axis_a6_right_down;
-    statuses[4][lane] = refusal_left_up_up;
+    statuses[4][lane] = refusal_left_up;
     axes[24][lane] = axis_a1_left;
     axes[25][lane] = axis_a2_left_up_up;
     axes[26][lane] = axis_a3_left_up_up;
     axes[27][lane] = axis_a4_left_up_up;
     axes[28][lane] = axis_a5_left_up;
     axes[29][lane] = axis_a6_left_up;
-    statuses[5][lane] = refusal_right_up_up;
+    statuses[5][lane] = refusal_right_up;
     axes[30][lane] = axis_a1_right;
     axes[31][lane] = axis_a2_right_up_up;
     axes[32][lane] = axis_a3_right_up_up;
     axes[33][lane] = axis_a4_right_up_up;
     axes[34][lane] = axis_a5_right_up;
     axes[35][lane] = axis_a6_right_up;
-    statuses[6][lane] = refusal_left_up_up;
+    statuses[6][lane] = refusal_left_up;
     axes[36][lane] = axis_a1_left;
     axes[37][lane] = axis_a2_left_down_up;
     axes[38][lane] = axis_a3_left_down_up;
     axes[39][lane] = axis_a4_left_down_up;
     axes[40][lane] = axis_a5_left_up;
     axes[41][lane] = axis_a6_left_up;
-    statuses[7][lane] = refusal_right_up_up;
+    statuses[7][lane] = refusal_right_up;
     axes[42][lane] = axis_a1_right;
     axes[43][lane] = axis_a2_right_down_up;
     axes[44][lane] = axis_a3_right_down_up;

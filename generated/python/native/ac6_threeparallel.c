@@ -715,13 +715,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       : fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2 - reach*reach)*k->one_by_machine_scale
       /(k->product_in_away_q2 + reach);
   const bool within_49 = away_q2 <= 1e-12;
-  const bool lost_digits_49 = (!within_49)
-      && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01) || (fabs(sin_q3) <= 0.01)
-      || (fabs(ahead_q1) <= k->product_in_lost_digits_38));
-  /* q2: out of reach */
-  if (!(lost_digits_49 || (away_q2 <= 1e-11))) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
-  }
+  const bool lost_digits_lengths_49 = !within_49;
   /* A1: without a commanded turn, the value nearest to this */
   const double open_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
   const double near_a1 = turn_a1 != 0 ? 360.0*(turn_a1 > 0 ? turn_a1 - 1 : turn_a1) : open_a1;
@@ -773,7 +767,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       near_a6);
   /* if digits were lost, steps on the closure meet the pose */
   double results[7] = {0.0};
-  if (lost_digits_38 || lost_digits_49) {
+  if (lost_digits_38 || lost_digits_lengths_49) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, sigma_elbow, sigma_shoulder,
         sigma_wrist, turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6, r11, r12, r13, r21, r22, r23, r31,
         r32, r33, x, y, z, axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6};
@@ -786,14 +780,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       found_a5 = results[5], found_a6 = results[6];
   const bool met = results[0] != 0.0;
   /* q3: out of reach */
-  if (!(met || (fabs(cos_q3) <= k->bound_of_cos_q3))) {
+  if (!((met || (away_q2 <= 1e-11)) && (met || (fabs(cos_q3) <= k->bound_of_cos_q3)))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
         : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
-  }
-  /* q2: out of reach */
-  if (!(met || (away_q2 <= 1e-11))) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
   axes[1] = (met ? found_a2 : axis_a2);
@@ -1325,76 +1315,14 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(!lost_digits_38_right_up)) {
     return false;
   }
+  /* q3: out of reach */
+  const int refusal_left_down = fabs(cos_q3_left_down) <= k->bound_of_cos_q3 ? 0 : 3;
+  const double axis_a1_left = k->offset_a1 + softkin_angle_of(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
+  const double arm_along_q2_left_down = k->a2 + k->a3*cos_q3_left_down;
   /* sine squared, times the squared scale */
   const double sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down;
   const double sin_q3_left_up_down = softkin_root(sine_square_q3_left_down)*k->quotient_in_closed_sin_q3;
-  const double arm_along_q2_left_down = k->a2 + k->a3*cos_q3_left_down;
   const double arm_across_q2_left_up_down = k->a3*sin_q3_left_up_down;
-  const double away_q2_left_up_down = reach_left_down > k->product_in_lost_digits_38 ? 0.0
-      : fabs(arm_across_q2_left_up_down*arm_across_q2_left_up_down
-      + arm_along_q2_left_down*arm_along_q2_left_down - reach_left_down*reach_left_down)
-      *k->one_by_machine_scale/(k->product_in_away_q2 + reach_left_down);
-  const bool within_49_left_up_down = away_q2_left_up_down <= 1e-12;
-  const bool lost_digits_49_left_up_down = (!within_49_left_up_down)
-      && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_down) <= 0.01)
-      || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
-  if (!(!lost_digits_49_left_up_down)) {
-    return false;
-  }
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
-  const double sin_q3_left_up_up = softkin_root(sine_square_q3_left_up)*k->quotient_in_closed_sin_q3;
-  const double arm_along_q2_left_up = k->a2 + k->a3*cos_q3_left_up;
-  const double arm_across_q2_left_up_up = k->a3*sin_q3_left_up_up;
-  const double away_q2_left_up_up = reach_left_up > k->product_in_lost_digits_38 ? 0.0
-      : fabs(arm_across_q2_left_up_up*arm_across_q2_left_up_up + arm_along_q2_left_up*arm_along_q2_left_up
-      - reach_left_up*reach_left_up)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_left_up);
-  const bool within_49_left_up_up = away_q2_left_up_up <= 1e-12;
-  const bool lost_digits_49_left_up_up = (!within_49_left_up_up)
-      && ((fabs(radius_q6_left) <= 0.01) || (fabs(sin_q3_left_up_up) <= 0.01)
-      || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
-  if (!(!lost_digits_49_left_up_up)) {
-    return false;
-  }
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
-  const double sin_q3_right_up_down = softkin_root(sine_square_q3_right_down)*k->quotient_in_closed_sin_q3;
-  const double arm_along_q2_right_down = k->a2 + k->a3*cos_q3_right_down;
-  const double arm_across_q2_right_up_down = k->a3*sin_q3_right_up_down;
-  const double away_q2_right_up_down = reach_right_down > k->product_in_lost_digits_38 ? 0.0
-      : fabs(arm_across_q2_right_up_down*arm_across_q2_right_up_down
-      + arm_along_q2_right_down*arm_along_q2_right_down - reach_right_down*reach_right_down)
-      *k->one_by_machine_scale/(k->product_in_away_q2 + reach_right_down);
-  const bool within_49_right_up_down = away_q2_right_up_down <= 1e-12;
-  const bool lost_digits_49_right_up_down = (!within_49_right_up_down)
-      && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_down) <= 0.01)
-      || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
-  if (!(!lost_digits_49_right_up_down)) {
-    return false;
-  }
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
-  const double sin_q3_right_up_up = softkin_root(sine_square_q3_right_up)*k->quotient_in_closed_sin_q3;
-  const double arm_along_q2_right_up = k->a2 + k->a3*cos_q3_right_up;
-  const double arm_across_q2_right_up_up = k->a3*sin_q3_right_up_up;
-  const double away_q2_right_up_up = reach_right_up > k->product_in_lost_digits_38 ? 0.0
-      : fabs(arm_across_q2_right_up_up*arm_across_q2_right_up_up
-      + arm_along_q2_right_up*arm_along_q2_right_up - reach_right_up*reach_right_up)*k->one_by_machine_scale
-      /(k->product_in_away_q2 + reach_right_up);
-  const bool within_49_right_up_up = away_q2_right_up_up <= 1e-12;
-  const bool lost_digits_49_right_up_up = (!within_49_right_up_up)
-      && ((fabs(radius_q6_right) <= 0.01) || (fabs(sin_q3_right_up_up) <= 0.01)
-      || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
-  if (!(!lost_digits_49_right_up_up)) {
-    return false;
-  }
-  int refusal_left_up_down;
-  if (fabs(cos_q3_left_down) <= k->bound_of_cos_q3) {
-    refusal_left_up_down = away_q2_left_up_down <= 1e-11 ? 0 : 3; /* q2: out of reach */
-  } else {
-    refusal_left_up_down = 3; /* q2: out of reach */
-  }
-  const double axis_a1_left = k->offset_a1 + softkin_angle_of(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
   const double angle_of_arm_along_q2_left_up_down = softkin_angle_of(arm_across_q2_left_up_down,
       arm_along_q2_left_down);
   const double angle_of_wrist_x_from_q1_left_down = softkin_angle_of(wrist_z_from_q1_left_down,
@@ -1420,12 +1348,13 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       + (angle_with_q4_left_down - angle_q2_left_up_down - angle_q3_left_up_down)*SOFTKIN_RADIAN;
   const double quotient_in_axis_a5_left_down = softkin_angle_of(radius_q6_left, cos_q5_left)*SOFTKIN_RADIAN;
   const double axis_a5_left_down = k->offset_a5 + quotient_in_axis_a5_left_down;
-  int refusal_left_up_up;
-  if (fabs(cos_q3_left_up) <= k->bound_of_cos_q3) {
-    refusal_left_up_up = away_q2_left_up_up <= 1e-11 ? 0 : 3; /* q2: out of reach */
-  } else {
-    refusal_left_up_up = 3; /* q2: out of reach */
-  }
+  /* q3: out of reach */
+  const int refusal_left_up = fabs(cos_q3_left_up) <= k->bound_of_cos_q3 ? 0 : 3;
+  const double arm_along_q2_left_up = k->a2 + k->a3*cos_q3_left_up;
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
+  const double sin_q3_left_up_up = softkin_root(sine_square_q3_left_up)*k->quotient_in_closed_sin_q3;
+  const double arm_across_q2_left_up_up = k->a3*sin_q3_left_up_up;
   const double angle_of_arm_along_q2_left_up_up = softkin_angle_of(arm_across_q2_left_up_up,
       arm_along_q2_left_up);
   const double angle_of_wrist_x_from_q1_left_up = softkin_angle_of(wrist_z_from_q1_left_up,
@@ -1473,13 +1402,14 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* q4 from the sum q234 of angles about parallel axes */
   const double axis_a4_left_down_up = k->offset_a4
       + (angle_q3_left_up_up + angle_with_q4_left_up - angle_q2_left_down_up)*SOFTKIN_RADIAN;
-  int refusal_right_up_down;
-  if (fabs(cos_q3_right_down) <= k->bound_of_cos_q3) {
-    refusal_right_up_down = away_q2_right_up_down <= 1e-11 ? 0 : 3; /* q2: out of reach */
-  } else {
-    refusal_right_up_down = 3; /* q2: out of reach */
-  }
+  /* q3: out of reach */
+  const int refusal_right_down = fabs(cos_q3_right_down) <= k->bound_of_cos_q3 ? 0 : 3;
   const double axis_a1_right = k->offset_a1 + softkin_angle_of(sin_q1_right, cos_q1_right)*SOFTKIN_RADIAN;
+  const double arm_along_q2_right_down = k->a2 + k->a3*cos_q3_right_down;
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
+  const double sin_q3_right_up_down = softkin_root(sine_square_q3_right_down)*k->quotient_in_closed_sin_q3;
+  const double arm_across_q2_right_up_down = k->a3*sin_q3_right_up_down;
   const double angle_of_arm_along_q2_right_up_down = softkin_angle_of(arm_across_q2_right_up_down,
       arm_along_q2_right_down);
   const double angle_of_wrist_x_from_q1_right_down = softkin_angle_of(wrist_z_from_q1_right_down,
@@ -1507,12 +1437,13 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double quotient_in_axis_a5_right_down = softkin_angle_of(radius_q6_right, cos_q5_right)
       *SOFTKIN_RADIAN;
   const double axis_a5_right_down = k->offset_a5 + quotient_in_axis_a5_right_down;
-  int refusal_right_up_up;
-  if (fabs(cos_q3_right_up) <= k->bound_of_cos_q3) {
-    refusal_right_up_up = away_q2_right_up_up <= 1e-11 ? 0 : 3; /* q2: out of reach */
-  } else {
-    refusal_right_up_up = 3; /* q2: out of reach */
-  }
+  /* q3: out of reach */
+  const int refusal_right_up = fabs(cos_q3_right_up) <= k->bound_of_cos_q3 ? 0 : 3;
+  const double arm_along_q2_right_up = k->a2 + k->a3*cos_q3_right_up;
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
+  const double sin_q3_right_up_up = softkin_root(sine_square_q3_right_up)*k->quotient_in_closed_sin_q3;
+  const double arm_across_q2_right_up_up = k->a3*sin_q3_right_up_up;
   const double angle_of_arm_along_q2_right_up_up = softkin_angle_of(arm_across_q2_right_up_up,
       arm_along_q2_right_up);
   const double angle_of_wrist_x_from_q1_right_up = softkin_angle_of(wrist_z_from_q1_right_up,
@@ -1568,56 +1499,56 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double near_a4 = k->single_a4 ? k->mid_a4 : ref_a4;
   const double near_a5 = k->single_a5 ? k->mid_a5 : ref_a5;
   const double near_a6 = k->single_a6 ? k->mid_a6 : ref_a6;
-  statuses[0] = (softkin_status)(refusal_left_up_down);
+  statuses[0] = (softkin_status)(refusal_left_down);
   axes[0] = softkin_on_turn(axis_a1_left, near_a1);
   axes[1] = softkin_on_turn(axis_a2_left_up_down, near_a2);
   axes[2] = softkin_on_turn(axis_a3_left_up_down, near_a3);
   axes[3] = softkin_on_turn(axis_a4_left_up_down, near_a4);
   axes[4] = softkin_on_turn(axis_a5_left_down, near_a5);
   axes[5] = softkin_on_turn(axis_a6_left_down, near_a6);
-  statuses[1] = (softkin_status)(refusal_right_up_down);
+  statuses[1] = (softkin_status)(refusal_right_down);
   axes[6] = softkin_on_turn(axis_a1_right, near_a1);
   axes[7] = softkin_on_turn(axis_a2_right_up_down, near_a2);
   axes[8] = softkin_on_turn(axis_a3_right_up_down, near_a3);
   axes[9] = softkin_on_turn(axis_a4_right_up_down, near_a4);
   axes[10] = softkin_on_turn(axis_a5_right_down, near_a5);
   axes[11] = softkin_on_turn(axis_a6_right_down, near_a6);
-  statuses[2] = (softkin_status)(refusal_left_up_down);
+  statuses[2] = (softkin_status)(refusal_left_down);
   axes[12] = softkin_on_turn(axis_a1_left, near_a1);
   axes[13] = softkin_on_turn(axis_a2_left_down_down, near_a2);
   axes[14] = softkin_on_turn(axis_a3_left_down_down, near_a3);
   axes[15] = softkin_on_turn(axis_a4_left_down_down, near_a4);
   axes[16] = softkin_on_turn(axis_a5_left_down, near_a5);
   axes[17] = softkin_on_turn(axis_a6_left_down, near_a6);
-  statuses[3] = (softkin_status)(refusal_right_up_down);
+  statuses[3] = (softkin_status)(refusal_right_down);
   axes[18] = softkin_on_turn(axis_a1_right, near_a1);
   axes[19] = softkin_on_turn(axis_a2_right_down_down, near_a2);
   axes[20] = softkin_on_turn(axis_a3_right_down_down, near_a3);
   axes[21] = softkin_on_turn(axis_a4_right_down_down, near_a4);
   axes[22] = softkin_on_turn(axis_a5_right_down, near_a5);
   axes[23] = softkin_on_turn(axis_a6_right_down, near_a6);
-  statuses[4] = (softkin_status)(refusal_left_up_up);
+  statuses[4] = (softkin_status)(refusal_left_up);
   axes[24] = softkin_on_turn(axis_a1_left, near_a1);
   axes[25] = softkin_on_turn(axis_a2_left_up_up, near_a2);
   axes[26] = softkin_on_turn(axis_a3_left_up_up, near_a3);
   axes[27] = softkin_on_turn(axis_a4_left_up_up, near_a4);
   axes[28] = softkin_on_turn(axis_a5_left_up, near_a5);
   axes[29] = softkin_on_turn(axis_a6_left_up, near_a6);
-  statuses[5] = (softkin_status)(refusal_right_up_up);
+  statuses[5] = (softkin_status)(refusal_right_up);
   axes[30] = softkin_on_turn(axis_a1_right, near_a1);
   axes[31] = softkin_on_turn(axis_a2_right_up_up, near_a2);
   axes[32] = softkin_on_turn(axis_a3_right_up_up, near_a3);
   axes[33] = softkin_on_turn(axis_a4_right_up_up, near_a4);
   axes[34] = softkin_on_turn(axis_a5_right_up, near_a5);
   axes[35] = softkin_on_turn(axis_a6_right_up, near_a6);
-  statuses[6] = (softkin_status)(refusal_left_up_up);
+  statuses[6] = (softkin_status)(refusal_left_up);
   axes[36] = softkin_on_turn(axis_a1_left, near_a1);
   axes[37] = softkin_on_turn(axis_a2_left_down_up, near_a2);
   axes[38] = softkin_on_turn(axis_a3_left_down_up, near_a3);
   axes[39] = softkin_on_turn(axis_a4_left_down_up, near_a4);
   axes[40] = softkin_on_turn(axis_a5_left_up, near_a5);
   axes[41] = softkin_on_turn(axis_a6_left_up, near_a6);
-  statuses[7] = (softkin_status)(refusal_right_up_up);
+  statuses[7] = (softkin_status)(refusal_right_up);
   axes[42] = softkin_on_turn(axis_a1_right, near_a1);
   axes[43] = softkin_on_turn(axis_a2_right_down_up, near_a2);
   axes[44] = softkin_on_turn(axis_a3_right_down_up, near_a3);

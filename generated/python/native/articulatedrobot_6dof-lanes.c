@@ -64,9 +64,6 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     missed += !lost_digits_23 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_swing_q3) <= 1.0000000000005 ? 0.0 : 1.0;
-    missed += reach > product_in_lost_digits_23 ? 0.0 : 1.0;
-    /* digits may be lost */
-    missed += true ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
     /* sine squared, times the squared scale */
@@ -84,12 +81,12 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     const double cos_q1 = (ahead_q1*wrist_x - d3*wrist_y)/distance_q1_squared;
     const double sin_q1 = (ahead_q1*wrist_y + d3*wrist_x)/distance_q1_squared;
     const double r13_from_q1 = r13*cos_q1 + r23*sin_q1;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3;
-    const double sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3;
     const double length_q2 = softkin_lane_root(across_q2_squared_plus_along_q2_squared);
     const double cos_q2 = along_q2/length_q2; /* at a singularity: the angle of the reference */
     const double sin_q2 = across_q2/length_q2;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3;
+    const double sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3;
     const double sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2;
     const double cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3;
     const double r33_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23;
@@ -140,19 +137,17 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const articulatedrobot_6dof_machine *k = machine;
-  const double a1 = k->a1, a2 = k->a2, a3 = k->a3, d1 = k->d1, d3 = k->d3, d4 = k->d4, d6 = k->d6,
-      effective_q3 = k->effective_q3, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
-      mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5,
-      mid_a6 = k->mid_a6, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
-      offset_a4 = k->offset_a4, offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
+  const double a1 = k->a1, a2 = k->a2, a2_minus_effective_q3 = k->a2_minus_effective_q3,
+      a2_plus_effective_q3 = k->a2_plus_effective_q3, a3_by_effective_q3 = k->a3_by_effective_q3, d1 = k->d1,
+      d3 = k->d3, d4_by_effective_q3 = k->d4_by_effective_q3, d6 = k->d6, effective_q3 = k->effective_q3,
+      machine_scale_times_free_angle = k->machine_scale_times_free_angle, mid_a1 = k->mid_a1,
+      mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
+      offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
+      offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
       product_in_lost_digits_23 = k->product_in_lost_digits_23, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
       single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0;
-  const double a2_plus_effective_q3_2 = a2 + effective_q3;
-  const double a2_minus_effective_q3_2 = a2 - effective_q3;
-  const double d4_by_effective_q3_2 = d4/effective_q3;
-  const double a3_by_effective_q3_2 = a3/effective_q3;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r11 = given->rotation[0][lane], r12 = given->rotation[1][lane], r13 = given->rotation[2][lane],
@@ -183,79 +178,105 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double reach_front = softkin_lane_root(wrist_z_from_q1_squared
         + wrist_x_from_q1_front*wrist_x_from_q1_front);
     /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-    const double one_less_cos_q3_front = (a2_plus_effective_q3_2 + reach_front)
-        *(a2_plus_effective_q3_2 - reach_front);
+    const double one_less_cos_q3_front = (a2_plus_effective_q3 + reach_front)
+        *(a2_plus_effective_q3 - reach_front);
     /* 1 + cosine, times the scale */
-    const double one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3_2)
-        *(a2_minus_effective_q3_2 + reach_front);
+    const double one_plus_cos_q3_front = (reach_front - a2_minus_effective_q3)
+        *(a2_minus_effective_q3 + reach_front);
     /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
     missed += sum_q3_front > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/sum_q3_front;
-    const bool within_23_front = fabs(cos_swing_q3_front) <= 1.0;
-    const bool lost_digits_23_front = (!within_23_front)
-        && (fabs(ahead_q1_front) <= product_in_lost_digits_23);
-    /* digits may be lost */
-    missed += !lost_digits_23_front ? 0.0 : 1.0;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x_from_q1_back = -a1 - ahead_q1_front;
     /* distance that the remaining links must span */
     const double reach_back = softkin_lane_root(wrist_z_from_q1_squared
         + wrist_x_from_q1_back*wrist_x_from_q1_back);
     /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-    const double one_less_cos_q3_back = (a2_plus_effective_q3_2 + reach_back)
-        *(a2_plus_effective_q3_2 - reach_back);
+    const double one_less_cos_q3_back = (a2_plus_effective_q3 + reach_back)
+        *(a2_plus_effective_q3 - reach_back);
     /* 1 + cosine, times the scale */
-    const double one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3_2)
-        *(a2_minus_effective_q3_2 + reach_back);
+    const double one_plus_cos_q3_back = (reach_back - a2_minus_effective_q3)
+        *(a2_minus_effective_q3 + reach_back);
     /* sum of both, twice the scale: cosine² + sine² is then 1 */
     const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
     missed += sum_q3_back > 0.0 ? 0.0 : 1.0;
-    const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/sum_q3_back;
+    const double cos_swing_q3_front = -(one_less_cos_q3_front - one_plus_cos_q3_front)/sum_q3_front;
+    const bool within_23_front = fabs(cos_swing_q3_front) <= 1.0;
+    const bool lost_digits_23_front = (!within_23_front)
+        && (fabs(ahead_q1_front) <= product_in_lost_digits_23);
+    /* digits may be lost */
+    missed += !lost_digits_23_front ? 0.0 : 1.0;
+    const double cos_swing_q3_back = -(one_less_cos_q3_back - one_plus_cos_q3_back)/sum_q3_back;
     const bool within_23_back = fabs(cos_swing_q3_back) <= 1.0;
     const bool lost_digits_23_back = (!within_23_back) && (fabs(ahead_q1_front) <= product_in_lost_digits_23);
     /* digits may be lost */
     missed += !lost_digits_23_back ? 0.0 : 1.0;
-    missed += reach_front > product_in_lost_digits_23 ? 0.0 : 1.0;
-    /* digits may be lost */
-    missed += true ? 0.0 : 1.0;
-    missed += reach_back > product_in_lost_digits_23 ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
-    const double sin_swing_q3_front_up = 2.0*softkin_lane_root(sine_square_q3_front)/sum_q3_front;
-    const double arm_along_q2_front_down = effective_q3*sin_swing_q3_front_up;
-    const double product_in_along_q2_front_down = arm_along_q2_front_down*wrist_x_from_q1_front;
+    const double sin_swing_q3_front_down = -2.0*softkin_lane_root(sine_square_q3_front)/sum_q3_front;
+    const double arm_along_q2_front_up = effective_q3*sin_swing_q3_front_down;
+    const double product_in_along_q2_front_down = arm_along_q2_front_up*wrist_x_from_q1_front;
     const double arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front;
     const double product_in_along_q2_front_down_2 = arm_across_q2_front*wrist_z_from_q1;
     /* rotation by q2 that takes the arm to its target point */
-    const double along_q2_front_down = product_in_along_q2_front_down + product_in_along_q2_front_down_2;
+    const double along_q2_front_down = product_in_along_q2_front_down_2 - product_in_along_q2_front_down;
     const double product_in_across_q2_front_down = arm_across_q2_front*wrist_x_from_q1_front;
-    const double product_in_across_q2_front_down_2 = arm_along_q2_front_down*wrist_z_from_q1;
-    const double across_q2_front_down = product_in_across_q2_front_down_2 - product_in_across_q2_front_down;
-    const double sum_in_sin_q2_front_down = across_q2_front_down*across_q2_front_down
-        + along_q2_front_down*along_q2_front_down;
+    const double product_in_across_q2_front_down_2 = arm_along_q2_front_up*wrist_z_from_q1;
+    const double across_q2_front_down = -product_in_across_q2_front_down - product_in_across_q2_front_down_2;
+    const double across_q2_squared_plus_along_q2_squared_front_down = across_q2_front_down
+        *across_q2_front_down + along_q2_front_down*along_q2_front_down;
+    missed += across_q2_squared_plus_along_q2_squared_front_down > 0.0 ? 0.0 : 1.0;
     missed += reach_front > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += sum_in_sin_q2_front_down > 0.0 ? 0.0 : 1.0;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_front_up = product_in_along_q2_front_down + product_in_along_q2_front_down_2;
+    const double across_q2_front_up = product_in_across_q2_front_down_2 - product_in_across_q2_front_down;
+    const double across_q2_squared_plus_along_q2_squared_front_up = across_q2_front_up*across_q2_front_up
+        + along_q2_front_up*along_q2_front_up;
+    missed += across_q2_squared_plus_along_q2_squared_front_up > 0.0 ? 0.0 : 1.0;
+    /* sine squared, times the squared scale */
+    const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
+    const double sin_swing_q3_back_down = -2.0*softkin_lane_root(sine_square_q3_back)/sum_q3_back;
+    const double arm_along_q2_back_up = effective_q3*sin_swing_q3_back_down;
+    const double product_in_along_q2_back_down = arm_along_q2_back_up*wrist_x_from_q1_back;
+    const double arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back;
+    const double arm_across_q2_back_times_wrist_z_from_q1 = arm_across_q2_back*wrist_z_from_q1;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_back_down = arm_across_q2_back_times_wrist_z_from_q1
+        - product_in_along_q2_back_down;
+    const double product_in_across_q2_back_down = arm_across_q2_back*wrist_x_from_q1_back;
+    const double product_in_across_q2_back_down_2 = arm_along_q2_back_up*wrist_z_from_q1;
+    const double across_q2_back_down = -product_in_across_q2_back_down - product_in_across_q2_back_down_2;
+    const double across_q2_squared_plus_along_q2_squared_back_down = across_q2_back_down*across_q2_back_down
+        + along_q2_back_down*along_q2_back_down;
+    missed += across_q2_squared_plus_along_q2_squared_back_down > 0.0 ? 0.0 : 1.0;
+    missed += reach_back > machine_scale_times_free_angle ? 0.0 : 1.0;
+    /* rotation by q2 that takes the arm to its target point */
+    const double along_q2_back_up = arm_across_q2_back_times_wrist_z_from_q1 + product_in_along_q2_back_down;
+    const double across_q2_back_up = product_in_across_q2_back_down_2 - product_in_across_q2_back_down;
+    const double across_q2_squared_plus_along_q2_squared_back_up = across_q2_back_up*across_q2_back_up
+        + along_q2_back_up*along_q2_back_up;
+    missed += across_q2_squared_plus_along_q2_squared_back_up > 0.0 ? 0.0 : 1.0;
     const double d3_times_wrist_y = d3*wrist_y;
     const double ahead_q1_front_times_wrist_x = ahead_q1_front*wrist_x;
+    const double one_by_distance_q1_squared = 1.0/distance_q1_squared;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    const double cos_q1_front = (ahead_q1_front_times_wrist_x - d3_times_wrist_y)/distance_q1_squared;
+    const double cos_q1_front = (ahead_q1_front_times_wrist_x - d3_times_wrist_y)*one_by_distance_q1_squared;
     const double d3_times_wrist_x = d3*wrist_x;
     const double ahead_q1_front_times_wrist_y = ahead_q1_front*wrist_y;
-    const double sin_q1_front = (ahead_q1_front_times_wrist_y + d3_times_wrist_x)/distance_q1_squared;
+    const double sin_q1_front = (ahead_q1_front_times_wrist_y + d3_times_wrist_x)*one_by_distance_q1_squared;
     const double r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front;
-    const double product_in_cos_q3_front_down = d4_by_effective_q3_2*sin_swing_q3_front_up;
-    const double product_in_cos_q3_front_down_2 = a3_by_effective_q3_2*cos_swing_q3_front;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_front_down = product_in_cos_q3_front_down + product_in_cos_q3_front_down_2;
-    const double product_in_sin_q3_front_down = d4_by_effective_q3_2*cos_swing_q3_front;
-    const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2*sin_swing_q3_front_up;
-    const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
-    const double length_q2_front_down = softkin_lane_root(sum_in_sin_q2_front_down);
+    const double length_q2_front_down = softkin_lane_root(across_q2_squared_plus_along_q2_squared_front_down);
     /* at a singularity: the angle of the reference */
     const double cos_q2_front_down = along_q2_front_down/length_q2_front_down;
     const double sin_q2_front_down = across_q2_front_down/length_q2_front_down;
+    const double product_in_cos_q3_front_down = d4_by_effective_q3*sin_swing_q3_front_down;
+    const double product_in_cos_q3_front_down_2 = a3_by_effective_q3*cos_swing_q3_front;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3_front_down = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
+    const double product_in_sin_q3_front_down = d4_by_effective_q3*cos_swing_q3_front;
+    const double product_in_sin_q3_front_down_2 = a3_by_effective_q3*sin_swing_q3_front_down;
+    const double sin_q3_front_down = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
     const double sin_q23_front_down = cos_q2_front_down*sin_q3_front_down
         + cos_q3_front_down*sin_q2_front_down;
     const double cos_q23_front_down = cos_q2_front_down*cos_q3_front_down
@@ -267,20 +288,13 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double radius_q4_front_down = softkin_lane_root(r23_from_q1_front_squared
         + r33_from_q123_front_down*r33_from_q123_front_down);
     missed += radius_q4_front_down > 2e-12 ? 0.0 : 1.0;
-    missed += radius_q4_front_down > 0.1 ? 0.0 : 1.0;
-    /* rotation by q2 that takes the arm to its target point */
-    const double along_q2_front_up = product_in_along_q2_front_down_2 - product_in_along_q2_front_down;
-    const double across_q2_front_up = -product_in_across_q2_front_down - product_in_across_q2_front_down_2;
-    const double sum_in_sin_q2_front_up = across_q2_front_up*across_q2_front_up
-        + along_q2_front_up*along_q2_front_up;
-    missed += sum_in_sin_q2_front_up > 0.0 ? 0.0 : 1.0;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
-    const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
-    const double length_q2_front_up = softkin_lane_root(sum_in_sin_q2_front_up);
+    const double length_q2_front_up = softkin_lane_root(across_q2_squared_plus_along_q2_squared_front_up);
     /* at a singularity: the angle of the reference */
     const double cos_q2_front_up = along_q2_front_up/length_q2_front_up;
     const double sin_q2_front_up = across_q2_front_up/length_q2_front_up;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3_front_up = product_in_cos_q3_front_down + product_in_cos_q3_front_down_2;
+    const double sin_q3_front_up = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
     const double sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up;
     const double cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up;
     const double r33_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up;
@@ -288,39 +302,21 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double radius_q4_front_up = softkin_lane_root(r23_from_q1_front_squared
         + r33_from_q123_front_up*r33_from_q123_front_up);
     missed += radius_q4_front_up > 2e-12 ? 0.0 : 1.0;
-    missed += radius_q4_front_up > 0.1 ? 0.0 : 1.0;
-    /* sine squared, times the squared scale */
-    const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
-    const double sin_swing_q3_back_up = 2.0*softkin_lane_root(sine_square_q3_back)/sum_q3_back;
-    const double arm_along_q2_back_down = effective_q3*sin_swing_q3_back_up;
-    const double product_in_along_q2_back_down = arm_along_q2_back_down*wrist_x_from_q1_back;
-    const double arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back;
-    const double arm_across_q2_back_times_wrist_z_from_q1 = arm_across_q2_back*wrist_z_from_q1;
-    /* rotation by q2 that takes the arm to its target point */
-    const double along_q2_back_down = arm_across_q2_back_times_wrist_z_from_q1
-        + product_in_along_q2_back_down;
-    const double product_in_across_q2_back_down = arm_across_q2_back*wrist_x_from_q1_back;
-    const double product_in_across_q2_back_down_2 = arm_along_q2_back_down*wrist_z_from_q1;
-    const double across_q2_back_down = product_in_across_q2_back_down_2 - product_in_across_q2_back_down;
-    const double sum_in_sin_q2_back_down = across_q2_back_down*across_q2_back_down
-        + along_q2_back_down*along_q2_back_down;
-    missed += reach_back > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += sum_in_sin_q2_back_down > 0.0 ? 0.0 : 1.0;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
-    const double cos_q1_back = (-ahead_q1_front_times_wrist_x - d3_times_wrist_y)/distance_q1_squared;
-    const double sin_q1_back = (d3_times_wrist_x - ahead_q1_front_times_wrist_y)/distance_q1_squared;
+    const double cos_q1_back = (-ahead_q1_front_times_wrist_x - d3_times_wrist_y)*one_by_distance_q1_squared;
+    const double sin_q1_back = (d3_times_wrist_x - ahead_q1_front_times_wrist_y)*one_by_distance_q1_squared;
     const double r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back;
-    const double product_in_cos_q3_back_down = d4_by_effective_q3_2*sin_swing_q3_back_up;
-    const double product_in_cos_q3_back_down_2 = a3_by_effective_q3_2*cos_swing_q3_back;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_back_down = product_in_cos_q3_back_down + product_in_cos_q3_back_down_2;
-    const double product_in_sin_q3_back_down = d4_by_effective_q3_2*cos_swing_q3_back;
-    const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2*sin_swing_q3_back_up;
-    const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
-    const double length_q2_back_down = softkin_lane_root(sum_in_sin_q2_back_down);
+    const double length_q2_back_down = softkin_lane_root(across_q2_squared_plus_along_q2_squared_back_down);
     /* at a singularity: the angle of the reference */
     const double cos_q2_back_down = along_q2_back_down/length_q2_back_down;
     const double sin_q2_back_down = across_q2_back_down/length_q2_back_down;
+    const double product_in_cos_q3_back_down = d4_by_effective_q3*sin_swing_q3_back_down;
+    const double product_in_cos_q3_back_down_2 = a3_by_effective_q3*cos_swing_q3_back;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3_back_down = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
+    const double product_in_sin_q3_back_down = d4_by_effective_q3*cos_swing_q3_back;
+    const double product_in_sin_q3_back_down_2 = a3_by_effective_q3*sin_swing_q3_back_down;
+    const double sin_q3_back_down = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
     const double sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down;
     const double cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down;
     const double r33_from_q123_back_down = r33*cos_q23_back_down - r13_from_q1_back*sin_q23_back_down;
@@ -330,20 +326,13 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double radius_q4_back_down = softkin_lane_root(r23_from_q1_back_squared
         + r33_from_q123_back_down*r33_from_q123_back_down);
     missed += radius_q4_back_down > 2e-12 ? 0.0 : 1.0;
-    missed += radius_q4_back_down > 0.1 ? 0.0 : 1.0;
-    /* rotation by q2 that takes the arm to its target point */
-    const double along_q2_back_up = arm_across_q2_back_times_wrist_z_from_q1 - product_in_along_q2_back_down;
-    const double across_q2_back_up = -product_in_across_q2_back_down - product_in_across_q2_back_down_2;
-    const double sum_in_sin_q2_back_up = across_q2_back_up*across_q2_back_up
-        + along_q2_back_up*along_q2_back_up;
-    missed += sum_in_sin_q2_back_up > 0.0 ? 0.0 : 1.0;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
-    const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
-    const double length_q2_back_up = softkin_lane_root(sum_in_sin_q2_back_up);
+    const double length_q2_back_up = softkin_lane_root(across_q2_squared_plus_along_q2_squared_back_up);
     /* at a singularity: the angle of the reference */
     const double cos_q2_back_up = along_q2_back_up/length_q2_back_up;
     const double sin_q2_back_up = across_q2_back_up/length_q2_back_up;
+    /* addition theorem: plus the angle of the direction from which the cosine is measured */
+    const double cos_q3_back_up = product_in_cos_q3_back_down + product_in_cos_q3_back_down_2;
+    const double sin_q3_back_up = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
     const double sin_q23_back_up = cos_q2_back_up*sin_q3_back_up + cos_q3_back_up*sin_q2_back_up;
     const double cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up;
     const double r33_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up;
@@ -351,34 +340,32 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double radius_q4_back_up = softkin_lane_root(r23_from_q1_back_squared
         + r33_from_q123_back_up*r33_from_q123_back_up);
     missed += radius_q4_back_up > 2e-12 ? 0.0 : 1.0;
-    missed += radius_q4_back_up > 0.1 ? 0.0 : 1.0;
     /* q3: out of reach */
     const double refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
-    const double refusal_front_down = refusal_front > 0 ? refusal_front : 0; /* q2: out of reach */
     const double axis_a1_front = offset_a1 + softkin_lane_angle(sin_q1_front, cos_q1_front)*SOFTKIN_RADIAN;
     const double axis_a2_front_down = offset_a2
         + softkin_lane_angle(sin_q2_front_down, cos_q2_front_down)*SOFTKIN_RADIAN;
     const double axis_a3_front_down = offset_a3
         + softkin_lane_angle(sin_q3_front_down, cos_q3_front_down)*SOFTKIN_RADIAN;
-    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
-     * reference */
-    const double direction_x_q4_front_down_down = -r33_from_q123_front_down;
     const double axis_a4_front_down_down = offset_a4
-        + softkin_lane_angle(r23_from_q1_front, direction_x_q4_front_down_down)*SOFTKIN_RADIAN;
+        + softkin_lane_angle(r23_from_q1_front, -r33_from_q123_front_down)*SOFTKIN_RADIAN;
     const double r13_from_q123_front_down = r13_from_q1_front*cos_q23_front_down + r33*sin_q23_front_down;
     const double quotient_in_axis_a5_front_down_down = softkin_lane_angle(radius_q4_front_down,
         r13_from_q123_front_down)*SOFTKIN_RADIAN;
     const double axis_a5_front_down_down = offset_a5 + quotient_in_axis_a5_front_down_down;
-    const double r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front;
-    const double sum_in_direction_x_q6_front_down_down = r11_from_q1_front*cos_q23_front_down
-        + r31*sin_q23_front_down;
+    const double r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front;
     const double r12_from_q1_front = r12*cos_q1_front + r22*sin_q1_front;
-    const double sum_in_direction_y_q6_front_down_down = r12_from_q1_front*cos_q23_front_down
-        + r32*sin_q23_front_down;
-    const double direction_y_q6_front_down_down = -sum_in_direction_y_q6_front_down_down;
+    const double r32_from_q123_front_down = r32*cos_q23_front_down - r12_from_q1_front*sin_q23_front_down;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    const double direction_x_q6_front_down_down = r22_from_q1_front*r33_from_q123_front_down
+        - r23_from_q1_front*r32_from_q123_front_down;
+    const double r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front;
+    const double r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front;
+    const double r31_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down;
+    const double direction_y_q6_front_down_down = r21_from_q1_front*r33_from_q123_front_down
+        - r23_from_q1_front*r31_from_q123_front_down;
     const double axis_a6_front_down_down = offset_a6
-        + softkin_lane_angle(direction_y_q6_front_down_down, sum_in_direction_x_q6_front_down_down)
-        *SOFTKIN_RADIAN;
+        + softkin_lane_angle(direction_y_q6_front_down_down, direction_x_q6_front_down_down)*SOFTKIN_RADIAN;
     const double axis_a4_front_down_up = 180.0 + axis_a4_front_down_down;
     const double axis_a5_front_down_up = offset_a5 - quotient_in_axis_a5_front_down_down;
     const double axis_a6_front_down_up = 180.0 + axis_a6_front_down_down;
@@ -386,53 +373,50 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
         + softkin_lane_angle(sin_q2_front_up, cos_q2_front_up)*SOFTKIN_RADIAN;
     const double axis_a3_front_up = offset_a3
         + softkin_lane_angle(sin_q3_front_up, cos_q3_front_up)*SOFTKIN_RADIAN;
-    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
-     * reference */
-    const double direction_x_q4_front_up_down = -r33_from_q123_front_up;
     const double axis_a4_front_up_down = offset_a4
-        + softkin_lane_angle(r23_from_q1_front, direction_x_q4_front_up_down)*SOFTKIN_RADIAN;
+        + softkin_lane_angle(r23_from_q1_front, -r33_from_q123_front_up)*SOFTKIN_RADIAN;
     const double r13_from_q123_front_up = r13_from_q1_front*cos_q23_front_up + r33*sin_q23_front_up;
     const double quotient_in_axis_a5_front_up_down = softkin_lane_angle(radius_q4_front_up,
         r13_from_q123_front_up)*SOFTKIN_RADIAN;
     const double axis_a5_front_up_down = offset_a5 + quotient_in_axis_a5_front_up_down;
-    const double sum_in_direction_x_q6_front_up_down = r11_from_q1_front*cos_q23_front_up
-        + r31*sin_q23_front_up;
-    const double sum_in_direction_y_q6_front_up_down = r12_from_q1_front*cos_q23_front_up
-        + r32*sin_q23_front_up;
-    const double direction_y_q6_front_up_down = -sum_in_direction_y_q6_front_up_down;
+    const double r32_from_q123_front_up = r32*cos_q23_front_up - r12_from_q1_front*sin_q23_front_up;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    const double direction_x_q6_front_up_up = r23_from_q1_front*r32_from_q123_front_up
+        - r22_from_q1_front*r33_from_q123_front_up;
+    const double r31_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up;
+    const double direction_y_q6_front_up_up = r23_from_q1_front*r31_from_q123_front_up
+        - r21_from_q1_front*r33_from_q123_front_up;
     const double axis_a6_front_up_down = offset_a6
-        + softkin_lane_angle(direction_y_q6_front_up_down, sum_in_direction_x_q6_front_up_down)
-        *SOFTKIN_RADIAN;
+        - softkin_lane_angle(direction_y_q6_front_up_up, -direction_x_q6_front_up_up)*SOFTKIN_RADIAN;
     const double axis_a4_front_up_up = 180.0 + axis_a4_front_up_down;
     const double axis_a5_front_up_up = offset_a5 - quotient_in_axis_a5_front_up_down;
     const double axis_a6_front_up_up = 180.0 + axis_a6_front_up_down;
     /* q3: out of reach */
     const double refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3;
-    const double refusal_back_down = refusal_back > 0 ? refusal_back : 0; /* q2: out of reach */
     const double axis_a1_back = offset_a1 + softkin_lane_angle(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
     const double axis_a2_back_down = offset_a2
         + softkin_lane_angle(sin_q2_back_down, cos_q2_back_down)*SOFTKIN_RADIAN;
     const double axis_a3_back_down = offset_a3
         + softkin_lane_angle(sin_q3_back_down, cos_q3_back_down)*SOFTKIN_RADIAN;
-    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
-     * reference */
-    const double direction_x_q4_back_down_down = -r33_from_q123_back_down;
     const double axis_a4_back_down_down = offset_a4
-        + softkin_lane_angle(r23_from_q1_back, direction_x_q4_back_down_down)*SOFTKIN_RADIAN;
+        + softkin_lane_angle(r23_from_q1_back, -r33_from_q123_back_down)*SOFTKIN_RADIAN;
     const double r13_from_q123_back_down = r13_from_q1_back*cos_q23_back_down + r33*sin_q23_back_down;
     const double quotient_in_axis_a5_back_down_down = softkin_lane_angle(radius_q4_back_down,
         r13_from_q123_back_down)*SOFTKIN_RADIAN;
     const double axis_a5_back_down_down = offset_a5 + quotient_in_axis_a5_back_down_down;
-    const double r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back;
-    const double sum_in_direction_x_q6_back_down_down = r11_from_q1_back*cos_q23_back_down
-        + r31*sin_q23_back_down;
+    const double r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back;
     const double r12_from_q1_back = r12*cos_q1_back + r22*sin_q1_back;
-    const double sum_in_direction_y_q6_back_down_down = r12_from_q1_back*cos_q23_back_down
-        + r32*sin_q23_back_down;
-    const double direction_y_q6_back_down_down = -sum_in_direction_y_q6_back_down_down;
+    const double r32_from_q123_back_down = r32*cos_q23_back_down - r12_from_q1_back*sin_q23_back_down;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    const double direction_x_q6_back_down_down = r22_from_q1_back*r33_from_q123_back_down
+        - r23_from_q1_back*r32_from_q123_back_down;
+    const double r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back;
+    const double r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back;
+    const double r31_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down;
+    const double direction_y_q6_back_down_down = r21_from_q1_back*r33_from_q123_back_down
+        - r23_from_q1_back*r31_from_q123_back_down;
     const double axis_a6_back_down_down = offset_a6
-        + softkin_lane_angle(direction_y_q6_back_down_down, sum_in_direction_x_q6_back_down_down)
-        *SOFTKIN_RADIAN;
+        + softkin_lane_angle(direction_y_q6_back_down_down, direction_x_q6_back_down_down)*SOFTKIN_RADIAN;
     const double axis_a4_back_down_up = 180.0 + axis_a4_back_down_down;
     const double axis_a5_back_down_up = offset_a5 - quotient_in_axis_a5_back_down_down;
     const double axis_a6_back_down_up = 180.0 + axis_a6_back_down_down;
@@ -440,20 +424,21 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
         + softkin_lane_angle(sin_q2_back_up, cos_q2_back_up)*SOFTKIN_RADIAN;
     const double axis_a3_back_up = offset_a3
         + softkin_lane_angle(sin_q3_back_up, cos_q3_back_up)*SOFTKIN_RADIAN;
-    /* polar coordinates: angle q4 from the r31 and r21 equations; at a singularity: the angle of the
-     * reference */
-    const double direction_x_q4_back_up_down = -r33_from_q123_back_up;
     const double axis_a4_back_up_down = offset_a4
-        + softkin_lane_angle(r23_from_q1_back, direction_x_q4_back_up_down)*SOFTKIN_RADIAN;
+        + softkin_lane_angle(r23_from_q1_back, -r33_from_q123_back_up)*SOFTKIN_RADIAN;
     const double r13_from_q123_back_up = r13_from_q1_back*cos_q23_back_up + r33*sin_q23_back_up;
     const double quotient_in_axis_a5_back_up_down = softkin_lane_angle(radius_q4_back_up,
         r13_from_q123_back_up)*SOFTKIN_RADIAN;
     const double axis_a5_back_up_down = offset_a5 + quotient_in_axis_a5_back_up_down;
-    const double sum_in_direction_x_q6_back_up_down = r11_from_q1_back*cos_q23_back_up + r31*sin_q23_back_up;
-    const double sum_in_direction_y_q6_back_up_down = r12_from_q1_back*cos_q23_back_up + r32*sin_q23_back_up;
-    const double direction_y_q6_back_up_down = -sum_in_direction_y_q6_back_up_down;
+    const double r32_from_q123_back_up = r32*cos_q23_back_up - r12_from_q1_back*sin_q23_back_up;
+    /* cosine and sine of q6 from the r22 and r23 equations */
+    const double direction_x_q6_back_up_up = r23_from_q1_back*r32_from_q123_back_up
+        - r22_from_q1_back*r33_from_q123_back_up;
+    const double r31_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up;
+    const double direction_y_q6_back_up_up = r23_from_q1_back*r31_from_q123_back_up
+        - r21_from_q1_back*r33_from_q123_back_up;
     const double axis_a6_back_up_down = offset_a6
-        + softkin_lane_angle(direction_y_q6_back_up_down, sum_in_direction_x_q6_back_up_down)*SOFTKIN_RADIAN;
+        - softkin_lane_angle(direction_y_q6_back_up_up, -direction_x_q6_back_up_up)*SOFTKIN_RADIAN;
     const double axis_a4_back_up_up = 180.0 + axis_a4_back_up_down;
     const double axis_a5_back_up_up = offset_a5 - quotient_in_axis_a5_back_up_down;
     const double axis_a6_back_up_up = 180.0 + axis_a6_back_up_down;
@@ -463,56 +448,56 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     near[3][lane] = single_a4 > 0.0 ? mid_a4 : ref_a4;
     near[4][lane] = single_a5 > 0.0 ? mid_a5 : ref_a5;
     near[5][lane] = single_a6 > 0.0 ? mid_a6 : ref_a6;
-    statuses[0][lane] = refusal_front_down;
+    statuses[0][lane] = refusal_front;
     axes[0][lane] = axis_a1_front;
     axes[1][lane] = axis_a2_front_down;
     axes[2][lane] = axis_a3_front_down;
     axes[3][lane] = axis_a4_front_down_down;
     axes[4][lane] = axis_a5_front_down_down;
     axes[5][lane] = axis_a6_front_down_down;
-    statuses[1][lane] = refusal_back_down;
+    statuses[1][lane] = refusal_back;
     axes[6][lane] = axis_a1_back;
     axes[7][lane] = axis_a2_back_down;
     axes[8][lane] = axis_a3_back_down;
     axes[9][lane] = axis_a4_back_down_down;
     axes[10][lane] = axis_a5_back_down_down;
     axes[11][lane] = axis_a6_back_down_down;
-    statuses[2][lane] = refusal_front_down;
+    statuses[2][lane] = refusal_front;
     axes[12][lane] = axis_a1_front;
     axes[13][lane] = axis_a2_front_up;
     axes[14][lane] = axis_a3_front_up;
     axes[15][lane] = axis_a4_front_up_down;
     axes[16][lane] = axis_a5_front_up_down;
     axes[17][lane] = axis_a6_front_up_down;
-    statuses[3][lane] = refusal_back_down;
+    statuses[3][lane] = refusal_back;
     axes[18][lane] = axis_a1_back;
     axes[19][lane] = axis_a2_back_up;
     axes[20][lane] = axis_a3_back_up;
     axes[21][lane] = axis_a4_back_up_down;
     axes[22][lane] = axis_a5_back_up_down;
     axes[23][lane] = axis_a6_back_up_down;
-    statuses[4][lane] = refusal_front_down;
+    statuses[4][lane] = refusal_front;
     axes[24][lane] = axis_a1_front;
     axes[25][lane] = axis_a2_front_down;
     axes[26][lane] = axis_a3_front_down;
     axes[27][lane] = axis_a4_front_down_up;
     axes[28][lane] = axis_a5_front_down_up;
     axes[29][lane] = axis_a6_front_down_up;
-    statuses[5][lane] = refusal_back_down;
+    statuses[5][lane] = refusal_back;
     axes[30][lane] = axis_a1_back;
     axes[31][lane] = axis_a2_back_down;
     axes[32][lane] = axis_a3_back_down;
     axes[33][lane] = axis_a4_back_down_up;
     axes[34][lane] = axis_a5_back_down_up;
     axes[35][lane] = axis_a6_back_down_up;
-    statuses[6][lane] = refusal_front_down;
+    statuses[6][lane] = refusal_front;
     axes[36][lane] = axis_a1_front;
     axes[37][lane] = axis_a2_front_up;
     axes[38][lane] = axis_a3_front_up;
     axes[39][lane] = axis_a4_front_up_up;
     axes[40][lane] = axis_a5_front_up_up;
     axes[41][lane] = axis_a6_front_up_up;
-    statuses[7][lane] = refusal_back_down;
+    statuses[7][lane] = refusal_back;
     axes[42][lane] = axis_a1_back;
     axes[43][lane] = axis_a2_back_up;
     axes[44][lane] = axis_a3_back_up;

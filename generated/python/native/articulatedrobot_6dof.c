@@ -200,24 +200,24 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3;
   const double closed_divisor_of_cos_q3 = closed_sum_q3 > 0.0 ? closed_sum_q3 : 1.0;
-  const double closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3)
-      /closed_divisor_of_cos_q3;
   /* sine squared, times the squared scale */
   const double closed_sine_square_q3 = closed_one_less_cos_q3*closed_one_plus_cos_q3;
   const double closed_sin_swing_q3 = -2.0*softkin_root(closed_sine_square_q3)*closed_sign_elbow
       /closed_divisor_of_cos_q3;
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double closed_cos_q3 = k->a3_by_effective_q3*closed_cos_swing_q3
-      - closed_sin_swing_q3*k->d4_by_effective_q3;
-  const double closed_sin_q3 = k->a3_by_effective_q3*closed_sin_swing_q3
-      + closed_cos_swing_q3*k->d4_by_effective_q3;
   const double closed_arm_along_q2 = -closed_sin_swing_q3*k->effective_q3;
+  const double closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3)
+      /closed_divisor_of_cos_q3;
   const double closed_arm_across_q2 = k->a2 + closed_cos_swing_q3*k->effective_q3;
   /* rotation by q2 that takes the arm to its target point */
   const double closed_along_q2 = closed_arm_across_q2*closed_wrist_z_from_q1
       + closed_arm_along_q2*closed_wrist_x_from_q1;
   const double closed_across_q2 = closed_arm_along_q2*closed_wrist_z_from_q1
       - closed_arm_across_q2*closed_wrist_x_from_q1;
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double closed_cos_q3 = k->a3_by_effective_q3*closed_cos_swing_q3
+      - closed_sin_swing_q3*k->d4_by_effective_q3;
+  const double closed_sin_q3 = k->a3_by_effective_q3*closed_sin_swing_q3
+      + closed_cos_swing_q3*k->d4_by_effective_q3;
   const double closed_axis_a3 = softkin_on_turn(k->offset_a3
       + softkin_angle_of(closed_sin_q3, closed_cos_q3)*SOFTKIN_RADIAN, closed_near_a3);
   const double sum_in_closed_length_q2 = closed_across_q2*closed_across_q2 + closed_along_q2*closed_along_q2;
@@ -719,18 +719,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double away_q2 = reach > k->product_in_lost_digits_23 ? 0.0
       : fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2 - reach*reach)*k->one_by_machine_scale
       /(k->product_in_away_q2 + reach);
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3 = k->a3_by_effective_q3*cos_swing_q3 - k->d4_by_effective_q3*sin_swing_q3;
-  const double sin_q3 = k->a3_by_effective_q3*sin_swing_q3 + k->d4_by_effective_q3*cos_swing_q3;
   const bool within_36 = away_q2 <= 1e-12;
-  const bool lost_digits_36 = (!within_36)
-      && ((fabs(ahead_q1) <= k->product_in_lost_digits_23)
-      || (fabs(k->a2_times_a3_times_2*sin_q3
-      - k->a2_times_d4_times_2*cos_q3) <= k->product_in_lost_digits_36));
-  /* q2: out of reach */
-  if (!(lost_digits_36 || (away_q2 <= 1e-11))) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
-  }
+  const bool lost_digits_lengths_36 = !within_36;
   double cos_q1, sin_q1;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
@@ -768,6 +758,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* A2: whole turns added */
   const double axis_a2 = softkin_on_turn(k->offset_a2 + softkin_angle_of(sin_q2, cos_q2)*SOFTKIN_RADIAN,
       near_a2);
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_q3 = k->a3_by_effective_q3*cos_swing_q3 - k->d4_by_effective_q3*sin_swing_q3;
+  const double sin_q3 = k->a3_by_effective_q3*sin_swing_q3 + k->d4_by_effective_q3*cos_swing_q3;
   /* A3: without a commanded turn, the value nearest to this */
   const double open_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
   const double near_a3 = turn_a3 != 0 ? 360.0*(turn_a3 > 0 ? turn_a3 - 1 : turn_a3) : open_a3;
@@ -826,7 +819,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       + softkin_angle_of(direction_y_q6, direction_x_q6)*SOFTKIN_RADIAN, near_a6);
   /* if digits were lost, steps on the closure meet the pose */
   double results[7] = {0.0};
-  if (lost_digits_23 || lost_digits_36) {
+  if (lost_digits_23 || lost_digits_lengths_36) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, sigma_arm, sigma_elbow,
         sigma_hand, turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6, r11, r12, r13, r21, r22, r23, r31,
         r32, r33, x, y, z, axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6};
@@ -839,14 +832,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       found_a5 = results[5], found_a6 = results[6];
   const bool met = results[0] != 0.0;
   /* q3: out of reach */
-  if (!(met || (fabs(cos_swing_q3) <= 1.0000000000005))) {
+  if (!((met || (away_q2 <= 1e-11)) && (met || (fabs(cos_swing_q3) <= 1.0000000000005)))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->a2_plus_effective_q3 > fabs(k->a2_minus_effective_q3) - reach ? reach
         - k->a2_plus_effective_q3 : fabs(k->a2_minus_effective_q3) - reach), 0);
-  }
-  /* q2: out of reach */
-  if (!(met || (away_q2 <= 1e-11))) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
   axes[1] = (met ? found_a2 : axis_a2);
@@ -1174,11 +1163,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       r31 = frame->rotation[2][0], r32 = frame->rotation[2][1], r33 = frame->rotation[2][2],
       ref_a1 = reference[0], ref_a2 = reference[1], ref_a3 = reference[2], ref_a4 = reference[3],
       ref_a5 = reference[4], ref_a6 = reference[5];
-  const double product_in_lost_digits_36_front_down = 0.02*k->a2*k->effective_q3;
+  const double angle_in_angle_q3_front_down = softkin_angle_of(k->d4/k->effective_q3, k->a3/k->effective_q3);
   const double a2_plus_effective_q3_2 = k->a2 + k->effective_q3;
   const double a2_minus_effective_q3_2 = k->a2 - k->effective_q3;
-  const double d4_by_effective_q3_2 = k->d4/k->effective_q3;
-  const double a3_by_effective_q3_2 = k->a3/k->effective_q3;
   const double wrist_x = x - k->d6*r13; /* wrist centre: the last joints do not move this point */
   const double wrist_y = y - k->d6*r23;
   /* distance of the point from the axis of q1 */
@@ -1236,78 +1223,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(!lost_digits_23_back)) {
     return false;
   }
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
-  const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
-  const double product_in_cos_q3_front_down = d4_by_effective_q3_2*sin_swing_q3_front_up;
-  const double product_in_cos_q3_front_down_2 = a3_by_effective_q3_2*cos_swing_q3_front;
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3_front_down = product_in_cos_q3_front_down + product_in_cos_q3_front_down_2;
-  const double product_in_sin_q3_front_down = d4_by_effective_q3_2*cos_swing_q3_front;
-  const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2*sin_swing_q3_front_up;
-  const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
-  const double arm_along_q2_front_down = k->effective_q3*sin_swing_q3_front_up;
-  const double arm_across_q2_front = k->a2 + k->effective_q3*cos_swing_q3_front;
-  const double away_q2_front_down = reach_front > k->product_in_lost_digits_23 ? 0.0
-      : fabs(arm_across_q2_front*arm_across_q2_front + arm_along_q2_front_down*arm_along_q2_front_down
-      - reach_front*reach_front)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_front);
-  const bool within_36_front_down = away_q2_front_down <= 1e-12;
-  const bool lost_digits_36_front_down = (!within_36_front_down)
-      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
-      || (fabs(k->a2_times_a3_times_2*sin_q3_front_down
-      - k->a2_times_d4_times_2*cos_q3_front_down) <= product_in_lost_digits_36_front_down));
-  if (!(!lost_digits_36_front_down)) {
-    return false;
-  }
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
-  const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
-  const bool lost_digits_36_front_up = (!within_36_front_down)
-      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
-      || (fabs(k->a2_times_a3_times_2*sin_q3_front_up
-      - k->a2_times_d4_times_2*cos_q3_front_up) <= product_in_lost_digits_36_front_down));
-  if (!(!lost_digits_36_front_up)) {
-    return false;
-  }
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
-  const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
-  const double product_in_cos_q3_back_down = d4_by_effective_q3_2*sin_swing_q3_back_up;
-  const double product_in_cos_q3_back_down_2 = a3_by_effective_q3_2*cos_swing_q3_back;
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3_back_down = product_in_cos_q3_back_down + product_in_cos_q3_back_down_2;
-  const double product_in_sin_q3_back_down = d4_by_effective_q3_2*cos_swing_q3_back;
-  const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2*sin_swing_q3_back_up;
-  const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
-  const double arm_along_q2_back_down = k->effective_q3*sin_swing_q3_back_up;
-  const double arm_across_q2_back = k->a2 + k->effective_q3*cos_swing_q3_back;
-  const double away_q2_back_down = reach_back > k->product_in_lost_digits_23 ? 0.0
-      : fabs(arm_across_q2_back*arm_across_q2_back + arm_along_q2_back_down*arm_along_q2_back_down
-      - reach_back*reach_back)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_back);
-  const bool within_36_back_down = away_q2_back_down <= 1e-12;
-  const bool lost_digits_36_back_down = (!within_36_back_down)
-      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
-      || (fabs(k->a2_times_a3_times_2*sin_q3_back_down
-      - k->a2_times_d4_times_2*cos_q3_back_down) <= product_in_lost_digits_36_front_down));
-  if (!(!lost_digits_36_back_down)) {
-    return false;
-  }
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
-  const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
-  const bool lost_digits_36_back_up = (!within_36_back_down)
-      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_23)
-      || (fabs(k->a2_times_a3_times_2*sin_q3_back_up
-      - k->a2_times_d4_times_2*cos_q3_back_up) <= product_in_lost_digits_36_front_down));
-  if (!(!lost_digits_36_back_up)) {
-    return false;
-  }
-  int refusal_front_down;
-  if (fabs(cos_swing_q3_front) <= 1.0000000000005) {
-    refusal_front_down = away_q2_front_down <= 1e-11 ? 0 : 3; /* q2: out of reach */
-  } else {
-    refusal_front_down = 3; /* q2: out of reach */
-  }
+  /* q3: out of reach */
+  const int refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
   double cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     const double d3_times_wrist_y = k->d3*wrist_y;
@@ -1330,6 +1247,15 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     sin_q1_back = sin_q1_front;
   }
   const double axis_a1_front = k->offset_a1 + softkin_angle_of(sin_q1_front, cos_q1_front)*SOFTKIN_RADIAN;
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
+  const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
+  const double arm_along_q2_front_down = k->effective_q3*sin_swing_q3_front_up;
+  const double arm_across_q2_front = k->a2 + k->effective_q3*cos_swing_q3_front;
+  const double angle_of_arm_across_q2_front_down = softkin_angle_of(arm_along_q2_front_down,
+      arm_across_q2_front);
+  const double angle_of_wrist_z_from_q1_front = softkin_angle_of(wrist_x_from_q1_front, wrist_z_from_q1);
+  const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
   const double product_in_along_q2_front_down = arm_along_q2_front_down*wrist_x_from_q1_front;
   const double product_in_along_q2_front_down_2 = arm_across_q2_front*wrist_z_from_q1;
   /* rotation by q2 that takes the arm to its target point */
@@ -1337,28 +1263,17 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double product_in_across_q2_front_down = arm_across_q2_front*wrist_x_from_q1_front;
   const double product_in_across_q2_front_down_2 = arm_along_q2_front_down*wrist_z_from_q1;
   const double across_q2_front_down = product_in_across_q2_front_down_2 - product_in_across_q2_front_down;
-  const double sum_in_sin_q2_front_down = across_q2_front_down*across_q2_front_down
-      + along_q2_front_down*along_q2_front_down;
-  double cos_q2_front_down, sin_q2_front_down;
-  if (reach_front > k->machine_scale_times_free_angle && sum_in_sin_q2_front_down > 0.0) {
-    const double length_q2_front_down = softkin_root(sum_in_sin_q2_front_down);
-    /* at a singularity: the angle of the reference */
-    cos_q2_front_down = along_q2_front_down/length_q2_front_down;
-    sin_q2_front_down = across_q2_front_down/length_q2_front_down;
-  } else {
-    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    const double cos_of_reference_a2 = cos(reference_a2);
-    const double sin_of_reference_a2 = sin(reference_a2);
-    cos_q2_front_down = cos_of_reference_a2; /* at a singularity: the angle of the reference */
-    sin_q2_front_down = sin_of_reference_a2;
-  }
-  const double axis_a2_front_down = k->offset_a2
-      + softkin_angle_of(sin_q2_front_down, cos_q2_front_down)*SOFTKIN_RADIAN;
-  const double axis_a3_front_down = k->offset_a3
-      + softkin_angle_of(sin_q3_front_down, cos_q3_front_down)*SOFTKIN_RADIAN;
+  const double angle_q2_front_down = (reach_front > k->machine_scale_times_free_angle)
+      && (across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0)
+      ? angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front : reference_a2;
+  const double axis_a2_front_down = k->offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
+  const double angle_of_swing_q3_front_down = -softkin_angle_of(sin_swing_q3_front_up, cos_swing_q3_front);
+  const double angle_q3_front_down = angle_in_angle_q3_front_down + angle_of_swing_q3_front_down;
+  const double axis_a3_front_down = k->offset_a3 + angle_q3_front_down*SOFTKIN_RADIAN;
   const double r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front;
-  const double sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down;
-  const double cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down;
+  const double angle_q23_front_down = angle_q2_front_down + angle_q3_front_down;
+  const double sin_q23_front_down = sin(angle_q23_front_down);
+  const double cos_q23_front_down = cos(angle_q23_front_down);
   const double r33_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down;
   const double r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front;
   const double r23_from_q1_front_squared = r23_from_q1_front*r23_from_q1_front;
@@ -1453,27 +1368,15 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* rotation by q2 that takes the arm to its target point */
   const double along_q2_front_up = product_in_along_q2_front_down_2 - product_in_along_q2_front_down;
   const double across_q2_front_up = -product_in_across_q2_front_down - product_in_across_q2_front_down_2;
-  const double sum_in_sin_q2_front_up = across_q2_front_up*across_q2_front_up
-      + along_q2_front_up*along_q2_front_up;
-  double cos_q2_front_up, sin_q2_front_up;
-  if (reach_front > k->machine_scale_times_free_angle && sum_in_sin_q2_front_up > 0.0) {
-    const double length_q2_front_up = softkin_root(sum_in_sin_q2_front_up);
-    /* at a singularity: the angle of the reference */
-    cos_q2_front_up = along_q2_front_up/length_q2_front_up;
-    sin_q2_front_up = across_q2_front_up/length_q2_front_up;
-  } else {
-    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    const double cos_of_reference_a2 = cos(reference_a2);
-    const double sin_of_reference_a2 = sin(reference_a2);
-    cos_q2_front_up = cos_of_reference_a2; /* at a singularity: the angle of the reference */
-    sin_q2_front_up = sin_of_reference_a2;
-  }
-  const double axis_a2_front_up = k->offset_a2
-      + softkin_angle_of(sin_q2_front_up, cos_q2_front_up)*SOFTKIN_RADIAN;
-  const double axis_a3_front_up = k->offset_a3
-      + softkin_angle_of(sin_q3_front_up, cos_q3_front_up)*SOFTKIN_RADIAN;
-  const double sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up;
-  const double cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up;
+  const double angle_q2_front_up = (reach_front > k->machine_scale_times_free_angle)
+      && (across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0)
+      ? -angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front : reference_a2;
+  const double axis_a2_front_up = k->offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
+  const double angle_q3_front_up = angle_in_angle_q3_front_down - angle_of_swing_q3_front_down;
+  const double axis_a3_front_up = k->offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
+  const double angle_q23_front_up = angle_q2_front_up + angle_q3_front_up;
+  const double sin_q23_front_up = sin(angle_q23_front_up);
+  const double cos_q23_front_up = cos(angle_q23_front_up);
   const double r33_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up;
   /* polar coordinates: the radius at angle q4 */
   const double radius_q4_front_up = softkin_root(r23_from_q1_front_squared
@@ -1561,13 +1464,16 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         + softkin_angle_of(direction_y_q6_front_up_up, direction_x_q6_front_up_up)*SOFTKIN_RADIAN;
   }
   const double axis_a5_front_up_up = k->offset_a5 - quotient_in_axis_a5_front_up_down;
-  int refusal_back_down;
-  if (fabs(cos_swing_q3_back) <= 1.0000000000005) {
-    refusal_back_down = away_q2_back_down <= 1e-11 ? 0 : 3; /* q2: out of reach */
-  } else {
-    refusal_back_down = 3; /* q2: out of reach */
-  }
+  const int refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3; /* q3: out of reach */
   const double axis_a1_back = k->offset_a1 + softkin_angle_of(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
+  const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
+  const double arm_along_q2_back_down = k->effective_q3*sin_swing_q3_back_up;
+  const double arm_across_q2_back = k->a2 + k->effective_q3*cos_swing_q3_back;
+  const double angle_of_arm_across_q2_back_down = softkin_angle_of(arm_along_q2_back_down,
+      arm_across_q2_back);
+  const double angle_of_wrist_z_from_q1_back = softkin_angle_of(wrist_x_from_q1_back, wrist_z_from_q1);
   const double product_in_along_q2_back_down = arm_along_q2_back_down*wrist_x_from_q1_back;
   const double arm_across_q2_back_times_wrist_z_from_q1 = arm_across_q2_back*wrist_z_from_q1;
   /* rotation by q2 that takes the arm to its target point */
@@ -1575,28 +1481,17 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double product_in_across_q2_back_down = arm_across_q2_back*wrist_x_from_q1_back;
   const double product_in_across_q2_back_down_2 = arm_along_q2_back_down*wrist_z_from_q1;
   const double across_q2_back_down = product_in_across_q2_back_down_2 - product_in_across_q2_back_down;
-  const double sum_in_sin_q2_back_down = across_q2_back_down*across_q2_back_down
-      + along_q2_back_down*along_q2_back_down;
-  double cos_q2_back_down, sin_q2_back_down;
-  if (reach_back > k->machine_scale_times_free_angle && sum_in_sin_q2_back_down > 0.0) {
-    const double length_q2_back_down = softkin_root(sum_in_sin_q2_back_down);
-    /* at a singularity: the angle of the reference */
-    cos_q2_back_down = along_q2_back_down/length_q2_back_down;
-    sin_q2_back_down = across_q2_back_down/length_q2_back_down;
-  } else {
-    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    const double cos_of_reference_a2 = cos(reference_a2);
-    const double sin_of_reference_a2 = sin(reference_a2);
-    cos_q2_back_down = cos_of_reference_a2; /* at a singularity: the angle of the reference */
-    sin_q2_back_down = sin_of_reference_a2;
-  }
-  const double axis_a2_back_down = k->offset_a2
-      + softkin_angle_of(sin_q2_back_down, cos_q2_back_down)*SOFTKIN_RADIAN;
-  const double axis_a3_back_down = k->offset_a3
-      + softkin_angle_of(sin_q3_back_down, cos_q3_back_down)*SOFTKIN_RADIAN;
+  const double angle_q2_back_down = (reach_back > k->machine_scale_times_free_angle)
+      && (across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0)
+      ? angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back : reference_a2;
+  const double axis_a2_back_down = k->offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
+  const double angle_of_swing_q3_back_down = -softkin_angle_of(sin_swing_q3_back_up, cos_swing_q3_back);
+  const double angle_q3_back_down = angle_in_angle_q3_front_down + angle_of_swing_q3_back_down;
+  const double axis_a3_back_down = k->offset_a3 + angle_q3_back_down*SOFTKIN_RADIAN;
   const double r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back;
-  const double sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down;
-  const double cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down;
+  const double angle_q23_back_down = angle_q2_back_down + angle_q3_back_down;
+  const double sin_q23_back_down = sin(angle_q23_back_down);
+  const double cos_q23_back_down = cos(angle_q23_back_down);
   const double r33_from_q123_back_down = r33*cos_q23_back_down - r13_from_q1_back*sin_q23_back_down;
   const double r23_from_q1_back = r23*cos_q1_back - r13*sin_q1_back;
   const double r23_from_q1_back_squared = r23_from_q1_back*r23_from_q1_back;
@@ -1691,27 +1586,15 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* rotation by q2 that takes the arm to its target point */
   const double along_q2_back_up = arm_across_q2_back_times_wrist_z_from_q1 - product_in_along_q2_back_down;
   const double across_q2_back_up = -product_in_across_q2_back_down - product_in_across_q2_back_down_2;
-  const double sum_in_sin_q2_back_up = across_q2_back_up*across_q2_back_up
-      + along_q2_back_up*along_q2_back_up;
-  double cos_q2_back_up, sin_q2_back_up;
-  if (reach_back > k->machine_scale_times_free_angle && sum_in_sin_q2_back_up > 0.0) {
-    const double length_q2_back_up = softkin_root(sum_in_sin_q2_back_up);
-    /* at a singularity: the angle of the reference */
-    cos_q2_back_up = along_q2_back_up/length_q2_back_up;
-    sin_q2_back_up = across_q2_back_up/length_q2_back_up;
-  } else {
-    const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
-    const double cos_of_reference_a2 = cos(reference_a2);
-    const double sin_of_reference_a2 = sin(reference_a2);
-    cos_q2_back_up = cos_of_reference_a2; /* at a singularity: the angle of the reference */
-    sin_q2_back_up = sin_of_reference_a2;
-  }
-  const double axis_a2_back_up = k->offset_a2
-      + softkin_angle_of(sin_q2_back_up, cos_q2_back_up)*SOFTKIN_RADIAN;
-  const double axis_a3_back_up = k->offset_a3
-      + softkin_angle_of(sin_q3_back_up, cos_q3_back_up)*SOFTKIN_RADIAN;
-  const double sin_q23_back_up = cos_q2_back_up*sin_q3_back_up + cos_q3_back_up*sin_q2_back_up;
-  const double cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up;
+  const double angle_q2_back_up = (reach_back > k->machine_scale_times_free_angle)
+      && (across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0)
+      ? -angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back : reference_a2;
+  const double axis_a2_back_up = k->offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
+  const double angle_q3_back_up = angle_in_angle_q3_front_down - angle_of_swing_q3_back_down;
+  const double axis_a3_back_up = k->offset_a3 + angle_q3_back_up*SOFTKIN_RADIAN;
+  const double angle_q23_back_up = angle_q2_back_up + angle_q3_back_up;
+  const double sin_q23_back_up = sin(angle_q23_back_up);
+  const double cos_q23_back_up = cos(angle_q23_back_up);
   const double r33_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up;
   /* polar coordinates: the radius at angle q4 */
   const double radius_q4_back_up = softkin_root(r23_from_q1_back_squared
@@ -1804,56 +1687,56 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double near_a4 = k->single_a4 ? k->mid_a4 : ref_a4;
   const double near_a5 = k->single_a5 ? k->mid_a5 : ref_a5;
   const double near_a6 = k->single_a6 ? k->mid_a6 : ref_a6;
-  statuses[0] = (softkin_status)(refusal_front_down);
+  statuses[0] = (softkin_status)(refusal_front);
   axes[0] = softkin_on_turn(axis_a1_front, near_a1);
   axes[1] = softkin_on_turn(axis_a2_front_down, near_a2);
   axes[2] = softkin_on_turn(axis_a3_front_down, near_a3);
   axes[3] = softkin_on_turn(axis_a4_front_down_down, near_a4);
   axes[4] = softkin_on_turn(axis_a5_front_down_down, near_a5);
   axes[5] = softkin_on_turn(axis_a6_front_down_down, near_a6);
-  statuses[1] = (softkin_status)(refusal_back_down);
+  statuses[1] = (softkin_status)(refusal_back);
   axes[6] = softkin_on_turn(axis_a1_back, near_a1);
   axes[7] = softkin_on_turn(axis_a2_back_down, near_a2);
   axes[8] = softkin_on_turn(axis_a3_back_down, near_a3);
   axes[9] = softkin_on_turn(axis_a4_back_down_down, near_a4);
   axes[10] = softkin_on_turn(axis_a5_back_down_down, near_a5);
   axes[11] = softkin_on_turn(axis_a6_back_down_down, near_a6);
-  statuses[2] = (softkin_status)(refusal_front_down);
+  statuses[2] = (softkin_status)(refusal_front);
   axes[12] = softkin_on_turn(axis_a1_front, near_a1);
   axes[13] = softkin_on_turn(axis_a2_front_up, near_a2);
   axes[14] = softkin_on_turn(axis_a3_front_up, near_a3);
   axes[15] = softkin_on_turn(axis_a4_front_up_down, near_a4);
   axes[16] = softkin_on_turn(axis_a5_front_up_down, near_a5);
   axes[17] = softkin_on_turn(axis_a6_front_up_down, near_a6);
-  statuses[3] = (softkin_status)(refusal_back_down);
+  statuses[3] = (softkin_status)(refusal_back);
   axes[18] = softkin_on_turn(axis_a1_back, near_a1);
   axes[19] = softkin_on_turn(axis_a2_back_up, near_a2);
   axes[20] = softkin_on_turn(axis_a3_back_up, near_a3);
   axes[21] = softkin_on_turn(axis_a4_back_up_down, near_a4);
   axes[22] = softkin_on_turn(axis_a5_back_up_down, near_a5);
   axes[23] = softkin_on_turn(axis_a6_back_up_down, near_a6);
-  statuses[4] = (softkin_status)(refusal_front_down);
+  statuses[4] = (softkin_status)(refusal_front);
   axes[24] = softkin_on_turn(axis_a1_front, near_a1);
   axes[25] = softkin_on_turn(axis_a2_front_down, near_a2);
   axes[26] = softkin_on_turn(axis_a3_front_down, near_a3);
   axes[27] = softkin_on_turn(axis_a4_front_down_up, near_a4);
   axes[28] = softkin_on_turn(axis_a5_front_down_up, near_a5);
   axes[29] = softkin_on_turn(axis_a6_front_down_up, near_a6);
-  statuses[5] = (softkin_status)(refusal_back_down);
+  statuses[5] = (softkin_status)(refusal_back);
   axes[30] = softkin_on_turn(axis_a1_back, near_a1);
   axes[31] = softkin_on_turn(axis_a2_back_down, near_a2);
   axes[32] = softkin_on_turn(axis_a3_back_down, near_a3);
   axes[33] = softkin_on_turn(axis_a4_back_down_up, near_a4);
   axes[34] = softkin_on_turn(axis_a5_back_down_up, near_a5);
   axes[35] = softkin_on_turn(axis_a6_back_down_up, near_a6);
-  statuses[6] = (softkin_status)(refusal_front_down);
+  statuses[6] = (softkin_status)(refusal_front);
   axes[36] = softkin_on_turn(axis_a1_front, near_a1);
   axes[37] = softkin_on_turn(axis_a2_front_up, near_a2);
   axes[38] = softkin_on_turn(axis_a3_front_up, near_a3);
   axes[39] = softkin_on_turn(axis_a4_front_up_up, near_a4);
   axes[40] = softkin_on_turn(axis_a5_front_up_up, near_a5);
   axes[41] = softkin_on_turn(axis_a6_front_up_up, near_a6);
-  statuses[7] = (softkin_status)(refusal_back_down);
+  statuses[7] = (softkin_status)(refusal_back);
   axes[42] = softkin_on_turn(axis_a1_back, near_a1);
   axes[43] = softkin_on_turn(axis_a2_back_up, near_a2);
   axes[44] = softkin_on_turn(axis_a3_back_up, near_a3);
@@ -1906,15 +1789,12 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double product_in_lost_digits_23 = 0.01*machine_scale;
   const double a2_minus_effective_q3 = p->a2 - effective_q3;
   const double product_in_away_q2 = 1e-11*machine_scale;
-  const double product_in_lost_digits_36 = 0.02*p->a2*effective_q3;
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double one_by_effective_q3 = 1.0/effective_q3;
   const double a2_plus_effective_q3 = p->a2 + effective_q3;
   const double d4_by_effective_q3 = p->d4/effective_q3;
   const double a3_by_effective_q3 = p->a3/effective_q3;
-  const double a2_times_a3_times_2 = 2.0*p->a2*p->a3;
-  const double a2_times_d4_times_2 = 2.0*p->a2*p->d4;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1958,15 +1838,12 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.product_in_lost_digits_23 = product_in_lost_digits_23;
   made.a2_minus_effective_q3 = a2_minus_effective_q3;
   made.product_in_away_q2 = product_in_away_q2;
-  made.product_in_lost_digits_36 = product_in_lost_digits_36;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;
   made.one_by_effective_q3 = one_by_effective_q3;
   made.a2_plus_effective_q3 = a2_plus_effective_q3;
   made.d4_by_effective_q3 = d4_by_effective_q3;
   made.a3_by_effective_q3 = a3_by_effective_q3;
-  made.a2_times_a3_times_2 = a2_times_a3_times_2;
-  made.a2_times_d4_times_2 = a2_times_d4_times_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(articulatedrobot_6dof_machine *)machine = made;
   return SOFTKIN_OK;

@@ -54,9 +54,6 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     missed += !lost_digits_19 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_swing_q3) <= 1.0000000000005 ? 0.0 : 1.0;
-    missed += reach > product_in_lost_digits_19 ? 0.0 : 1.0;
-    /* digits may be lost */
-    missed += true ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
     /* sine squared, times the squared scale */
@@ -100,10 +97,9 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
       product_in_lost_digits_19 = k->product_in_lost_digits_19, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0;
+  const double angle_in_angle_q3_front_down = softkin_lane_angle(d4/effective_q3_2, a3/effective_q3_2);
   const double a2_plus_effective_q3_2_2 = a2 + effective_q3_2;
   const double a2_minus_effective_q3_2_2 = a2 - effective_q3_2;
-  const double d4_by_effective_q3_2_2 = d4/effective_q3_2;
-  const double a3_by_effective_q3_2_2 = a3/effective_q3_2;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane],
@@ -160,10 +156,6 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const bool lost_digits_19_back = (!within_19_back) && (fabs(ahead_q1_front) <= product_in_lost_digits_19);
     /* digits may be lost */
     missed += !lost_digits_19_back ? 0.0 : 1.0;
-    missed += reach_front > product_in_lost_digits_19 ? 0.0 : 1.0;
-    /* digits may be lost */
-    missed += true ? 0.0 : 1.0;
-    missed += reach_back > product_in_lost_digits_19 ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
@@ -206,7 +198,6 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     missed += across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0 ? 0.0 : 1.0;
     /* q3: out of reach */
     const double refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
-    const double refusal_front_down = refusal_front > 0 ? refusal_front : 0; /* q2: out of reach */
     const double d3_times_y = d3*y;
     const double ahead_q1_front_times_x = ahead_q1_front*x;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
@@ -220,25 +211,16 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double angle_of_wrist_z_from_q1_front = softkin_lane_angle(wrist_x_from_q1_front, wrist_z_from_q1);
     const double angle_q2_front_down = angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
     const double axis_a2_front_down = offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
-    const double product_in_cos_q3_front_down = d4_by_effective_q3_2_2*sin_swing_q3_front_up;
-    const double product_in_cos_q3_front_down_2 = a3_by_effective_q3_2_2*cos_swing_q3_front;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_front_down = product_in_cos_q3_front_down + product_in_cos_q3_front_down_2;
-    const double product_in_sin_q3_front_down = d4_by_effective_q3_2_2*cos_swing_q3_front;
-    const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2_2*sin_swing_q3_front_up;
-    const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
-    const double axis_a3_front_down = offset_a3
-        + softkin_lane_angle(sin_q3_front_down, cos_q3_front_down)*SOFTKIN_RADIAN;
+    const double angle_of_swing_q3_front_down = -softkin_lane_angle(sin_swing_q3_front_up,
+        cos_swing_q3_front);
+    const double angle_q3_front_down = angle_in_angle_q3_front_down + angle_of_swing_q3_front_down;
+    const double axis_a3_front_down = offset_a3 + angle_q3_front_down*SOFTKIN_RADIAN;
     const double angle_q2_front_up = -angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front;
     const double axis_a2_front_up = offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
-    const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
-    const double axis_a3_front_up = offset_a3
-        + softkin_lane_angle(sin_q3_front_up, cos_q3_front_up)*SOFTKIN_RADIAN;
+    const double angle_q3_front_up = angle_in_angle_q3_front_down - angle_of_swing_q3_front_down;
+    const double axis_a3_front_up = offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
     /* q3: out of reach */
     const double refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3;
-    const double refusal_back_down = refusal_back > 0 ? refusal_back : 0; /* q2: out of reach */
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_back = (-ahead_q1_front_times_x - d3_times_y)/distance_q1_squared;
     const double sin_q1_back = (d3_times_x - ahead_q1_front_times_y)/distance_q1_squared;
@@ -248,38 +230,29 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double angle_of_wrist_z_from_q1_back = softkin_lane_angle(wrist_x_from_q1_back, wrist_z_from_q1);
     const double angle_q2_back_down = angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
     const double axis_a2_back_down = offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
-    const double product_in_cos_q3_back_down = d4_by_effective_q3_2_2*sin_swing_q3_back_up;
-    const double product_in_cos_q3_back_down_2 = a3_by_effective_q3_2_2*cos_swing_q3_back;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_back_down = product_in_cos_q3_back_down + product_in_cos_q3_back_down_2;
-    const double product_in_sin_q3_back_down = d4_by_effective_q3_2_2*cos_swing_q3_back;
-    const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2_2*sin_swing_q3_back_up;
-    const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
-    const double axis_a3_back_down = offset_a3
-        + softkin_lane_angle(sin_q3_back_down, cos_q3_back_down)*SOFTKIN_RADIAN;
+    const double angle_of_swing_q3_back_down = -softkin_lane_angle(sin_swing_q3_back_up, cos_swing_q3_back);
+    const double angle_q3_back_down = angle_in_angle_q3_front_down + angle_of_swing_q3_back_down;
+    const double axis_a3_back_down = offset_a3 + angle_q3_back_down*SOFTKIN_RADIAN;
     const double angle_q2_back_up = -angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back;
     const double axis_a2_back_up = offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
-    /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
-    const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
-    const double axis_a3_back_up = offset_a3
-        + softkin_lane_angle(sin_q3_back_up, cos_q3_back_up)*SOFTKIN_RADIAN;
+    const double angle_q3_back_up = angle_in_angle_q3_front_down - angle_of_swing_q3_back_down;
+    const double axis_a3_back_up = offset_a3 + angle_q3_back_up*SOFTKIN_RADIAN;
     near[0][lane] = single_a1 > 0.0 ? mid_a1 : ref_a1;
     near[1][lane] = single_a2 > 0.0 ? mid_a2 : ref_a2;
     near[2][lane] = single_a3 > 0.0 ? mid_a3 : ref_a3;
-    statuses[0][lane] = refusal_front_down;
+    statuses[0][lane] = refusal_front;
     axes[0][lane] = axis_a1_front;
     axes[1][lane] = axis_a2_front_down;
     axes[2][lane] = axis_a3_front_down;
-    statuses[1][lane] = refusal_back_down;
+    statuses[1][lane] = refusal_back;
     axes[3][lane] = axis_a1_back;
     axes[4][lane] = axis_a2_back_down;
     axes[5][lane] = axis_a3_back_down;
-    statuses[2][lane] = refusal_front_down;
+    statuses[2][lane] = refusal_front;
     axes[6][lane] = axis_a1_front;
     axes[7][lane] = axis_a2_front_up;
     axes[8][lane] = axis_a3_front_up;
-    statuses[3][lane] = refusal_back_down;
+    statuses[3][lane] = refusal_back;
     axes[9][lane] = axis_a1_back;
     axes[10][lane] = axis_a2_back_up;
     axes[11][lane] = axis_a3_back_up;

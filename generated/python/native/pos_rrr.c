@@ -427,18 +427,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double away_q2 = reach > k->product_in_lost_digits_19 ? 0.0
       : fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2 - reach*reach)*k->one_by_machine_scale
       /(k->product_in_away_q2 + reach);
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3 = k->a3_by_effective_q3_2*cos_swing_q3 - k->d4_by_effective_q3_2*sin_swing_q3;
-  const double sin_q3 = k->a3_by_effective_q3_2*sin_swing_q3 + k->d4_by_effective_q3_2*cos_swing_q3;
   const bool within_32 = away_q2 <= 1e-12;
-  const bool lost_digits_32 = (!within_32)
-      && ((fabs(ahead_q1) <= k->product_in_lost_digits_19)
-      || (fabs(k->a2_times_a3_times_2*sin_q3
-      - k->a2_times_d4_times_2*cos_q3) <= k->product_in_lost_digits_32));
-  /* q2: out of reach */
-  if (!(lost_digits_32 || (away_q2 <= 1e-11))) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
-  }
+  const bool lost_digits_lengths_32 = !within_32;
   double cos_q1, sin_q1;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
@@ -474,6 +464,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* A2: whole turns added */
   const double axis_a2 = softkin_on_turn(k->offset_a2
       + softkin_angle_of(direction_y_q2, direction_x_q2)*SOFTKIN_RADIAN, near_a2);
+  /* addition theorem: plus the angle of the direction from which the cosine is measured */
+  const double cos_q3 = k->a3_by_effective_q3_2*cos_swing_q3 - k->d4_by_effective_q3_2*sin_swing_q3;
+  const double sin_q3 = k->a3_by_effective_q3_2*sin_swing_q3 + k->d4_by_effective_q3_2*cos_swing_q3;
   /* A3: without a commanded turn, the value nearest to this */
   const double open_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
   const double near_a3 = turn_a3 != 0 ? 360.0*(turn_a3 > 0 ? turn_a3 - 1 : turn_a3) : open_a3;
@@ -482,7 +475,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       near_a3);
   /* if digits were lost, steps on the closure meet the pose */
   double results[4] = {0.0};
-  if (lost_digits_19 || lost_digits_32) {
+  if (lost_digits_19 || lost_digits_lengths_32) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, sigma_arm, sigma_elbow, turn_a1, turn_a2, turn_a3, x,
         y, z, axis_a1, axis_a2, axis_a3};
     const softkin_status status = find_meet_pose(k, arguments, results, why);
@@ -493,14 +486,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double found_a1 = results[1], found_a2 = results[2], found_a3 = results[3];
   const bool met = results[0] != 0.0;
   /* q3: out of reach */
-  if (!(met || (fabs(cos_swing_q3) <= 1.0000000000005))) {
+  if (!((met || (away_q2 <= 1e-11)) && (met || (fabs(cos_swing_q3) <= 1.0000000000005)))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->a2_plus_effective_q3_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
         - k->a2_plus_effective_q3_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
-  }
-  /* q2: out of reach */
-  if (!(met || (away_q2 <= 1e-11))) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "", 0.0, 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
   axes[1] = (met ? found_a2 : axis_a2);
@@ -675,11 +664,10 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const pos_rrr_machine *k = machine;
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2], ref_a1 = reference[0],
       ref_a2 = reference[1], ref_a3 = reference[2];
-  const double product_in_lost_digits_32_front_down = 0.02*k->a2*k->effective_q3_2;
+  const double angle_in_angle_q3_front_down = softkin_angle_of(k->d4/k->effective_q3_2,
+      k->a3/k->effective_q3_2);
   const double a2_plus_effective_q3_2_2 = k->a2 + k->effective_q3_2;
   const double a2_minus_effective_q3_2_2 = k->a2 - k->effective_q3_2;
-  const double d4_by_effective_q3_2_2 = k->d4/k->effective_q3_2;
-  const double a3_by_effective_q3_2_2 = k->a3/k->effective_q3_2;
   const double distance_q1 = sqrt(x*x + y*y); /* distance of the point from the axis of q1 */
   /* Pythagoras: square of the distance ahead of the axis */
   const double ahead_squared_q1 = (distance_q1 - k->d3)*(k->d3 + distance_q1);
@@ -733,78 +721,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(!lost_digits_19_back)) {
     return false;
   }
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
-  const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
-  const double product_in_cos_q3_front_down = d4_by_effective_q3_2_2*sin_swing_q3_front_up;
-  const double product_in_cos_q3_front_down_2 = a3_by_effective_q3_2_2*cos_swing_q3_front;
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3_front_down = product_in_cos_q3_front_down + product_in_cos_q3_front_down_2;
-  const double product_in_sin_q3_front_down = d4_by_effective_q3_2_2*cos_swing_q3_front;
-  const double product_in_sin_q3_front_down_2 = a3_by_effective_q3_2_2*sin_swing_q3_front_up;
-  const double sin_q3_front_down = product_in_sin_q3_front_down - product_in_sin_q3_front_down_2;
-  const double arm_along_q2_front_down = k->effective_q3_2*sin_swing_q3_front_up;
-  const double arm_across_q2_front = k->a2 + k->effective_q3_2*cos_swing_q3_front;
-  const double away_q2_front_down = reach_front > k->product_in_lost_digits_19 ? 0.0
-      : fabs(arm_across_q2_front*arm_across_q2_front + arm_along_q2_front_down*arm_along_q2_front_down
-      - reach_front*reach_front)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_front);
-  const bool within_32_front_down = away_q2_front_down <= 1e-12;
-  const bool lost_digits_32_front_down = (!within_32_front_down)
-      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_19)
-      || (fabs(k->a2_times_a3_times_2*sin_q3_front_down
-      - k->a2_times_d4_times_2*cos_q3_front_down) <= product_in_lost_digits_32_front_down));
-  if (!(!lost_digits_32_front_down)) {
-    return false;
-  }
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3_front_down;
-  const double sin_q3_front_up = product_in_sin_q3_front_down + product_in_sin_q3_front_down_2;
-  const bool lost_digits_32_front_up = (!within_32_front_down)
-      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_19)
-      || (fabs(k->a2_times_a3_times_2*sin_q3_front_up
-      - k->a2_times_d4_times_2*cos_q3_front_up) <= product_in_lost_digits_32_front_down));
-  if (!(!lost_digits_32_front_up)) {
-    return false;
-  }
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
-  const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
-  const double product_in_cos_q3_back_down = d4_by_effective_q3_2_2*sin_swing_q3_back_up;
-  const double product_in_cos_q3_back_down_2 = a3_by_effective_q3_2_2*cos_swing_q3_back;
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3_back_down = product_in_cos_q3_back_down + product_in_cos_q3_back_down_2;
-  const double product_in_sin_q3_back_down = d4_by_effective_q3_2_2*cos_swing_q3_back;
-  const double product_in_sin_q3_back_down_2 = a3_by_effective_q3_2_2*sin_swing_q3_back_up;
-  const double sin_q3_back_down = product_in_sin_q3_back_down - product_in_sin_q3_back_down_2;
-  const double arm_along_q2_back_down = k->effective_q3_2*sin_swing_q3_back_up;
-  const double arm_across_q2_back = k->a2 + k->effective_q3_2*cos_swing_q3_back;
-  const double away_q2_back_down = reach_back > k->product_in_lost_digits_19 ? 0.0
-      : fabs(arm_across_q2_back*arm_across_q2_back + arm_along_q2_back_down*arm_along_q2_back_down
-      - reach_back*reach_back)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_back);
-  const bool within_32_back_down = away_q2_back_down <= 1e-12;
-  const bool lost_digits_32_back_down = (!within_32_back_down)
-      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_19)
-      || (fabs(k->a2_times_a3_times_2*sin_q3_back_down
-      - k->a2_times_d4_times_2*cos_q3_back_down) <= product_in_lost_digits_32_front_down));
-  if (!(!lost_digits_32_back_down)) {
-    return false;
-  }
-  /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3_back_down;
-  const double sin_q3_back_up = product_in_sin_q3_back_down + product_in_sin_q3_back_down_2;
-  const bool lost_digits_32_back_up = (!within_32_back_down)
-      && ((fabs(ahead_q1_front) <= k->product_in_lost_digits_19)
-      || (fabs(k->a2_times_a3_times_2*sin_q3_back_up
-      - k->a2_times_d4_times_2*cos_q3_back_up) <= product_in_lost_digits_32_front_down));
-  if (!(!lost_digits_32_back_up)) {
-    return false;
-  }
-  int refusal_front_down;
-  if (fabs(cos_swing_q3_front) <= 1.0000000000005) {
-    refusal_front_down = away_q2_front_down <= 1e-11 ? 0 : 3; /* q2: out of reach */
-  } else {
-    refusal_front_down = 3; /* q2: out of reach */
-  }
+  /* q3: out of reach */
+  const int refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
   double cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     const double d3_times_y = k->d3*y;
@@ -827,6 +745,11 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     sin_q1_back = sin_q1_front;
   }
   const double axis_a1_front = k->offset_a1 + softkin_angle_of(sin_q1_front, cos_q1_front)*SOFTKIN_RADIAN;
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
+  const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
+  const double arm_along_q2_front_down = k->effective_q3_2*sin_swing_q3_front_up;
+  const double arm_across_q2_front = k->a2 + k->effective_q3_2*cos_swing_q3_front;
   const double angle_of_arm_across_q2_front_down = softkin_angle_of(arm_along_q2_front_down,
       arm_across_q2_front);
   const double angle_of_wrist_z_from_q1_front = softkin_angle_of(wrist_x_from_q1_front, wrist_z_from_q1);
@@ -842,8 +765,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       && (across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0)
       ? angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front : reference_a2;
   const double axis_a2_front_down = k->offset_a2 + angle_q2_front_down*SOFTKIN_RADIAN;
-  const double axis_a3_front_down = k->offset_a3
-      + softkin_angle_of(sin_q3_front_down, cos_q3_front_down)*SOFTKIN_RADIAN;
+  const double angle_of_swing_q3_front_down = -softkin_angle_of(sin_swing_q3_front_up, cos_swing_q3_front);
+  const double angle_q3_front_down = angle_in_angle_q3_front_down + angle_of_swing_q3_front_down;
+  const double axis_a3_front_down = k->offset_a3 + angle_q3_front_down*SOFTKIN_RADIAN;
   /* rotation by q2 that takes the arm to its target point */
   const double along_q2_front_up = product_in_along_q2_front_down_2 - product_in_along_q2_front_down;
   const double across_q2_front_up = -product_in_across_q2_front_down - product_in_across_q2_front_down_2;
@@ -851,15 +775,15 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       && (across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0)
       ? -angle_of_arm_across_q2_front_down - angle_of_wrist_z_from_q1_front : reference_a2;
   const double axis_a2_front_up = k->offset_a2 + angle_q2_front_up*SOFTKIN_RADIAN;
-  const double axis_a3_front_up = k->offset_a3
-      + softkin_angle_of(sin_q3_front_up, cos_q3_front_up)*SOFTKIN_RADIAN;
-  int refusal_back_down;
-  if (fabs(cos_swing_q3_back) <= 1.0000000000005) {
-    refusal_back_down = away_q2_back_down <= 1e-11 ? 0 : 3; /* q2: out of reach */
-  } else {
-    refusal_back_down = 3; /* q2: out of reach */
-  }
+  const double angle_q3_front_up = angle_in_angle_q3_front_down - angle_of_swing_q3_front_down;
+  const double axis_a3_front_up = k->offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
+  const int refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3; /* q3: out of reach */
   const double axis_a1_back = k->offset_a1 + softkin_angle_of(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
+  const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
+  const double arm_along_q2_back_down = k->effective_q3_2*sin_swing_q3_back_up;
+  const double arm_across_q2_back = k->a2 + k->effective_q3_2*cos_swing_q3_back;
   const double angle_of_arm_across_q2_back_down = softkin_angle_of(arm_along_q2_back_down,
       arm_across_q2_back);
   const double angle_of_wrist_z_from_q1_back = softkin_angle_of(wrist_x_from_q1_back, wrist_z_from_q1);
@@ -874,8 +798,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       && (across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0)
       ? angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back : reference_a2;
   const double axis_a2_back_down = k->offset_a2 + angle_q2_back_down*SOFTKIN_RADIAN;
-  const double axis_a3_back_down = k->offset_a3
-      + softkin_angle_of(sin_q3_back_down, cos_q3_back_down)*SOFTKIN_RADIAN;
+  const double angle_of_swing_q3_back_down = -softkin_angle_of(sin_swing_q3_back_up, cos_swing_q3_back);
+  const double angle_q3_back_down = angle_in_angle_q3_front_down + angle_of_swing_q3_back_down;
+  const double axis_a3_back_down = k->offset_a3 + angle_q3_back_down*SOFTKIN_RADIAN;
   /* rotation by q2 that takes the arm to its target point */
   const double along_q2_back_up = arm_across_q2_back_times_wrist_z_from_q1 - product_in_along_q2_back_down;
   const double across_q2_back_up = -product_in_across_q2_back_down - product_in_across_q2_back_down_2;
@@ -883,24 +808,24 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       && (across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0)
       ? -angle_of_arm_across_q2_back_down - angle_of_wrist_z_from_q1_back : reference_a2;
   const double axis_a2_back_up = k->offset_a2 + angle_q2_back_up*SOFTKIN_RADIAN;
-  const double axis_a3_back_up = k->offset_a3
-      + softkin_angle_of(sin_q3_back_up, cos_q3_back_up)*SOFTKIN_RADIAN;
+  const double angle_q3_back_up = angle_in_angle_q3_front_down - angle_of_swing_q3_back_down;
+  const double axis_a3_back_up = k->offset_a3 + angle_q3_back_up*SOFTKIN_RADIAN;
   const double near_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
   const double near_a2 = k->single_a2 ? k->mid_a2 : ref_a2;
   const double near_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
-  statuses[0] = (softkin_status)(refusal_front_down);
+  statuses[0] = (softkin_status)(refusal_front);
   axes[0] = softkin_on_turn(axis_a1_front, near_a1);
   axes[1] = softkin_on_turn(axis_a2_front_down, near_a2);
   axes[2] = softkin_on_turn(axis_a3_front_down, near_a3);
-  statuses[1] = (softkin_status)(refusal_back_down);
+  statuses[1] = (softkin_status)(refusal_back);
   axes[3] = softkin_on_turn(axis_a1_back, near_a1);
   axes[4] = softkin_on_turn(axis_a2_back_down, near_a2);
   axes[5] = softkin_on_turn(axis_a3_back_down, near_a3);
-  statuses[2] = (softkin_status)(refusal_front_down);
+  statuses[2] = (softkin_status)(refusal_front);
   axes[6] = softkin_on_turn(axis_a1_front, near_a1);
   axes[7] = softkin_on_turn(axis_a2_front_up, near_a2);
   axes[8] = softkin_on_turn(axis_a3_front_up, near_a3);
-  statuses[3] = (softkin_status)(refusal_back_down);
+  statuses[3] = (softkin_status)(refusal_back);
   axes[9] = softkin_on_turn(axis_a1_back, near_a1);
   axes[10] = softkin_on_turn(axis_a2_back_up, near_a2);
   axes[11] = softkin_on_turn(axis_a3_back_up, near_a3);
@@ -935,15 +860,12 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double product_in_lost_digits_19 = 0.01*machine_scale;
   const double a2_minus_effective_q3_2 = p->a2 - effective_q3_2;
   const double product_in_away_q2 = 1e-11*machine_scale;
-  const double product_in_lost_digits_32 = 0.02*p->a2*effective_q3_2;
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double one_by_effective_q3_2 = 1.0/effective_q3_2;
   const double a2_plus_effective_q3_2 = p->a2 + effective_q3_2;
   const double d4_by_effective_q3_2 = p->d4/effective_q3_2;
   const double a3_by_effective_q3_2 = p->a3/effective_q3_2;
-  const double a2_times_a3_times_2 = 2.0*p->a2*p->a3;
-  const double a2_times_d4_times_2 = 2.0*p->a2*p->d4;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -971,15 +893,12 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.product_in_lost_digits_19 = product_in_lost_digits_19;
   made.a2_minus_effective_q3_2 = a2_minus_effective_q3_2;
   made.product_in_away_q2 = product_in_away_q2;
-  made.product_in_lost_digits_32 = product_in_lost_digits_32;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;
   made.one_by_effective_q3_2 = one_by_effective_q3_2;
   made.a2_plus_effective_q3_2 = a2_plus_effective_q3_2;
   made.d4_by_effective_q3_2 = d4_by_effective_q3_2;
   made.a3_by_effective_q3_2 = a3_by_effective_q3_2;
-  made.a2_times_a3_times_2 = a2_times_a3_times_2;
-  made.a2_times_d4_times_2 = a2_times_d4_times_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(pos_rrr_machine *)machine = made;
   return SOFTKIN_OK;

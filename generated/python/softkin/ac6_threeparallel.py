@@ -110,7 +110,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 49a2e66b2f93ba64"
+    KEY = "ac6_threeparallel 7a334ba541eeb6f7"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1070,15 +1070,7 @@ class Ac6ThreeParallel(Mechanism):
             / (product_in_away_q2 + reach)
         )
         within_49 = away_q2 <= 1e-12
-        lost_digits_49 = (not within_49) and (
-            (-0.01 <= q6_radius_of_q5 <= 0.01)
-            or (-0.01 <= radius_q6 <= 0.01)
-            or (-0.01 <= sin_q3 <= 0.01)
-            or (abs(ahead_q1) <= product_in_lost_digits_38)
-        )
-        # q2: out of reach
-        if not (lost_digits_49 or (away_q2 <= 1e-11)):
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
+        lost_digits_lengths_49 = not within_49
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
@@ -1125,7 +1117,7 @@ class Ac6ThreeParallel(Mechanism):
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_38 or lost_digits_49:
+        if lost_digits_38 or lost_digits_lengths_49:
             found = self._meet_pose(
                 (
                     ref_a1,
@@ -1169,12 +1161,9 @@ class Ac6ThreeParallel(Mechanism):
         else:
             met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         # q3: out of reach
-        if not (met or (abs(cos_q3) <= bound_of_cos_q3)):
+        if not ((met or (away_q2 <= 1e-11)) and (met or (abs(cos_q3) <= bound_of_cos_q3))):
             missing = max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # q2: out of reach
-        if not (met or (away_q2 <= 1e-11)):
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return (
             (found_a1 if met else axis_a1),
             (found_a2 if met else axis_a2),

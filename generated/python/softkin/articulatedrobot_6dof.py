@@ -32,8 +32,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 59 additions, 74 multiplications, 0 divisions, 0 square roots, 14 sines
-    inverse: 90 additions, 95 multiplications, 13 divisions, 6 square roots, 6 sines
-    inverse, all 8 branches: 561 additions, 466 multiplications, 68 divisions, 25 square roots, 38 sines
+    inverse: 89 additions, 93 multiplications, 13 divisions, 6 square roots, 6 sines
+    inverse, all 8 branches: 557 additions, 458 multiplications, 68 divisions, 25 square roots, 38 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 111247 additions, 146040 multiplications, 5547 divisions, 1544
     square roots, 7707 sines
@@ -85,26 +85,22 @@ class Constants:
         product_in_lost_digits_23 = 0.01 * machine_scale
         a2_minus_effective_q3 = a2 - effective_q3
         product_in_away_q2 = 1e-11 * machine_scale
-        product_in_lost_digits_36 = 0.02 * a2 * effective_q3
         machine_scale_times_free_angle = 2e-12 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         one_by_effective_q3 = 1.0 / effective_q3
         a2_plus_effective_q3 = a2 + effective_q3
         d4_by_effective_q3 = d4 / effective_q3
         a3_by_effective_q3 = a3 / effective_q3
-        a2_times_a3_times_2 = 2.0 * a2 * a3
-        a2_times_d4_times_2 = 2.0 * a2 * d4
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.d6 = d1, a1, a2, d3, a3, d4, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.offset_a5, self.offset_a6, self.machine_scale = offset_a5, offset_a6, machine_scale
         self.effective_q3, self.rounding_q1 = effective_q3, rounding_q1
         self.product_in_lost_digits_23, self.a2_minus_effective_q3 = product_in_lost_digits_23, a2_minus_effective_q3
-        self.product_in_away_q2, self.product_in_lost_digits_36 = product_in_away_q2, product_in_lost_digits_36
+        self.product_in_away_q2 = product_in_away_q2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.one_by_machine_scale, self.one_by_effective_q3 = one_by_machine_scale, one_by_effective_q3
         self.a2_plus_effective_q3, self.d4_by_effective_q3 = a2_plus_effective_q3, d4_by_effective_q3
-        self.a3_by_effective_q3, self.a2_times_a3_times_2 = a3_by_effective_q3, a2_times_a3_times_2
-        self.a2_times_d4_times_2 = a2_times_d4_times_2
+        self.a3_by_effective_q3 = a3_by_effective_q3
 
 
 class ArticulatedRobot6DOF(Mechanism):
@@ -116,7 +112,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof b10b1d4632deed9a"
+    KEY = "articulatedrobot_6dof 18f3673d1b7e20b8"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -388,7 +384,6 @@ class ArticulatedRobot6DOF(Mechanism):
         # sum of both, twice the scale: cosine² + sine² is then 1
         closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
         closed_divisor_of_cos_q3 = closed_sum_q3 if closed_sum_q3 > 0.0 else 1.0
-        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
         # sine squared, times the squared scale
         closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
         closed_sin_swing_q3 = (
@@ -397,14 +392,15 @@ class ArticulatedRobot6DOF(Mechanism):
             * given_sigma_elbow
             / closed_divisor_of_cos_q3
         )
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        closed_cos_q3 = a3_by_effective_q3 * closed_cos_swing_q3 - closed_sin_swing_q3 * d4_by_effective_q3
-        closed_sin_q3 = a3_by_effective_q3 * closed_sin_swing_q3 + closed_cos_swing_q3 * d4_by_effective_q3
         closed_arm_along_q2 = -closed_sin_swing_q3 * effective_q3
+        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
         closed_arm_across_q2 = a2 + closed_cos_swing_q3 * effective_q3
         # rotation by q2 that takes the arm to its target point
         closed_along_q2 = closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
         closed_across_q2 = closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        closed_cos_q3 = a3_by_effective_q3 * closed_cos_swing_q3 - closed_sin_swing_q3 * d4_by_effective_q3
+        closed_sin_q3 = a3_by_effective_q3 * closed_sin_swing_q3 + closed_cos_swing_q3 * d4_by_effective_q3
         closed_axis_a3 = offset_a3 + arctan2(closed_sin_q3, closed_cos_q3 + 0.0) * RADIAN
         if not -180.000000001 <= closed_axis_a3 - closed_near_a3 < 179.999999999:
             closed_axis_a3 = nearest_period(closed_axis_a3, closed_near_a3)
@@ -1063,16 +1059,15 @@ class ArticulatedRobot6DOF(Mechanism):
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
         a1, a2, a2_minus_effective_q3 = k.a1, k.a2, k.a2_minus_effective_q3
-        a2_plus_effective_q3, a2_times_a3_times_2 = k.a2_plus_effective_q3, k.a2_times_a3_times_2
-        a2_times_d4_times_2, a3_by_effective_q3, d1, d3 = k.a2_times_d4_times_2, k.a3_by_effective_q3, k.d1, k.d3
+        a2_plus_effective_q3, a3_by_effective_q3, d1, d3 = k.a2_plus_effective_q3, k.a3_by_effective_q3, k.d1, k.d3
         d4_by_effective_q3, d6, effective_q3 = k.d4_by_effective_q3, k.d6, k.effective_q3
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
         offset_a6, one_by_machine_scale, product_in_away_q2 = k.offset_a6, k.one_by_machine_scale, k.product_in_away_q2
-        product_in_lost_digits_23, product_in_lost_digits_36 = k.product_in_lost_digits_23, k.product_in_lost_digits_36
-        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-        single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
+        product_in_lost_digits_23, rounding_q1, single_a1 = k.product_in_lost_digits_23, k.rounding_q1, k.single_a1
+        single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
+        single_a6 = k.single_a6
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         wrist_x = x - d6 * r13  # wrist centre: the last joints do not move this point
@@ -1116,17 +1111,8 @@ class ArticulatedRobot6DOF(Mechanism):
             * one_by_machine_scale
             / (product_in_away_q2 + reach)
         )
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = a3_by_effective_q3 * cos_swing_q3 - d4_by_effective_q3 * sin_swing_q3
-        sin_q3 = a3_by_effective_q3 * sin_swing_q3 + d4_by_effective_q3 * cos_swing_q3
         within_36 = away_q2 <= 1e-12
-        lost_digits_36 = (not within_36) and (
-            (abs(ahead_q1) <= product_in_lost_digits_23)
-            or (abs(a2_times_a3_times_2 * sin_q3 - a2_times_d4_times_2 * cos_q3) <= product_in_lost_digits_36)
-        )
-        # q2: out of reach
-        if not (lost_digits_36 or (away_q2 <= 1e-11)):
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
+        lost_digits_lengths_36 = not within_36
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1 = (ahead_q1 * wrist_x - d3 * wrist_y) / distance_q1_squared
@@ -1160,6 +1146,9 @@ class ArticulatedRobot6DOF(Mechanism):
         axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_q3 = a3_by_effective_q3 * cos_swing_q3 - d4_by_effective_q3 * sin_swing_q3
+        sin_q3 = a3_by_effective_q3 * sin_swing_q3 + d4_by_effective_q3 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
@@ -1208,7 +1197,7 @@ class ArticulatedRobot6DOF(Mechanism):
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_23 or lost_digits_36:
+        if lost_digits_23 or lost_digits_lengths_36:
             found = self._meet_pose(
                 (
                     ref_a1,
@@ -1252,12 +1241,9 @@ class ArticulatedRobot6DOF(Mechanism):
         else:
             met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         # q3: out of reach
-        if not (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
+        if not ((met or (away_q2 <= 1e-11)) and (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005))):
             missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # q2: out of reach
-        if not (met or (away_q2 <= 1e-11)):
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return (
             (found_a1 if met else axis_a1),
             (found_a2 if met else axis_a2),

@@ -86,14 +86,12 @@ class Constants:
         machine_scale_times_free_angle = 2e-12 * machine_scale
         product_in_lost_digits_17 = 0.01 * machine_scale
         product_in_away_a2 = 1e-11 * machine_scale
-        product_in_lost_digits_30 = 0.02 * link_length_1 * link_length_2
         one_by_machine_scale = 1.0 / machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         quotient_in_closed_cos_swing_a3_from_a2 = 0.25 / (link_length_1 * link_length_2)
         shoulder_offset_plus_wrist_offset_x = shoulder_offset + wrist_offset_x
         base_height_plus_wrist_offset_z = base_height + wrist_offset_z
-        product_in_lost_digits_30_2 = 2.0 * link_length_1 * link_length_2
         self.base_height, self.shoulder_offset, self.link_length_1 = base_height, shoulder_offset, link_length_1
         self.link_length_2, self.wrist_offset_x, self.wrist_offset_z = link_length_2, wrist_offset_x, wrist_offset_z
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
@@ -101,13 +99,12 @@ class Constants:
         self.rounding_a1, self.link_length_1_minus_link_length_2 = rounding_a1, link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.product_in_lost_digits_17, self.product_in_away_a2 = product_in_lost_digits_17, product_in_away_a2
-        self.product_in_lost_digits_30, self.one_by_machine_scale = product_in_lost_digits_30, one_by_machine_scale
+        self.one_by_machine_scale = one_by_machine_scale
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
         self.quotient_in_closed_cos_swing_a3_from_a2 = quotient_in_closed_cos_swing_a3_from_a2
         self.shoulder_offset_plus_wrist_offset_x = shoulder_offset_plus_wrist_offset_x
         self.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z
-        self.product_in_lost_digits_30_2 = product_in_lost_digits_30_2
 
 
 class Palletizer(OffsetKinematics, TwistChoice):
@@ -911,8 +908,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
         offset_a4, one_by_machine_scale, product_in_away_a2 = k.offset_a4, k.one_by_machine_scale, k.product_in_away_a2
-        product_in_lost_digits_17, product_in_lost_digits_30 = k.product_in_lost_digits_17, k.product_in_lost_digits_30
-        product_in_lost_digits_30_2 = k.product_in_lost_digits_30_2
+        product_in_lost_digits_17 = k.product_in_lost_digits_17
         quotient_in_closed_cos_swing_a3_from_a2, rounding_a1 = k.quotient_in_closed_cos_swing_a3_from_a2, k.rounding_a1
         shoulder_offset, single_a1, single_a2, single_a3 = k.shoulder_offset, k.single_a1, k.single_a2, k.single_a3
         wrist_offset_x, wrist_offset_z = k.wrist_offset_x, k.wrist_offset_z
@@ -975,13 +971,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             / (product_in_away_a2 + reach)
         )
         within_30 = away_a2 <= 1e-12
-        lost_digits_30 = (not within_30) and (
-            (abs(ahead_a1) <= product_in_lost_digits_17)
-            or (abs(cos_a3_from_a2) * product_in_lost_digits_30_2 <= product_in_lost_digits_30)
-        )
-        # a2: out of reach
-        if not (lost_digits_30 or (away_a2 <= 1e-11)):
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
+        lost_digits_lengths_30 = not within_30
         # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_a1 > machine_scale_times_free_angle:
             cos_a1 = (ahead_a1 * x + tool_y * y) / distance_a1_squared
@@ -1020,7 +1010,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_17 or lost_digits_30:
+        if lost_digits_17 or lost_digits_lengths_30:
             found = self._meet_point(
                 (
                     point_x,
@@ -1050,12 +1040,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
         else:
             met, found_a1, found_a2, found_a3, found_a4 = (False, 0.0, 0.0, 0.0, 0.0)
         # a3_from_a2: out of reach
-        if not (met or (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2)):
+        if not ((met or (away_a2 <= 1e-11)) and (met or (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2))):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
-        # a2: out of reach
-        if not (met or (away_a2 <= 1e-11)):
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return (
             (found_a1 if met else axis_a1),
             (found_a2 if met else axis_a2),

@@ -24,8 +24,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
-    inverse: 51 additions, 47 multiplications, 8 divisions, 4 square roots, 3 sines
-    inverse, all 4 branches: 179 additions, 148 multiplications, 24 divisions, 9 square roots, 10 sines
+    inverse: 50 additions, 45 multiplications, 8 divisions, 4 square roots, 3 sines
+    inverse, all 4 branches: 175 additions, 140 multiplications, 24 divisions, 9 square roots, 10 sines
     a branch at a singular pose, in addition: 28375 additions, 40998 multiplications, 3083 divisions, 928
     square roots, 4317 sines
     steps of damped least squares on the closure, from one start after the other: at most 308 passes, all of
@@ -74,29 +74,21 @@ class Constants:
         product_in_lost_digits_19 = 0.01 * machine_scale
         a2_minus_effective_q3_2 = a2 - effective_q3_2
         product_in_away_q2 = 1e-11 * machine_scale
-        product_in_lost_digits_32 = 0.02 * a2 * effective_q3_2
         machine_scale_times_free_angle = 2e-12 * machine_scale
-        product_in_lost_digits_34 = 0.02 * a2 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         one_by_effective_q3_2 = 1.0 / effective_q3_2
         a2_plus_effective_q3_2 = a2 + effective_q3_2
         d4_by_effective_q3_2 = d4 / effective_q3_2
         a3_by_effective_q3_2 = a3 / effective_q3_2
-        a2_times_a3_times_2 = 2.0 * a2 * a3
-        a2_times_d4_times_2 = 2.0 * a2 * d4
-        twice_a2 = 2.0 * a2
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.offset_a1 = d1, a1, a2, d3, a3, d4, offset_a1
         self.offset_a2, self.offset_a3, self.machine_scale = offset_a2, offset_a3, machine_scale
         self.effective_q3_2, self.rounding_q1 = effective_q3_2, rounding_q1
         self.a2_times_shortest_link, self.product_in_lost_digits_19 = a2_times_shortest_link, product_in_lost_digits_19
         self.a2_minus_effective_q3_2, self.product_in_away_q2 = a2_minus_effective_q3_2, product_in_away_q2
-        self.product_in_lost_digits_32 = product_in_lost_digits_32
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.product_in_lost_digits_34, self.one_by_machine_scale = product_in_lost_digits_34, one_by_machine_scale
-        self.one_by_effective_q3_2, self.a2_plus_effective_q3_2 = one_by_effective_q3_2, a2_plus_effective_q3_2
-        self.d4_by_effective_q3_2, self.a3_by_effective_q3_2 = d4_by_effective_q3_2, a3_by_effective_q3_2
-        self.a2_times_a3_times_2, self.a2_times_d4_times_2 = a2_times_a3_times_2, a2_times_d4_times_2
-        self.twice_a2 = twice_a2
+        self.one_by_machine_scale, self.one_by_effective_q3_2 = one_by_machine_scale, one_by_effective_q3_2
+        self.a2_plus_effective_q3_2, self.d4_by_effective_q3_2 = a2_plus_effective_q3_2, d4_by_effective_q3_2
+        self.a3_by_effective_q3_2 = a3_by_effective_q3_2
 
 
 class PosRRR(OffsetKinematics):
@@ -108,7 +100,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr cccabdbcf232dce0"
+    KEY = "pos_rrr 898d57872c330a1e"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -876,14 +868,13 @@ class PosRRR(OffsetKinematics):
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
         a1, a2, a2_minus_effective_q3_2 = k.a1, k.a2, k.a2_minus_effective_q3_2
-        a2_plus_effective_q3_2, a2_times_a3_times_2 = k.a2_plus_effective_q3_2, k.a2_times_a3_times_2
-        a2_times_d4_times_2, a3_by_effective_q3_2, d1, d3 = k.a2_times_d4_times_2, k.a3_by_effective_q3_2, k.d1, k.d3
-        d4_by_effective_q3_2, effective_q3_2 = k.d4_by_effective_q3_2, k.effective_q3_2
+        a2_plus_effective_q3_2, a3_by_effective_q3_2, d1 = k.a2_plus_effective_q3_2, k.a3_by_effective_q3_2, k.d1
+        d3, d4_by_effective_q3_2, effective_q3_2 = k.d3, k.d4_by_effective_q3_2, k.effective_q3_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
         one_by_machine_scale, product_in_away_q2 = k.one_by_machine_scale, k.product_in_away_q2
-        product_in_lost_digits_19, product_in_lost_digits_32 = k.product_in_lost_digits_19, k.product_in_lost_digits_32
-        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
+        product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
+        single_a2, single_a3 = k.single_a2, k.single_a3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
@@ -924,17 +915,8 @@ class PosRRR(OffsetKinematics):
             * one_by_machine_scale
             / (product_in_away_q2 + reach)
         )
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = a3_by_effective_q3_2 * cos_swing_q3 - d4_by_effective_q3_2 * sin_swing_q3
-        sin_q3 = a3_by_effective_q3_2 * sin_swing_q3 + d4_by_effective_q3_2 * cos_swing_q3
         within_32 = away_q2 <= 1e-12
-        lost_digits_32 = (not within_32) and (
-            (abs(ahead_q1) <= product_in_lost_digits_19)
-            or (abs(a2_times_a3_times_2 * sin_q3 - a2_times_d4_times_2 * cos_q3) <= product_in_lost_digits_32)
-        )
-        # q2: out of reach
-        if not (lost_digits_32 or (away_q2 <= 1e-11)):
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
+        lost_digits_lengths_32 = not within_32
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1 = (ahead_q1 * x - d3 * y) / distance_q1_squared
@@ -964,13 +946,16 @@ class PosRRR(OffsetKinematics):
         axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0) * RADIAN  # A2: whole turns added
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_q3 = a3_by_effective_q3_2 * cos_swing_q3 - d4_by_effective_q3_2 * sin_swing_q3
+        sin_q3 = a3_by_effective_q3_2 * sin_swing_q3 + d4_by_effective_q3_2 * cos_swing_q3
         open_a3 = mid_a3 if single_a3 else ref_a3  # A3: without a commanded turn, the value nearest to this
         near_a3 = 360.0 * (turn_a3 - 1 if turn_a3 > 0 else turn_a3) if turn_a3 != 0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0) * RADIAN  # A3: whole turns added
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_19 or lost_digits_32:
+        if lost_digits_19 or lost_digits_lengths_32:
             found = self._meet_pose(
                 (
                     ref_a1,
@@ -995,12 +980,9 @@ class PosRRR(OffsetKinematics):
         else:
             met, found_a1, found_a2, found_a3 = (False, 0.0, 0.0, 0.0)
         # q3: out of reach
-        if not (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
+        if not ((met or (away_q2 <= 1e-11)) and (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005))):
             missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # q2: out of reach
-        if not (met or (away_q2 <= 1e-11)):
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
@@ -1114,9 +1096,8 @@ class PosRRR(OffsetKinematics):
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
         one_by_machine_scale, product_in_away_q2 = k.one_by_machine_scale, k.product_in_away_q2
-        product_in_lost_digits_19, product_in_lost_digits_34 = k.product_in_lost_digits_19, k.product_in_lost_digits_34
-        rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-        twice_a2 = k.twice_a2
+        product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
+        single_a2, single_a3 = k.single_a2, k.single_a3
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         distance_q1 = sqrt(x * x + y * y)  # distance of the point from the axis of q1
@@ -1170,12 +1151,7 @@ class PosRRR(OffsetKinematics):
             / (product_in_away_q2 + reach)
         )
         within_34 = away_q2 <= 1e-12
-        lost_digits_34 = (not within_34) and (
-            (abs(ahead_q1) <= product_in_lost_digits_19) or (abs(arm_along_q2 * twice_a2) <= product_in_lost_digits_34)
-        )
-        # q2: out of reach
-        if not (lost_digits_34 or (away_q2 <= 1e-11)):
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
+        lost_digits_lengths_34 = not within_34
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1 = (ahead_q1 * x + tool_y * y) / distance_q1_squared
@@ -1211,7 +1187,7 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_21 or lost_digits_34:
+        if lost_digits_21 or lost_digits_lengths_34:
             found = self._meet_point(
                 (
                     point_x,
@@ -1239,12 +1215,9 @@ class PosRRR(OffsetKinematics):
         else:
             met, found_a1, found_a2, found_a3 = (False, 0.0, 0.0, 0.0)
         # q3: out of reach
-        if not (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
+        if not ((met or (away_q2 <= 1e-11)) and (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005))):
             missing = max(abs(a2 - effective_q3) - reach, -a2_minus_reach - effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-        # q2: out of reach
-        if not (met or (away_q2 <= 1e-11)):
-            return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 
     def _offset_margins(self, axes: Reals, offset: Vector) -> Reals | Status:

@@ -786,12 +786,7 @@ class ArrayPrograms(Programs):
             / (k.product_in_away_q2 + reach),
         )
         within_49 = away_q2 <= 1e-12
-        lost_digits_49 = (opposite(within_49)) & (
-            (absolute(q6_radius_of_q5) <= 0.01)
-            | (absolute(radius_q6) <= 0.01)
-            | (absolute(sin_q3) <= 0.01)
-            | (absolute(ahead_q1) <= k.product_in_lost_digits_38)
-        )
+        lost_digits_lengths_49 = opposite(within_49)
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
@@ -835,11 +830,9 @@ class ArrayPrograms(Programs):
         require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
         require(status, lost_digits_38 | (absolute(cos_q3) <= k.bound_of_cos_q3), Status.UNREACHABLE)
-        # q2: out of reach
-        require(status, lost_digits_49 | (away_q2 <= 1e-11), Status.UNREACHABLE)
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
-            lost_digits_38 | lost_digits_49,
+            lost_digits_38 | lost_digits_lengths_49,
             self.meet_pose,
             (
                 ref_a1,
@@ -881,9 +874,9 @@ class ArrayPrograms(Programs):
         )
         met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = found
         # q3: out of reach
-        require(status, met | (absolute(cos_q3) <= k.bound_of_cos_q3), Status.UNREACHABLE)
-        # q2: out of reach
-        require(status, met | (away_q2 <= 1e-11), Status.UNREACHABLE)
+        require(
+            status, (met | (away_q2 <= 1e-11)) & (met | (absolute(cos_q3) <= k.bound_of_cos_q3)), Status.UNREACHABLE
+        )
         return (
             select(met, found_a1, axis_a1),
             select(met, found_a2, axis_a2),

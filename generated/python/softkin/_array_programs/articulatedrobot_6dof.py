@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 467
+    VALUES = 464
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -133,18 +133,18 @@ class ArrayPrograms(Programs):
         # sum of both, twice the scale: cosine² + sine² is then 1
         closed_sum_q3 = closed_one_less_cos_q3 + closed_one_plus_cos_q3
         closed_divisor_of_cos_q3 = select(closed_sum_q3 > 0.0, closed_sum_q3, 1.0)
-        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
         # sine squared, times the squared scale
         closed_sine_square_q3 = closed_one_less_cos_q3 * closed_one_plus_cos_q3
         closed_sin_swing_q3 = -2.0 * root(closed_sine_square_q3) * given_sigma_elbow / closed_divisor_of_cos_q3
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        closed_cos_q3 = k.a3_by_effective_q3 * closed_cos_swing_q3 - closed_sin_swing_q3 * k.d4_by_effective_q3
-        closed_sin_q3 = k.a3_by_effective_q3 * closed_sin_swing_q3 + closed_cos_swing_q3 * k.d4_by_effective_q3
         closed_arm_along_q2 = -closed_sin_swing_q3 * k.effective_q3
+        closed_cos_swing_q3 = (closed_one_plus_cos_q3 - closed_one_less_cos_q3) / closed_divisor_of_cos_q3
         closed_arm_across_q2 = k.a2 + closed_cos_swing_q3 * k.effective_q3
         # rotation by q2 that takes the arm to its target point
         closed_along_q2 = closed_arm_across_q2 * closed_wrist_z_from_q1 + closed_arm_along_q2 * closed_wrist_x_from_q1
         closed_across_q2 = closed_arm_along_q2 * closed_wrist_z_from_q1 - closed_arm_across_q2 * closed_wrist_x_from_q1
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        closed_cos_q3 = k.a3_by_effective_q3 * closed_cos_swing_q3 - closed_sin_swing_q3 * k.d4_by_effective_q3
+        closed_sin_q3 = k.a3_by_effective_q3 * closed_sin_swing_q3 + closed_cos_swing_q3 * k.d4_by_effective_q3
         closed_axis_a3 = nearest_period(k.offset_a3 + degrees(closed_sin_q3, closed_cos_q3), closed_near_a3)
         sum_in_closed_length_q2 = closed_across_q2 * closed_across_q2 + closed_along_q2 * closed_along_q2
         # steps of damped least squares on the closure, from one start after the other
@@ -800,14 +800,8 @@ class ArrayPrograms(Programs):
             * k.one_by_machine_scale
             / (k.product_in_away_q2 + reach),
         )
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = k.a3_by_effective_q3 * cos_swing_q3 - k.d4_by_effective_q3 * sin_swing_q3
-        sin_q3 = k.a3_by_effective_q3 * sin_swing_q3 + k.d4_by_effective_q3 * cos_swing_q3
         within_36 = away_q2 <= 1e-12
-        lost_digits_36 = (opposite(within_36)) & (
-            (absolute(ahead_q1) <= k.product_in_lost_digits_23)
-            | (absolute(k.a2_times_a3_times_2 * sin_q3 - k.a2_times_d4_times_2 * cos_q3) <= k.product_in_lost_digits_36)
-        )
+        lost_digits_lengths_36 = opposite(within_36)
 
         def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
@@ -848,6 +842,9 @@ class ArrayPrograms(Programs):
         open_a2 = select(k.single_a2, k.mid_a2, ref_a2)  # A2: without a commanded turn, the value nearest to this
         near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         axis_a2 = nearest_period(k.offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: whole turns added
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_q3 = k.a3_by_effective_q3 * cos_swing_q3 - k.d4_by_effective_q3 * sin_swing_q3
+        sin_q3 = k.a3_by_effective_q3 * sin_swing_q3 + k.d4_by_effective_q3 * cos_swing_q3
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(k.offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: whole turns added
@@ -899,11 +896,9 @@ class ArrayPrograms(Programs):
         require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
         require(status, lost_digits_23 | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
-        # q2: out of reach
-        require(status, lost_digits_36 | (away_q2 <= 1e-11), Status.UNREACHABLE)
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
-            lost_digits_23 | lost_digits_36,
+            lost_digits_23 | lost_digits_lengths_36,
             self.meet_pose,
             (
                 ref_a1,
@@ -945,9 +940,9 @@ class ArrayPrograms(Programs):
         )
         met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = found
         # q3: out of reach
-        require(status, met | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
-        # q2: out of reach
-        require(status, met | (away_q2 <= 1e-11), Status.UNREACHABLE)
+        require(
+            status, (met | (away_q2 <= 1e-11)) & (met | (absolute(cos_swing_q3) <= 1.0000000000005)), Status.UNREACHABLE
+        )
         return (
             select(met, found_a1, axis_a1),
             select(met, found_a2, axis_a2),

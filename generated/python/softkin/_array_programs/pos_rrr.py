@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 426
+    VALUES = 423
     JACOBIAN_ROWS = (0, 1, 2)
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
@@ -711,14 +711,8 @@ class ArrayPrograms(Programs):
             * k.one_by_machine_scale
             / (k.product_in_away_q2 + reach),
         )
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = k.a3_by_effective_q3_2 * cos_swing_q3 - k.d4_by_effective_q3_2 * sin_swing_q3
-        sin_q3 = k.a3_by_effective_q3_2 * sin_swing_q3 + k.d4_by_effective_q3_2 * cos_swing_q3
         within_32 = away_q2 <= 1e-12
-        lost_digits_32 = (opposite(within_32)) & (
-            (absolute(ahead_q1) <= k.product_in_lost_digits_19)
-            | (absolute(k.a2_times_a3_times_2 * sin_q3 - k.a2_times_d4_times_2 * cos_q3) <= k.product_in_lost_digits_32)
-        )
+        lost_digits_lengths_32 = opposite(within_32)
 
         def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
@@ -756,6 +750,9 @@ class ArrayPrograms(Programs):
         near_a2 = select(turn_a2 != 0, 360.0 * select(turn_a2 > 0, turn_a2 - 1, turn_a2), open_a2)
         # A2: whole turns added
         axis_a2 = nearest_period(k.offset_a2 + degrees(direction_y_q2, direction_x_q2), near_a2)
+        # addition theorem: plus the angle of the direction from which the cosine is measured
+        cos_q3 = k.a3_by_effective_q3_2 * cos_swing_q3 - k.d4_by_effective_q3_2 * sin_swing_q3
+        sin_q3 = k.a3_by_effective_q3_2 * sin_swing_q3 + k.d4_by_effective_q3_2 * cos_swing_q3
         open_a3 = select(k.single_a3, k.mid_a3, ref_a3)  # A3: without a commanded turn, the value nearest to this
         near_a3 = select(turn_a3 != 0, 360.0 * select(turn_a3 > 0, turn_a3 - 1, turn_a3), open_a3)
         axis_a3 = nearest_period(k.offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: whole turns added
@@ -763,11 +760,9 @@ class ArrayPrograms(Programs):
         require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
         require(status, lost_digits_19 | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
-        # q2: out of reach
-        require(status, lost_digits_32 | (away_q2 <= 1e-11), Status.UNREACHABLE)
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
-            lost_digits_19 | lost_digits_32,
+            lost_digits_19 | lost_digits_lengths_32,
             self.meet_pose,
             (
                 ref_a1,
@@ -790,9 +785,9 @@ class ArrayPrograms(Programs):
         )
         met, found_a1, found_a2, found_a3 = found
         # q3: out of reach
-        require(status, met | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
-        # q2: out of reach
-        require(status, met | (away_q2 <= 1e-11), Status.UNREACHABLE)
+        require(
+            status, (met | (away_q2 <= 1e-11)) & (met | (absolute(cos_swing_q3) <= 1.0000000000005)), Status.UNREACHABLE
+        )
         return (select(met, found_a1, axis_a1), select(met, found_a2, axis_a2), select(met, found_a3, axis_a3)), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -18,23 +18,19 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    a1, a2, a2_times_a3_times_2, a2_times_d4_times_2 = k.a1, k.a2, k.a2_times_a3_times_2, k.a2_times_d4_times_2
-    a3, d1, d3, d4, d6, effective_q3, highest_a1 = k.a3, k.d1, k.d3, k.d4, k.d6, k.effective_q3, k.highest_a1
-    highest_a2, highest_a3, highest_a4, highest_a5 = k.highest_a2, k.highest_a3, k.highest_a4, k.highest_a5
-    highest_a6, lowest_a1, lowest_a2, lowest_a3 = k.highest_a6, k.lowest_a1, k.lowest_a2, k.lowest_a3
-    lowest_a4, lowest_a5, lowest_a6 = k.lowest_a4, k.lowest_a5, k.lowest_a6
+    a1, a2, a3, d1, d3, d4, d6, effective_q3 = k.a1, k.a2, k.a3, k.d1, k.d3, k.d4, k.d6, k.effective_q3
+    highest_a1, highest_a2, highest_a3, highest_a4 = k.highest_a1, k.highest_a2, k.highest_a3, k.highest_a4
+    highest_a5, highest_a6, lowest_a1, lowest_a2 = k.highest_a5, k.highest_a6, k.lowest_a1, k.lowest_a2
+    lowest_a3, lowest_a4, lowest_a5, lowest_a6 = k.lowest_a3, k.lowest_a4, k.lowest_a5, k.lowest_a6
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
     offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-    offset_a6, one_by_machine_scale, product_in_away_q2 = k.offset_a6, k.one_by_machine_scale, k.product_in_away_q2
-    product_in_lost_digits_23, rounding_q1, single_a1 = k.product_in_lost_digits_23, k.rounding_q1, k.single_a1
-    single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
-    single_a6 = k.single_a6
-    product_in_lost_digits_36_front_down = 0.02 * a2 * effective_q3
+    offset_a6, product_in_lost_digits_23, rounding_q1 = k.offset_a6, k.product_in_lost_digits_23, k.rounding_q1
+    single_a1, single_a2, single_a3, single_a4 = k.single_a1, k.single_a2, k.single_a3, k.single_a4
+    single_a5, single_a6 = k.single_a5, k.single_a6
+    angle_in_angle_q3_front_down = arctan2(d4 / effective_q3 + 0.0, a3 / effective_q3 + 0.0)
     a2_plus_effective_q3_2 = a2 + effective_q3
     a2_minus_effective_q3_2 = a2 - effective_q3
-    d4_by_effective_q3_2 = d4 / effective_q3
-    a3_by_effective_q3_2 = a3 / effective_q3
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
     def branches(
@@ -86,103 +82,7 @@ def unrolled(k: Constants) -> Unrolled:
         # digits may be lost
         if not (not lost_digits_23):
             return ()
-        sine_square_q3 = one_less_cos_q3_front * one_plus_cos_q3_front  # sine squared, times the squared scale
-        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_front
-        product_in_cos_q3 = d4_by_effective_q3_2 * sin_swing_q3
-        product_in_cos_q3_front_down_2 = a3_by_effective_q3_2 * cos_swing_q3_front
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_front_down = product_in_cos_q3 + product_in_cos_q3_front_down_2
-        product_in_sin_q3 = d4_by_effective_q3_2 * cos_swing_q3_front
-        product_in_sin_q3_front_down_2 = a3_by_effective_q3_2 * sin_swing_q3
-        sin_q3_front_down = product_in_sin_q3 - product_in_sin_q3_front_down_2
-        arm_along_q2_front_down = effective_q3 * sin_swing_q3
-        arm_across_q2_front = a2 + effective_q3 * cos_swing_q3_front
-        away_q2_front_down = (
-            0.0
-            if reach_front > product_in_lost_digits_23
-            else abs(
-                arm_across_q2_front * arm_across_q2_front
-                + arm_along_q2_front_down * arm_along_q2_front_down
-                - reach_front * reach_front
-            )
-            * one_by_machine_scale
-            / (product_in_away_q2 + reach_front)
-        )
-        within_36 = away_q2_front_down <= 1e-12
-        lost_digits_36 = (not within_36) and (
-            (abs(ahead_q1) <= product_in_lost_digits_23)
-            or (
-                abs(a2_times_a3_times_2 * sin_q3_front_down - a2_times_d4_times_2 * cos_q3_front_down)
-                <= product_in_lost_digits_36_front_down
-            )
-        )
-        # digits may be lost
-        if not (not lost_digits_36):
-            return ()
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_front_up = product_in_cos_q3_front_down_2 - product_in_cos_q3
-        sin_q3_front_up = product_in_sin_q3 + product_in_sin_q3_front_down_2
-        lost_digits_36 = (not within_36) and (
-            (abs(ahead_q1) <= product_in_lost_digits_23)
-            or (
-                abs(a2_times_a3_times_2 * sin_q3_front_up - a2_times_d4_times_2 * cos_q3_front_up)
-                <= product_in_lost_digits_36_front_down
-            )
-        )
-        # digits may be lost
-        if not (not lost_digits_36):
-            return ()
-        sine_square_q3 = one_less_cos_q3_back * one_plus_cos_q3_back  # sine squared, times the squared scale
-        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_back
-        product_in_cos_q3 = d4_by_effective_q3_2 * sin_swing_q3
-        product_in_cos_q3_back_down_2 = a3_by_effective_q3_2 * cos_swing_q3_back
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_back_down = product_in_cos_q3 + product_in_cos_q3_back_down_2
-        product_in_sin_q3 = d4_by_effective_q3_2 * cos_swing_q3_back
-        product_in_sin_q3_back_down_2 = a3_by_effective_q3_2 * sin_swing_q3
-        sin_q3_back_down = product_in_sin_q3 - product_in_sin_q3_back_down_2
-        arm_along_q2_back_down = effective_q3 * sin_swing_q3
-        arm_across_q2_back = a2 + effective_q3 * cos_swing_q3_back
-        away_q2_back_down = (
-            0.0
-            if reach_back > product_in_lost_digits_23
-            else abs(
-                arm_across_q2_back * arm_across_q2_back
-                + arm_along_q2_back_down * arm_along_q2_back_down
-                - reach_back * reach_back
-            )
-            * one_by_machine_scale
-            / (product_in_away_q2 + reach_back)
-        )
-        within_36 = away_q2_back_down <= 1e-12
-        lost_digits_36 = (not within_36) and (
-            (abs(ahead_q1) <= product_in_lost_digits_23)
-            or (
-                abs(a2_times_a3_times_2 * sin_q3_back_down - a2_times_d4_times_2 * cos_q3_back_down)
-                <= product_in_lost_digits_36_front_down
-            )
-        )
-        # digits may be lost
-        if not (not lost_digits_36):
-            return ()
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_back_up = product_in_cos_q3_back_down_2 - product_in_cos_q3
-        sin_q3_back_up = product_in_sin_q3 + product_in_sin_q3_back_down_2
-        lost_digits_36 = (not within_36) and (
-            (abs(ahead_q1) <= product_in_lost_digits_23)
-            or (
-                abs(a2_times_a3_times_2 * sin_q3_back_up - a2_times_d4_times_2 * cos_q3_back_up)
-                <= product_in_lost_digits_36_front_down
-            )
-        )
-        # digits may be lost
-        if not (not lost_digits_36):
-            return ()
-        # q2: out of reach
-        if -1.0000000000005 <= cos_swing_q3_front <= 1.0000000000005:
-            refusal_front_down = 0 if away_q2_front_down <= 1e-11 else 3
-        else:
-            refusal_front_down = 3
+        refusal_front = 0 if -1.0000000000005 <= cos_swing_q3_front <= 1.0000000000005 else 3  # q3: out of reach
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
@@ -201,30 +101,33 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_back = cos_q1_front
             sin_q1_back = sin_q1_front
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front) * RADIAN
-        product_in_along_q2 = arm_along_q2_front_down * wrist_x_from_q1_front
-        product_in_along_q2_front_down_2 = arm_across_q2_front * wrist_z_from_q1
+        sine_square_q3 = one_less_cos_q3_front * one_plus_cos_q3_front  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_front
+        arm_along_q2 = effective_q3 * sin_swing_q3
+        arm_across_q2 = a2 + effective_q3 * cos_swing_q3_front
+        angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+        angle_of_wrist_z_from_q1 = arctan2(wrist_x_from_q1_front, wrist_z_from_q1)
+        reference_a2 = (ref_a2 - offset_a2) * DEGREE
+        product_in_along_q2 = arm_along_q2 * wrist_x_from_q1_front
+        product_in_along_q2_front_down_2 = arm_across_q2 * wrist_z_from_q1
         # rotation by q2 that takes the arm to its target point
         along_q2 = product_in_along_q2 + product_in_along_q2_front_down_2
-        product_in_across_q2 = arm_across_q2_front * wrist_x_from_q1_front
-        product_in_across_q2_front_down_2 = arm_along_q2_front_down * wrist_z_from_q1
+        product_in_across_q2 = arm_across_q2 * wrist_x_from_q1_front
+        product_in_across_q2_front_down_2 = arm_along_q2 * wrist_z_from_q1
         across_q2 = product_in_across_q2_front_down_2 - product_in_across_q2
-        sum_in_sin_q2 = across_q2 * across_q2 + along_q2 * along_q2
-        # at a singularity: the angle of the reference
-        if reach_front > machine_scale_times_free_angle and sum_in_sin_q2 > 0.0:
-            length_q2 = sqrt(sum_in_sin_q2) if sum_in_sin_q2 > 0.0 else 0.0
-            cos_q2 = along_q2 / length_q2
-            sin_q2 = across_q2 / length_q2
-        else:
-            reference_a2 = (ref_a2 - offset_a2) * DEGREE
-            cos_of_reference_a2 = cos(reference_a2)
-            sin_of_reference_a2 = sin(reference_a2)
-            cos_q2 = cos_of_reference_a2
-            sin_q2 = sin_of_reference_a2
-        axis_a2_front_down = offset_a2 + arctan2(sin_q2, cos_q2) * RADIAN
-        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down) * RADIAN
+        angle_q2 = (
+            angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
+            if (reach_front > machine_scale_times_free_angle) and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
+            else reference_a2
+        )
+        axis_a2_front_down = offset_a2 + angle_q2 * RADIAN
+        angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3_front)
+        angle_q3 = angle_in_angle_q3_front_down + angle_of_swing_q3
+        axis_a3_front_down = offset_a3 + angle_q3 * RADIAN
         r13_from_q1 = r13 * cos_q1_front + r23 * sin_q1_front
-        sin_q23 = cos_q2 * sin_q3_front_down + cos_q3_front_down * sin_q2
-        cos_q23 = cos_q2 * cos_q3_front_down - sin_q2 * sin_q3_front_down
+        angle_q23 = angle_q2 + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
         r33_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         r23_from_q1 = r23 * cos_q1_front - r13 * sin_q1_front
         # polar coordinates: the radius at angle q4
@@ -285,22 +188,17 @@ def unrolled(k: Constants) -> Unrolled:
         # rotation by q2 that takes the arm to its target point
         along_q2 = product_in_along_q2_front_down_2 - product_in_along_q2
         across_q2 = -product_in_across_q2 - product_in_across_q2_front_down_2
-        sum_in_sin_q2 = across_q2 * across_q2 + along_q2 * along_q2
-        # at a singularity: the angle of the reference
-        if reach_front > machine_scale_times_free_angle and sum_in_sin_q2 > 0.0:
-            length_q2 = sqrt(sum_in_sin_q2) if sum_in_sin_q2 > 0.0 else 0.0
-            cos_q2 = along_q2 / length_q2
-            sin_q2 = across_q2 / length_q2
-        else:
-            reference_a2 = (ref_a2 - offset_a2) * DEGREE
-            cos_of_reference_a2 = cos(reference_a2)
-            sin_of_reference_a2 = sin(reference_a2)
-            cos_q2 = cos_of_reference_a2
-            sin_q2 = sin_of_reference_a2
-        axis_a2_front_up = offset_a2 + arctan2(sin_q2, cos_q2) * RADIAN
-        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up) * RADIAN
-        sin_q23 = cos_q2 * sin_q3_front_up + cos_q3_front_up * sin_q2
-        cos_q23 = cos_q2 * cos_q3_front_up - sin_q2 * sin_q3_front_up
+        angle_q2 = (
+            -angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
+            if (reach_front > machine_scale_times_free_angle) and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
+            else reference_a2
+        )
+        axis_a2_front_up = offset_a2 + angle_q2 * RADIAN
+        angle_q3 = angle_in_angle_q3_front_down - angle_of_swing_q3
+        axis_a3_front_up = offset_a3 + angle_q3 * RADIAN
+        angle_q23 = angle_q2 + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
         r33_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r23_from_q1 * r23_from_q1 + r33_from_q123 * r33_from_q123)
@@ -355,36 +253,34 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 axis_a4_front_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up) * RADIAN
                 axis_a6_front_up_up = offset_a6 + arctan2(direction_y_q6_up, direction_x_q6_up) * RADIAN
-        # q2: out of reach
-        if -1.0000000000005 <= cos_swing_q3_back <= 1.0000000000005:
-            refusal_back_down = 0 if away_q2_back_down <= 1e-11 else 3
-        else:
-            refusal_back_down = 3
+        refusal_back = 0 if -1.0000000000005 <= cos_swing_q3_back <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back) * RADIAN
-        product_in_along_q2 = arm_along_q2_back_down * wrist_x_from_q1_back
-        arm_across_q2_back_times_wrist_z_from_q1 = arm_across_q2_back * wrist_z_from_q1
+        sine_square_q3 = one_less_cos_q3_back * one_plus_cos_q3_back  # sine squared, times the squared scale
+        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_back
+        arm_along_q2 = effective_q3 * sin_swing_q3
+        arm_across_q2 = a2 + effective_q3 * cos_swing_q3_back
+        angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+        angle_of_wrist_z_from_q1 = arctan2(wrist_x_from_q1_back, wrist_z_from_q1)
+        product_in_along_q2 = arm_along_q2 * wrist_x_from_q1_back
+        arm_across_q2_back_times_wrist_z_from_q1 = arm_across_q2 * wrist_z_from_q1
         # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2_back_times_wrist_z_from_q1 + product_in_along_q2
-        product_in_across_q2 = arm_across_q2_back * wrist_x_from_q1_back
-        product_in_across_q2_back_down_2 = arm_along_q2_back_down * wrist_z_from_q1
+        product_in_across_q2 = arm_across_q2 * wrist_x_from_q1_back
+        product_in_across_q2_back_down_2 = arm_along_q2 * wrist_z_from_q1
         across_q2 = product_in_across_q2_back_down_2 - product_in_across_q2
-        sum_in_sin_q2 = across_q2 * across_q2 + along_q2 * along_q2
-        # at a singularity: the angle of the reference
-        if reach_back > machine_scale_times_free_angle and sum_in_sin_q2 > 0.0:
-            length_q2 = sqrt(sum_in_sin_q2) if sum_in_sin_q2 > 0.0 else 0.0
-            cos_q2 = along_q2 / length_q2
-            sin_q2 = across_q2 / length_q2
-        else:
-            reference_a2 = (ref_a2 - offset_a2) * DEGREE
-            cos_of_reference_a2 = cos(reference_a2)
-            sin_of_reference_a2 = sin(reference_a2)
-            cos_q2 = cos_of_reference_a2
-            sin_q2 = sin_of_reference_a2
-        axis_a2_back_down = offset_a2 + arctan2(sin_q2, cos_q2) * RADIAN
-        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down) * RADIAN
+        angle_q2 = (
+            angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
+            if (reach_back > machine_scale_times_free_angle) and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
+            else reference_a2
+        )
+        axis_a2_back_down = offset_a2 + angle_q2 * RADIAN
+        angle_of_swing_q3 = -arctan2(sin_swing_q3, cos_swing_q3_back)
+        angle_q3 = angle_in_angle_q3_front_down + angle_of_swing_q3
+        axis_a3_back_down = offset_a3 + angle_q3 * RADIAN
         r13_from_q1 = r13 * cos_q1_back + r23 * sin_q1_back
-        sin_q23 = cos_q2 * sin_q3_back_down + cos_q3_back_down * sin_q2
-        cos_q23 = cos_q2 * cos_q3_back_down - sin_q2 * sin_q3_back_down
+        angle_q23 = angle_q2 + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
         r33_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         r23_from_q1 = r23 * cos_q1_back - r13 * sin_q1_back
         # polar coordinates: the radius at angle q4
@@ -445,22 +341,17 @@ def unrolled(k: Constants) -> Unrolled:
         # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2_back_times_wrist_z_from_q1 - product_in_along_q2
         across_q2 = -product_in_across_q2 - product_in_across_q2_back_down_2
-        sum_in_sin_q2 = across_q2 * across_q2 + along_q2 * along_q2
-        # at a singularity: the angle of the reference
-        if reach_back > machine_scale_times_free_angle and sum_in_sin_q2 > 0.0:
-            length_q2 = sqrt(sum_in_sin_q2) if sum_in_sin_q2 > 0.0 else 0.0
-            cos_q2 = along_q2 / length_q2
-            sin_q2 = across_q2 / length_q2
-        else:
-            reference_a2 = (ref_a2 - offset_a2) * DEGREE
-            cos_of_reference_a2 = cos(reference_a2)
-            sin_of_reference_a2 = sin(reference_a2)
-            cos_q2 = cos_of_reference_a2
-            sin_q2 = sin_of_reference_a2
-        axis_a2_back_up = offset_a2 + arctan2(sin_q2, cos_q2) * RADIAN
-        axis_a3_back_up = offset_a3 + arctan2(sin_q3_back_up, cos_q3_back_up) * RADIAN
-        sin_q23 = cos_q2 * sin_q3_back_up + cos_q3_back_up * sin_q2
-        cos_q23 = cos_q2 * cos_q3_back_up - sin_q2 * sin_q3_back_up
+        angle_q2 = (
+            -angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
+            if (reach_back > machine_scale_times_free_angle) and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
+            else reference_a2
+        )
+        axis_a2_back_up = offset_a2 + angle_q2 * RADIAN
+        angle_q3 = angle_in_angle_q3_front_down - angle_of_swing_q3
+        axis_a3_back_up = offset_a3 + angle_q3 * RADIAN
+        angle_q23 = angle_q2 + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
         r33_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         # polar coordinates: the radius at angle q4
         radius_q4 = sqrt(r23_from_q1 * r23_from_q1 + r33_from_q123 * r33_from_q123)
@@ -524,8 +415,8 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a5 + quotient_in_axis_a5_front_down_down,
                 axis_a6_front_down_down,
             )
-            if refusal_front_down == 0
-            else refused[refusal_front_down],
+            if refusal_front == 0
+            else refused[refusal_front],
             (
                 axis_a1_back,
                 axis_a2_back_down,
@@ -534,8 +425,8 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a5 + quotient_in_axis_a5_back_down_down,
                 axis_a6_back_down_down,
             )
-            if refusal_back_down == 0
-            else refused[refusal_back_down],
+            if refusal_back == 0
+            else refused[refusal_back],
             (
                 axis_a1_front,
                 axis_a2_front_up,
@@ -544,8 +435,8 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a5 + quotient_in_axis_a5_front_up_down,
                 axis_a6_front_up_down,
             )
-            if refusal_front_down == 0
-            else refused[refusal_front_down],
+            if refusal_front == 0
+            else refused[refusal_front],
             (
                 axis_a1_back,
                 axis_a2_back_up,
@@ -554,8 +445,8 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a5 + quotient_in_axis_a5_back_up_down,
                 axis_a6_back_up_down,
             )
-            if refusal_back_down == 0
-            else refused[refusal_back_down],
+            if refusal_back == 0
+            else refused[refusal_back],
             (
                 axis_a1_front,
                 axis_a2_front_down,
@@ -564,8 +455,8 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a5 - quotient_in_axis_a5_front_down_down,
                 axis_a6_front_down_up,
             )
-            if refusal_front_down == 0
-            else refused[refusal_front_down],
+            if refusal_front == 0
+            else refused[refusal_front],
             (
                 axis_a1_back,
                 axis_a2_back_down,
@@ -574,8 +465,8 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a5 - quotient_in_axis_a5_back_down_down,
                 axis_a6_back_down_up,
             )
-            if refusal_back_down == 0
-            else refused[refusal_back_down],
+            if refusal_back == 0
+            else refused[refusal_back],
             (
                 axis_a1_front,
                 axis_a2_front_up,
@@ -584,8 +475,8 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a5 - quotient_in_axis_a5_front_up_down,
                 axis_a6_front_up_up,
             )
-            if refusal_front_down == 0
-            else refused[refusal_front_down],
+            if refusal_front == 0
+            else refused[refusal_front],
             (
                 axis_a1_back,
                 axis_a2_back_up,
@@ -594,8 +485,8 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a5 - quotient_in_axis_a5_back_up_down,
                 axis_a6_back_up_up,
             )
-            if refusal_back_down == 0
-            else refused[refusal_back_down],
+            if refusal_back == 0
+            else refused[refusal_back],
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
@@ -632,33 +523,6 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3 = a3_by_effective_q3_2 * cos_swing_q3 - d4_by_effective_q3_2 * sin_swing_q3
-        sin_q3 = a3_by_effective_q3_2 * sin_swing_q3 + d4_by_effective_q3_2 * cos_swing_q3
-        arm_along_q2 = -effective_q3 * sin_swing_q3
-        arm_across_q2 = a2 + effective_q3 * cos_swing_q3
-        away_q2 = (
-            0.0
-            if reach > product_in_lost_digits_23
-            else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
-            * one_by_machine_scale
-            / (product_in_away_q2 + reach)
-        )
-        within_36 = away_q2 <= 1e-12
-        lost_digits_36 = (not within_36) and (
-            (abs(ahead_q1) <= product_in_lost_digits_23)
-            or (
-                abs(a2_times_a3_times_2 * sin_q3 - a2_times_d4_times_2 * cos_q3) <= product_in_lost_digits_36_front_down
-            )
-        )
-        # digits may be lost
-        if not (not lost_digits_36):
-            return ()
-        # q2: out of reach
-        if not (away_q2 <= 1e-11):
-            return None
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
@@ -668,24 +532,22 @@ def unrolled(k: Constants) -> Unrolled:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1 = cos(reference_a1)
             sin_q1 = sin(reference_a1)
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
+        arm_along_q2 = -effective_q3 * sin_swing_q3
+        arm_across_q2 = a2 + effective_q3 * cos_swing_q3
         # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
         across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
-        across_q2_squared_plus_along_q2_squared = across_q2 * across_q2 + along_q2 * along_q2
-        # at a singularity: the angle of the reference
-        if across_q2_squared_plus_along_q2_squared > 0.0 and reach > machine_scale_times_free_angle:
-            length_q2 = (
-                sqrt(across_q2_squared_plus_along_q2_squared) if across_q2_squared_plus_along_q2_squared > 0.0 else 0.0
-            )
-            cos_q2 = along_q2 / length_q2
-            sin_q2 = across_q2 / length_q2
+        if reach > machine_scale_times_free_angle and across_q2 * across_q2 + along_q2 * along_q2 > 0.0:
+            angle_q2 = arctan2(arm_along_q2, arm_across_q2) - arctan2(wrist_x_from_q1, wrist_z_from_q1)
         else:
-            reference_a2 = (ref_a2 - offset_a2) * DEGREE
-            cos_q2 = cos(reference_a2)
-            sin_q2 = sin(reference_a2)
+            angle_q2 = (ref_a2 - offset_a2) * DEGREE
+        angle_q3 = angle_in_angle_q3_front_down + arctan2(sin_swing_q3, cos_swing_q3)
         r13_from_q1 = r13 * cos_q1 + r23 * sin_q1
-        sin_q23 = cos_q2 * sin_q3 + cos_q3 * sin_q2
-        cos_q23 = cos_q2 * cos_q3 - sin_q2 * sin_q3
+        angle_q23 = angle_q2 + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
         r33_from_q123 = r33 * cos_q23 - r13_from_q1 * sin_q23
         r23_from_q1 = r23 * cos_q1 - r13 * sin_q1
         # polar coordinates: the radius at angle q4
@@ -716,16 +578,16 @@ def unrolled(k: Constants) -> Unrolled:
         if no_offsets:
             return (
                 arctan2(sin_q1, cos_q1) * RADIAN,
-                arctan2(sin_q2, cos_q2) * RADIAN,
-                arctan2(sin_q3, cos_q3) * RADIAN,
+                angle_q2 * RADIAN,
+                angle_q3 * RADIAN,
                 arctan2(direction_y_q4, direction_x_q4) * RADIAN,
                 axis_a5,
                 arctan2(direction_y_q6, direction_x_q6) * RADIAN,
             )
         return (
             offset_a1 + arctan2(sin_q1, cos_q1) * RADIAN,
-            offset_a2 + arctan2(sin_q2, cos_q2) * RADIAN,
-            offset_a3 + arctan2(sin_q3, cos_q3) * RADIAN,
+            offset_a2 + angle_q2 * RADIAN,
+            offset_a3 + angle_q3 * RADIAN,
             offset_a4 + arctan2(direction_y_q4, direction_x_q4) * RADIAN,
             axis_a5,
             offset_a6 + arctan2(direction_y_q6, direction_x_q6) * RADIAN,
