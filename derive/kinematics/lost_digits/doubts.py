@@ -150,6 +150,8 @@ def without_meeting(program: Program) -> Program:
             body.append(Require(sp.Not(own[0]), Status.OK, "digits may be lost"))
             s = replace(s, condition=s.condition.xreplace({own[0]: sp.false}))
         body.append(s)
+        if isinstance(s, Let) and s.name in flags and s.name.name.startswith(LENGTHS):
+            body.append(Require(sp.Not(s.name), Status.OK, "digits may be lost"))
     own_values = {o: o.value.args[2] for o in program.outputs if isinstance(o.value, Select)}
     return normalise(program.name, body, [replace(o, value=own_values.get(o, o.value)) for o in program.outputs])
 

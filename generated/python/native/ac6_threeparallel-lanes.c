@@ -85,6 +85,9 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     missed += !lost_digits_38 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_q3) <= bound_of_cos_q3 ? 0.0 : 1.0;
+    missed += reach > product_in_lost_digits_38 ? 0.0 : 1.0;
+    /* digits may be lost */
+    missed += true ? 0.0 : 1.0;
     const double arm_along_q2 = a2 + a3*cos_q3;
     const double sign_elbow = sigma_elbow; /* elbow: +1 up, -1 down */
     /* sine squared, times the squared scale */
@@ -287,6 +290,12 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
     /* digits may be lost */
     missed += !lost_digits_38_right_up ? 0.0 : 1.0;
+    missed += reach_left_down > product_in_lost_digits_38 ? 0.0 : 1.0;
+    /* digits may be lost */
+    missed += true ? 0.0 : 1.0;
+    missed += reach_left_up > product_in_lost_digits_38 ? 0.0 : 1.0;
+    missed += reach_right_down > product_in_lost_digits_38 ? 0.0 : 1.0;
+    missed += reach_right_up > product_in_lost_digits_38 ? 0.0 : 1.0;
     const double arm_along_q2_left_down = a2 + a3*cos_q3_left_down;
     const double product_in_along_q2_left_up_down = arm_along_q2_left_down*wrist_x_from_q1_left_down;
     /* sine squared, times the squared scale */

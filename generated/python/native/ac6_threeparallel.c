@@ -1315,14 +1315,64 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(!lost_digits_38_right_up)) {
     return false;
   }
-  /* q3: out of reach */
-  const int refusal_left_down = fabs(cos_q3_left_down) <= k->bound_of_cos_q3 ? 0 : 3;
-  const double axis_a1_left = k->offset_a1 + softkin_angle_of(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
   const double arm_along_q2_left_down = k->a2 + k->a3*cos_q3_left_down;
   /* sine squared, times the squared scale */
   const double sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down;
   const double sin_q3_left_up_down = softkin_root(sine_square_q3_left_down)*k->quotient_in_closed_sin_q3;
   const double arm_across_q2_left_up_down = k->a3*sin_q3_left_up_down;
+  const double away_q2_left_up_down = reach_left_down > k->product_in_lost_digits_38 ? 0.0
+      : fabs(arm_across_q2_left_up_down*arm_across_q2_left_up_down
+      + arm_along_q2_left_down*arm_along_q2_left_down - reach_left_down*reach_left_down)
+      *k->one_by_machine_scale/(k->product_in_away_q2 + reach_left_down);
+  const bool within_49_left_up_down = away_q2_left_up_down <= 1e-12;
+  const bool lost_digits_lengths_49_left_up_down = !within_49_left_up_down;
+  if (!(!lost_digits_lengths_49_left_up_down)) {
+    return false;
+  }
+  const double arm_along_q2_left_up = k->a2 + k->a3*cos_q3_left_up;
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
+  const double sin_q3_left_up_up = softkin_root(sine_square_q3_left_up)*k->quotient_in_closed_sin_q3;
+  const double arm_across_q2_left_up_up = k->a3*sin_q3_left_up_up;
+  const double away_q2_left_up_up = reach_left_up > k->product_in_lost_digits_38 ? 0.0
+      : fabs(arm_across_q2_left_up_up*arm_across_q2_left_up_up + arm_along_q2_left_up*arm_along_q2_left_up
+      - reach_left_up*reach_left_up)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_left_up);
+  const bool within_49_left_up_up = away_q2_left_up_up <= 1e-12;
+  const bool lost_digits_lengths_49_left_up_up = !within_49_left_up_up;
+  if (!(!lost_digits_lengths_49_left_up_up)) {
+    return false;
+  }
+  const double arm_along_q2_right_down = k->a2 + k->a3*cos_q3_right_down;
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
+  const double sin_q3_right_up_down = softkin_root(sine_square_q3_right_down)*k->quotient_in_closed_sin_q3;
+  const double arm_across_q2_right_up_down = k->a3*sin_q3_right_up_down;
+  const double away_q2_right_up_down = reach_right_down > k->product_in_lost_digits_38 ? 0.0
+      : fabs(arm_across_q2_right_up_down*arm_across_q2_right_up_down
+      + arm_along_q2_right_down*arm_along_q2_right_down - reach_right_down*reach_right_down)
+      *k->one_by_machine_scale/(k->product_in_away_q2 + reach_right_down);
+  const bool within_49_right_up_down = away_q2_right_up_down <= 1e-12;
+  const bool lost_digits_lengths_49_right_up_down = !within_49_right_up_down;
+  if (!(!lost_digits_lengths_49_right_up_down)) {
+    return false;
+  }
+  const double arm_along_q2_right_up = k->a2 + k->a3*cos_q3_right_up;
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
+  const double sin_q3_right_up_up = softkin_root(sine_square_q3_right_up)*k->quotient_in_closed_sin_q3;
+  const double arm_across_q2_right_up_up = k->a3*sin_q3_right_up_up;
+  const double away_q2_right_up_up = reach_right_up > k->product_in_lost_digits_38 ? 0.0
+      : fabs(arm_across_q2_right_up_up*arm_across_q2_right_up_up
+      + arm_along_q2_right_up*arm_along_q2_right_up - reach_right_up*reach_right_up)*k->one_by_machine_scale
+      /(k->product_in_away_q2 + reach_right_up);
+  const bool within_49_right_up_up = away_q2_right_up_up <= 1e-12;
+  const bool lost_digits_lengths_49_right_up_up = !within_49_right_up_up;
+  if (!(!lost_digits_lengths_49_right_up_up)) {
+    return false;
+  }
+  /* q3: out of reach */
+  const int refusal_left_down = fabs(cos_q3_left_down) <= k->bound_of_cos_q3 ? 0 : 3;
+  const double axis_a1_left = k->offset_a1 + softkin_angle_of(sin_q1_left, cos_q1_left)*SOFTKIN_RADIAN;
   const double angle_of_arm_along_q2_left_up_down = softkin_angle_of(arm_across_q2_left_up_down,
       arm_along_q2_left_down);
   const double angle_of_wrist_x_from_q1_left_down = softkin_angle_of(wrist_z_from_q1_left_down,
@@ -1350,11 +1400,6 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a5_left_down = k->offset_a5 + quotient_in_axis_a5_left_down;
   /* q3: out of reach */
   const int refusal_left_up = fabs(cos_q3_left_up) <= k->bound_of_cos_q3 ? 0 : 3;
-  const double arm_along_q2_left_up = k->a2 + k->a3*cos_q3_left_up;
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
-  const double sin_q3_left_up_up = softkin_root(sine_square_q3_left_up)*k->quotient_in_closed_sin_q3;
-  const double arm_across_q2_left_up_up = k->a3*sin_q3_left_up_up;
   const double angle_of_arm_along_q2_left_up_up = softkin_angle_of(arm_across_q2_left_up_up,
       arm_along_q2_left_up);
   const double angle_of_wrist_x_from_q1_left_up = softkin_angle_of(wrist_z_from_q1_left_up,
@@ -1405,11 +1450,6 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* q3: out of reach */
   const int refusal_right_down = fabs(cos_q3_right_down) <= k->bound_of_cos_q3 ? 0 : 3;
   const double axis_a1_right = k->offset_a1 + softkin_angle_of(sin_q1_right, cos_q1_right)*SOFTKIN_RADIAN;
-  const double arm_along_q2_right_down = k->a2 + k->a3*cos_q3_right_down;
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
-  const double sin_q3_right_up_down = softkin_root(sine_square_q3_right_down)*k->quotient_in_closed_sin_q3;
-  const double arm_across_q2_right_up_down = k->a3*sin_q3_right_up_down;
   const double angle_of_arm_along_q2_right_up_down = softkin_angle_of(arm_across_q2_right_up_down,
       arm_along_q2_right_down);
   const double angle_of_wrist_x_from_q1_right_down = softkin_angle_of(wrist_z_from_q1_right_down,
@@ -1439,11 +1479,6 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a5_right_down = k->offset_a5 + quotient_in_axis_a5_right_down;
   /* q3: out of reach */
   const int refusal_right_up = fabs(cos_q3_right_up) <= k->bound_of_cos_q3 ? 0 : 3;
-  const double arm_along_q2_right_up = k->a2 + k->a3*cos_q3_right_up;
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
-  const double sin_q3_right_up_up = softkin_root(sine_square_q3_right_up)*k->quotient_in_closed_sin_q3;
-  const double arm_across_q2_right_up_up = k->a3*sin_q3_right_up_up;
   const double angle_of_arm_along_q2_right_up_up = softkin_angle_of(arm_across_q2_right_up_up,
       arm_along_q2_right_up);
   const double angle_of_wrist_x_from_q1_right_up = softkin_angle_of(wrist_z_from_q1_right_up,

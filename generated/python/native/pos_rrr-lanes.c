@@ -54,6 +54,9 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     missed += !lost_digits_19 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_swing_q3) <= 1.0000000000005 ? 0.0 : 1.0;
+    missed += reach > product_in_lost_digits_19 ? 0.0 : 1.0;
+    /* digits may be lost */
+    missed += true ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double sign_elbow = sigma_elbow; /* elbow: +1 down, -1 up */
     /* sine squared, times the squared scale */
@@ -156,6 +159,10 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const bool lost_digits_19_back = (!within_19_back) && (fabs(ahead_q1_front) <= product_in_lost_digits_19);
     /* digits may be lost */
     missed += !lost_digits_19_back ? 0.0 : 1.0;
+    missed += reach_front > product_in_lost_digits_19 ? 0.0 : 1.0;
+    /* digits may be lost */
+    missed += true ? 0.0 : 1.0;
+    missed += reach_back > product_in_lost_digits_19 ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;

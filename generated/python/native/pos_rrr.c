@@ -721,6 +721,32 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   if (!(!lost_digits_19_back)) {
     return false;
   }
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
+  const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
+  const double arm_along_q2_front_down = k->effective_q3_2*sin_swing_q3_front_up;
+  const double arm_across_q2_front = k->a2 + k->effective_q3_2*cos_swing_q3_front;
+  const double away_q2_front_down = reach_front > k->product_in_lost_digits_19 ? 0.0
+      : fabs(arm_across_q2_front*arm_across_q2_front + arm_along_q2_front_down*arm_along_q2_front_down
+      - reach_front*reach_front)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_front);
+  const bool within_32_front_down = away_q2_front_down <= 1e-12;
+  const bool lost_digits_lengths_32_front_down = !within_32_front_down;
+  if (!(!lost_digits_lengths_32_front_down)) {
+    return false;
+  }
+  /* sine squared, times the squared scale */
+  const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
+  const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
+  const double arm_along_q2_back_down = k->effective_q3_2*sin_swing_q3_back_up;
+  const double arm_across_q2_back = k->a2 + k->effective_q3_2*cos_swing_q3_back;
+  const double away_q2_back_down = reach_back > k->product_in_lost_digits_19 ? 0.0
+      : fabs(arm_across_q2_back*arm_across_q2_back + arm_along_q2_back_down*arm_along_q2_back_down
+      - reach_back*reach_back)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_back);
+  const bool within_32_back_down = away_q2_back_down <= 1e-12;
+  const bool lost_digits_lengths_32_back_down = !within_32_back_down;
+  if (!(!lost_digits_lengths_32_back_down)) {
+    return false;
+  }
   /* q3: out of reach */
   const int refusal_front = fabs(cos_swing_q3_front) <= 1.0000000000005 ? 0 : 3;
   double cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back;
@@ -745,11 +771,6 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     sin_q1_back = sin_q1_front;
   }
   const double axis_a1_front = k->offset_a1 + softkin_angle_of(sin_q1_front, cos_q1_front)*SOFTKIN_RADIAN;
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;
-  const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
-  const double arm_along_q2_front_down = k->effective_q3_2*sin_swing_q3_front_up;
-  const double arm_across_q2_front = k->a2 + k->effective_q3_2*cos_swing_q3_front;
   const double angle_of_arm_across_q2_front_down = softkin_angle_of(arm_along_q2_front_down,
       arm_across_q2_front);
   const double angle_of_wrist_z_from_q1_front = softkin_angle_of(wrist_x_from_q1_front, wrist_z_from_q1);
@@ -779,11 +800,6 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a3_front_up = k->offset_a3 + angle_q3_front_up*SOFTKIN_RADIAN;
   const int refusal_back = fabs(cos_swing_q3_back) <= 1.0000000000005 ? 0 : 3; /* q3: out of reach */
   const double axis_a1_back = k->offset_a1 + softkin_angle_of(sin_q1_back, cos_q1_back)*SOFTKIN_RADIAN;
-  /* sine squared, times the squared scale */
-  const double sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back;
-  const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
-  const double arm_along_q2_back_down = k->effective_q3_2*sin_swing_q3_back_up;
-  const double arm_across_q2_back = k->a2 + k->effective_q3_2*cos_swing_q3_back;
   const double angle_of_arm_across_q2_back_down = softkin_angle_of(arm_along_q2_back_down,
       arm_across_q2_back);
   const double angle_of_wrist_z_from_q1_back = softkin_angle_of(wrist_x_from_q1_back, wrist_z_from_q1);

@@ -26,10 +26,11 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
     offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-    offset_a6, product_in_lost_digits_38 = k.offset_a6, k.product_in_lost_digits_38
-    quotient_in_closed_cos_q3, quotient_in_closed_sin_q3 = k.quotient_in_closed_cos_q3, k.quotient_in_closed_sin_q3
-    rounding_q1, single_a1, single_a2, single_a3 = k.rounding_q1, k.single_a1, k.single_a2, k.single_a3
-    single_a4, single_a5, single_a6 = k.single_a4, k.single_a5, k.single_a6
+    offset_a6, one_by_machine_scale, product_in_away_q2 = k.offset_a6, k.one_by_machine_scale, k.product_in_away_q2
+    product_in_lost_digits_38, quotient_in_closed_cos_q3 = k.product_in_lost_digits_38, k.quotient_in_closed_cos_q3
+    quotient_in_closed_sin_q3, rounding_q1, single_a1 = k.quotient_in_closed_sin_q3, k.rounding_q1, k.single_a1
+    single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
+    single_a6 = k.single_a6
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6))
 
     def branches(
@@ -220,22 +221,104 @@ def unrolled(k: Constants) -> Unrolled:
         # digits may be lost
         if not (not lost_digits_38):
             return ()
-        refusal_left_down = 0 if abs(cos_q3_left_down) <= bound_of_cos_q3 else 3  # q3: out of reach
-        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left) * RADIAN
-        arm_along_q2 = a2 + a3 * cos_q3_left_down
+        arm_along_q2_left_down = a2 + a3 * cos_q3_left_down
         # sine squared, times the squared scale
         sine_square_q3 = one_less_cos_q3_left_down * one_plus_cos_q3_left_down
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
-        arm_across_q2 = a3 * sin_q3
-        angle_of_arm_along_q2_down = arctan2(arm_across_q2, arm_along_q2)
+        sin_q3_left_up_down = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
+        arm_across_q2_left_up_down = a3 * sin_q3_left_up_down
+        away_q2 = (
+            0.0
+            if reach_left_down > product_in_lost_digits_38
+            else abs(
+                arm_across_q2_left_up_down * arm_across_q2_left_up_down
+                + arm_along_q2_left_down * arm_along_q2_left_down
+                - reach_left_down * reach_left_down
+            )
+            * one_by_machine_scale
+            / (product_in_away_q2 + reach_left_down)
+        )
+        within_49 = away_q2 <= 1e-12
+        lost_digits_lengths_49_down = not within_49
+        # digits may be lost
+        if not (not lost_digits_lengths_49_down):
+            return ()
+        arm_along_q2_left_up = a2 + a3 * cos_q3_left_up
+        sine_square_q3 = one_less_cos_q3_left_up * one_plus_cos_q3_left_up  # sine squared, times the squared scale
+        sin_q3_left_up_up = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
+        arm_across_q2_left_up_up = a3 * sin_q3_left_up_up
+        away_q2 = (
+            0.0
+            if reach_left_up > product_in_lost_digits_38
+            else abs(
+                arm_across_q2_left_up_up * arm_across_q2_left_up_up
+                + arm_along_q2_left_up * arm_along_q2_left_up
+                - reach_left_up * reach_left_up
+            )
+            * one_by_machine_scale
+            / (product_in_away_q2 + reach_left_up)
+        )
+        within_49 = away_q2 <= 1e-12
+        lost_digits_lengths_49_up = not within_49
+        # digits may be lost
+        if not (
+            (not lost_digits_lengths_49_up) and (not lost_digits_lengths_49_down) and (not lost_digits_lengths_49_up)
+        ):
+            return ()
+        arm_along_q2_right_down = a2 + a3 * cos_q3_right_down
+        # sine squared, times the squared scale
+        sine_square_q3 = one_less_cos_q3_right_down * one_plus_cos_q3_right_down
+        sin_q3_right_up_down = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
+        arm_across_q2_right_up_down = a3 * sin_q3_right_up_down
+        away_q2 = (
+            0.0
+            if reach_right_down > product_in_lost_digits_38
+            else abs(
+                arm_across_q2_right_up_down * arm_across_q2_right_up_down
+                + arm_along_q2_right_down * arm_along_q2_right_down
+                - reach_right_down * reach_right_down
+            )
+            * one_by_machine_scale
+            / (product_in_away_q2 + reach_right_down)
+        )
+        within_49 = away_q2 <= 1e-12
+        lost_digits_lengths_49_down = not within_49
+        # digits may be lost
+        if not (not lost_digits_lengths_49_down):
+            return ()
+        arm_along_q2_right_up = a2 + a3 * cos_q3_right_up
+        # sine squared, times the squared scale
+        sine_square_q3 = one_less_cos_q3_right_up * one_plus_cos_q3_right_up
+        sin_q3_right_up_up = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
+        arm_across_q2_right_up_up = a3 * sin_q3_right_up_up
+        away_q2 = (
+            0.0
+            if reach_right_up > product_in_lost_digits_38
+            else abs(
+                arm_across_q2_right_up_up * arm_across_q2_right_up_up
+                + arm_along_q2_right_up * arm_along_q2_right_up
+                - reach_right_up * reach_right_up
+            )
+            * one_by_machine_scale
+            / (product_in_away_q2 + reach_right_up)
+        )
+        within_49 = away_q2 <= 1e-12
+        lost_digits_lengths_49_up = not within_49
+        # digits may be lost
+        if not (
+            (not lost_digits_lengths_49_up) and (not lost_digits_lengths_49_down) and (not lost_digits_lengths_49_up)
+        ):
+            return ()
+        refusal_left_down = 0 if abs(cos_q3_left_down) <= bound_of_cos_q3 else 3  # q3: out of reach
+        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left) * RADIAN
+        angle_of_arm_along_q2_down = arctan2(arm_across_q2_left_up_down, arm_along_q2_left_down)
         angle_of_wrist_x_from_q1_down = arctan2(wrist_z_from_q1_left_down, wrist_x_from_q1_left_down)
         reference_a2 = (ref_a2 - offset_a2) * DEGREE
-        product_in_along_q2_down = arm_along_q2 * wrist_x_from_q1_left_down
-        product_in_along_q2_left_up_down_2 = arm_across_q2 * wrist_z_from_q1_left_down
+        product_in_along_q2_down = arm_along_q2_left_down * wrist_x_from_q1_left_down
+        product_in_along_q2_left_up_down_2 = arm_across_q2_left_up_down * wrist_z_from_q1_left_down
         # rotation by q2 that takes the arm to its target point
         along_q2 = product_in_along_q2_down + product_in_along_q2_left_up_down_2
-        product_in_across_q2_down = arm_across_q2 * wrist_x_from_q1_left_down
-        product_in_across_q2_left_up_down_2 = arm_along_q2 * wrist_z_from_q1_left_down
+        product_in_across_q2_down = arm_across_q2_left_up_down * wrist_x_from_q1_left_down
+        product_in_across_q2_left_up_down_2 = arm_along_q2_left_down * wrist_z_from_q1_left_down
         across_q2 = product_in_across_q2_left_up_down_2 - product_in_across_q2_down
         angle_q2_left_up_down = (
             angle_of_wrist_x_from_q1_down - angle_of_arm_along_q2_down
@@ -243,7 +326,7 @@ def unrolled(k: Constants) -> Unrolled:
             and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
             else reference_a2
         )
-        angle_q3_down = arctan2(sin_q3, cos_q3_left_down)
+        angle_q3_down = arctan2(sin_q3_left_up_down, cos_q3_left_down)
         quotient_in_axis_a3_left_up_down = angle_q3_down * RADIAN
         angle_with_q4_down = arctan2(r31_from_q1_before_q56_left_down, r33_from_q1_before_q6_left_down)
         # q4 from the sum q234 of angles about parallel axes
@@ -252,25 +335,21 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a5_left_down = offset_a5 + quotient_in_axis_a5
         axis_a6_left_down = offset_a6 + arctan2(sin_q6_left_down, cos_q6_left_down) * RADIAN
         refusal_left_up = 0 if abs(cos_q3_left_up) <= bound_of_cos_q3 else 3  # q3: out of reach
-        arm_along_q2 = a2 + a3 * cos_q3_left_up
-        sine_square_q3 = one_less_cos_q3_left_up * one_plus_cos_q3_left_up  # sine squared, times the squared scale
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
-        arm_across_q2 = a3 * sin_q3
-        angle_of_arm_along_q2_up = arctan2(arm_across_q2, arm_along_q2)
+        angle_of_arm_along_q2_up = arctan2(arm_across_q2_left_up_up, arm_along_q2_left_up)
         angle_of_wrist_x_from_q1_up = arctan2(wrist_z_from_q1_left_up, wrist_x_from_q1_left_up)
-        product_in_along_q2_up = arm_along_q2 * wrist_x_from_q1_left_up
-        product_in_along_q2_left_up_up_2 = arm_across_q2 * wrist_z_from_q1_left_up
+        product_in_along_q2_up = arm_along_q2_left_up * wrist_x_from_q1_left_up
+        product_in_along_q2_left_up_up_2 = arm_across_q2_left_up_up * wrist_z_from_q1_left_up
         # rotation by q2 that takes the arm to its target point
         along_q2 = product_in_along_q2_left_up_up_2 + product_in_along_q2_up
-        product_in_across_q2_up = arm_across_q2 * wrist_x_from_q1_left_up
-        product_in_across_q2_left_up_up_2 = arm_along_q2 * wrist_z_from_q1_left_up
+        product_in_across_q2_up = arm_across_q2_left_up_up * wrist_x_from_q1_left_up
+        product_in_across_q2_left_up_up_2 = arm_along_q2_left_up * wrist_z_from_q1_left_up
         across_q2 = product_in_across_q2_left_up_up_2 - product_in_across_q2_up
         angle_q2_left_up_up = (
             angle_of_wrist_x_from_q1_up - angle_of_arm_along_q2_up
             if (reach_left_up > machine_scale_times_free_angle) and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
             else reference_a2
         )
-        angle_q3_up = arctan2(sin_q3, cos_q3_left_up)
+        angle_q3_up = arctan2(sin_q3_left_up_up, cos_q3_left_up)
         quotient_in_axis_a3_left_up_up = angle_q3_up * RADIAN
         if radius_q6_left > 2e-12:
             angle_with_q4_up = 180.0 * DEGREE + angle_with_q4_down
@@ -304,19 +383,14 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_left_down_up) * RADIAN
         refusal_right_down = 0 if abs(cos_q3_right_down) <= bound_of_cos_q3 else 3  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right) * RADIAN
-        arm_along_q2 = a2 + a3 * cos_q3_right_down
-        # sine squared, times the squared scale
-        sine_square_q3 = one_less_cos_q3_right_down * one_plus_cos_q3_right_down
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
-        arm_across_q2 = a3 * sin_q3
-        angle_of_arm_along_q2_down = arctan2(arm_across_q2, arm_along_q2)
+        angle_of_arm_along_q2_down = arctan2(arm_across_q2_right_up_down, arm_along_q2_right_down)
         angle_of_wrist_x_from_q1_down = arctan2(wrist_z_from_q1_right_down, wrist_x_from_q1_right_down)
-        product_in_along_q2_down = arm_along_q2 * wrist_x_from_q1_right_down
-        product_in_along_q2_right_up_down_2 = arm_across_q2 * wrist_z_from_q1_right_down
+        product_in_along_q2_down = arm_along_q2_right_down * wrist_x_from_q1_right_down
+        product_in_along_q2_right_up_down_2 = arm_across_q2_right_up_down * wrist_z_from_q1_right_down
         # rotation by q2 that takes the arm to its target point
         along_q2 = product_in_along_q2_down + product_in_along_q2_right_up_down_2
-        product_in_across_q2_down = arm_across_q2 * wrist_x_from_q1_right_down
-        product_in_across_q2_right_up_down_2 = arm_along_q2 * wrist_z_from_q1_right_down
+        product_in_across_q2_down = arm_across_q2_right_up_down * wrist_x_from_q1_right_down
+        product_in_across_q2_right_up_down_2 = arm_along_q2_right_down * wrist_z_from_q1_right_down
         across_q2 = product_in_across_q2_right_up_down_2 - product_in_across_q2_down
         angle_q2_right_up_down = (
             angle_of_wrist_x_from_q1_down - angle_of_arm_along_q2_down
@@ -324,7 +398,7 @@ def unrolled(k: Constants) -> Unrolled:
             and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
             else reference_a2
         )
-        angle_q3_down = arctan2(sin_q3, cos_q3_right_down)
+        angle_q3_down = arctan2(sin_q3_right_up_down, cos_q3_right_down)
         quotient_in_axis_a3_right_up_down = angle_q3_down * RADIAN
         angle_with_q4_down = arctan2(r31_from_q1_before_q56_right_down, r33_from_q1_before_q6_right_down)
         # q4 from the sum q234 of angles about parallel axes
@@ -333,26 +407,21 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a5_right_down = offset_a5 + quotient_in_axis_a5
         axis_a6_right_down = offset_a6 + arctan2(sin_q6_right_down, cos_q6_right_down) * RADIAN
         refusal_right_up = 0 if abs(cos_q3_right_up) <= bound_of_cos_q3 else 3  # q3: out of reach
-        arm_along_q2 = a2 + a3 * cos_q3_right_up
-        # sine squared, times the squared scale
-        sine_square_q3 = one_less_cos_q3_right_up * one_plus_cos_q3_right_up
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
-        arm_across_q2 = a3 * sin_q3
-        angle_of_arm_along_q2_up = arctan2(arm_across_q2, arm_along_q2)
+        angle_of_arm_along_q2_up = arctan2(arm_across_q2_right_up_up, arm_along_q2_right_up)
         angle_of_wrist_x_from_q1_up = arctan2(wrist_z_from_q1_right_up, wrist_x_from_q1_right_up)
-        product_in_along_q2_up = arm_along_q2 * wrist_x_from_q1_right_up
-        product_in_along_q2_right_up_up_2 = arm_across_q2 * wrist_z_from_q1_right_up
+        product_in_along_q2_up = arm_along_q2_right_up * wrist_x_from_q1_right_up
+        product_in_along_q2_right_up_up_2 = arm_across_q2_right_up_up * wrist_z_from_q1_right_up
         # rotation by q2 that takes the arm to its target point
         along_q2 = product_in_along_q2_right_up_up_2 + product_in_along_q2_up
-        product_in_across_q2_up = arm_across_q2 * wrist_x_from_q1_right_up
-        product_in_across_q2_right_up_up_2 = arm_along_q2 * wrist_z_from_q1_right_up
+        product_in_across_q2_up = arm_across_q2_right_up_up * wrist_x_from_q1_right_up
+        product_in_across_q2_right_up_up_2 = arm_along_q2_right_up * wrist_z_from_q1_right_up
         across_q2 = product_in_across_q2_right_up_up_2 - product_in_across_q2_up
         angle_q2_right_up_up = (
             angle_of_wrist_x_from_q1_up - angle_of_arm_along_q2_up
             if (reach_right_up > machine_scale_times_free_angle) and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
             else reference_a2
         )
-        angle_q3_up = arctan2(sin_q3, cos_q3_right_up)
+        angle_q3_up = arctan2(sin_q3_right_up_up, cos_q3_right_up)
         quotient_in_axis_a3_right_up_up = angle_q3_up * RADIAN
         if radius_q6_right > 2e-12:
             angle_with_q4_up = 180.0 * DEGREE + angle_with_q4_down
@@ -534,6 +603,18 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_closed_sin_q3
         arm_across_q2 = a3 * sin_q3
+        away_q2 = (
+            0.0
+            if reach > product_in_lost_digits_38
+            else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            * one_by_machine_scale
+            / (product_in_away_q2 + reach)
+        )
+        within_49 = away_q2 <= 1e-12
+        lost_digits_lengths_49 = not within_49
+        # digits may be lost
+        if not (not lost_digits_lengths_49):
+            return ()
         # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
         across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1

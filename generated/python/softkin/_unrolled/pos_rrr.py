@@ -23,6 +23,7 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_a2, lowest_a3 = k.lowest_a2, k.lowest_a3
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
+    one_by_machine_scale, product_in_away_q2 = k.one_by_machine_scale, k.product_in_away_q2
     product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
     single_a2, single_a3 = k.single_a2, k.single_a3
     angle_in_angle_q3_front_down = arctan2(d4 / effective_q3_2 + 0.0, a3 / effective_q3_2 + 0.0)
@@ -77,6 +78,46 @@ def unrolled(k: Constants) -> Unrolled:
         # digits may be lost
         if not (not lost_digits_19):
             return ()
+        sine_square_q3 = one_less_cos_q3_front * one_plus_cos_q3_front  # sine squared, times the squared scale
+        sin_swing_q3_front_up = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_front
+        arm_along_q2_front_down = effective_q3_2 * sin_swing_q3_front_up
+        arm_across_q2_front = a2 + effective_q3_2 * cos_swing_q3_front
+        away_q2 = (
+            0.0
+            if reach_front > product_in_lost_digits_19
+            else abs(
+                arm_across_q2_front * arm_across_q2_front
+                + arm_along_q2_front_down * arm_along_q2_front_down
+                - reach_front * reach_front
+            )
+            * one_by_machine_scale
+            / (product_in_away_q2 + reach_front)
+        )
+        within_32 = away_q2 <= 1e-12
+        lost_digits_lengths_32 = not within_32
+        # digits may be lost
+        if not ((not lost_digits_lengths_32) and (not lost_digits_lengths_32)):
+            return ()
+        sine_square_q3 = one_less_cos_q3_back * one_plus_cos_q3_back  # sine squared, times the squared scale
+        sin_swing_q3_back_up = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_back
+        arm_along_q2_back_down = effective_q3_2 * sin_swing_q3_back_up
+        arm_across_q2_back = a2 + effective_q3_2 * cos_swing_q3_back
+        away_q2 = (
+            0.0
+            if reach_back > product_in_lost_digits_19
+            else abs(
+                arm_across_q2_back * arm_across_q2_back
+                + arm_along_q2_back_down * arm_along_q2_back_down
+                - reach_back * reach_back
+            )
+            * one_by_machine_scale
+            / (product_in_away_q2 + reach_back)
+        )
+        within_32 = away_q2 <= 1e-12
+        lost_digits_lengths_32 = not within_32
+        # digits may be lost
+        if not ((not lost_digits_lengths_32) and (not lost_digits_lengths_32)):
+            return ()
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3_front <= 1.0000000000005 else 3  # q3: out of reach
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
@@ -96,26 +137,22 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_back = cos_q1_front
             sin_q1_back = sin_q1_front
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front) * RADIAN
-        sine_square_q3 = one_less_cos_q3_front * one_plus_cos_q3_front  # sine squared, times the squared scale
-        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_front
-        arm_along_q2 = effective_q3_2 * sin_swing_q3
-        arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3_front
-        angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+        angle_of_arm_across_q2 = arctan2(arm_along_q2_front_down, arm_across_q2_front)
         angle_of_wrist_z_from_q1 = arctan2(wrist_x_from_q1_front, wrist_z_from_q1)
         reference_a2 = (ref_a2 - offset_a2) * DEGREE
-        product_in_along_q2 = arm_along_q2 * wrist_x_from_q1_front
-        product_in_along_q2_front_down_2 = arm_across_q2 * wrist_z_from_q1
+        product_in_along_q2 = arm_along_q2_front_down * wrist_x_from_q1_front
+        product_in_along_q2_front_down_2 = arm_across_q2_front * wrist_z_from_q1
         # rotation by q2 that takes the arm to its target point
         along_q2 = product_in_along_q2 + product_in_along_q2_front_down_2
-        product_in_across_q2 = arm_across_q2 * wrist_x_from_q1_front
-        product_in_across_q2_front_down_2 = arm_along_q2 * wrist_z_from_q1
+        product_in_across_q2 = arm_across_q2_front * wrist_x_from_q1_front
+        product_in_across_q2_front_down_2 = arm_along_q2_front_down * wrist_z_from_q1
         across_q2 = product_in_across_q2_front_down_2 - product_in_across_q2
         angle_q2_front_down = (
             angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
             if (reach_front > machine_scale_times_free_angle) and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
             else reference_a2
         )
-        angle_of_swing_q3_front_down = -arctan2(sin_swing_q3, cos_swing_q3_front)
+        angle_of_swing_q3_front_down = -arctan2(sin_swing_q3_front_up, cos_swing_q3_front)
         # rotation by q2 that takes the arm to its target point
         along_q2 = product_in_along_q2_front_down_2 - product_in_along_q2
         across_q2 = -product_in_across_q2 - product_in_across_q2_front_down_2
@@ -126,25 +163,21 @@ def unrolled(k: Constants) -> Unrolled:
         )
         refusal_back = 0 if -1.0000000000005 <= cos_swing_q3_back <= 1.0000000000005 else 3  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back) * RADIAN
-        sine_square_q3 = one_less_cos_q3_back * one_plus_cos_q3_back  # sine squared, times the squared scale
-        sin_swing_q3 = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_back
-        arm_along_q2 = effective_q3_2 * sin_swing_q3
-        arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3_back
-        angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+        angle_of_arm_across_q2 = arctan2(arm_along_q2_back_down, arm_across_q2_back)
         angle_of_wrist_z_from_q1 = arctan2(wrist_x_from_q1_back, wrist_z_from_q1)
-        product_in_along_q2 = arm_along_q2 * wrist_x_from_q1_back
-        arm_across_q2_back_times_wrist_z_from_q1 = arm_across_q2 * wrist_z_from_q1
+        product_in_along_q2 = arm_along_q2_back_down * wrist_x_from_q1_back
+        arm_across_q2_back_times_wrist_z_from_q1 = arm_across_q2_back * wrist_z_from_q1
         # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2_back_times_wrist_z_from_q1 + product_in_along_q2
-        product_in_across_q2 = arm_across_q2 * wrist_x_from_q1_back
-        product_in_across_q2_back_down_2 = arm_along_q2 * wrist_z_from_q1
+        product_in_across_q2 = arm_across_q2_back * wrist_x_from_q1_back
+        product_in_across_q2_back_down_2 = arm_along_q2_back_down * wrist_z_from_q1
         across_q2 = product_in_across_q2_back_down_2 - product_in_across_q2
         angle_q2_back_down = (
             angle_of_arm_across_q2 - angle_of_wrist_z_from_q1
             if (reach_back > machine_scale_times_free_angle) and (across_q2 * across_q2 + along_q2 * along_q2 > 0.0)
             else reference_a2
         )
-        angle_of_swing_q3_back_down = -arctan2(sin_swing_q3, cos_swing_q3_back)
+        angle_of_swing_q3_back_down = -arctan2(sin_swing_q3_back_up, cos_swing_q3_back)
         # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2_back_times_wrist_z_from_q1 - product_in_along_q2
         across_q2 = -product_in_across_q2 - product_in_across_q2_back_down_2
@@ -216,6 +249,22 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
             return None
+        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
+        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
+        arm_along_q2 = -effective_q3_2 * sin_swing_q3
+        arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
+        away_q2 = (
+            0.0
+            if reach > product_in_lost_digits_19
+            else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
+            * one_by_machine_scale
+            / (product_in_away_q2 + reach)
+        )
+        within_32 = away_q2 <= 1e-12
+        lost_digits_lengths_32 = not within_32
+        # digits may be lost
+        if not (not lost_digits_lengths_32):
+            return ()
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1 * distance_q1
@@ -225,10 +274,6 @@ def unrolled(k: Constants) -> Unrolled:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             cos_q1 = cos(reference_a1)
             sin_q1 = sin(reference_a1)
-        sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
-        sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
-        arm_along_q2 = -effective_q3_2 * sin_swing_q3
-        arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
         # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1
         across_q2 = arm_along_q2 * wrist_z_from_q1 - arm_across_q2 * wrist_x_from_q1
