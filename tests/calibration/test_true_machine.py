@@ -63,6 +63,28 @@ def test_forward_is_the_chain_and_inverse_meets_it(name: str) -> None:
     assert not lost(machine.true, poses)
 
 
+@pytest.mark.parametrize("unit", (1.0, 1e-3))
+def test_every_axis_stays_on_its_turn(unit: float) -> None:
+    """A range of one turn for every axis, far references, millimetres and metres, and poses beside singular ones: the
+    true machine may have a joint on the other side of 180 degrees than the nominal one.
+    """
+    rng = np.random.default_rng(3)
+    lengths = {name: value * unit for name, value in KR6_R900.items()}
+    robot = softkin.ArticulatedRobot6DOF(**lengths, limits={f"A{i}": (-180.0, 180.0) for i in range(1, 7)})
+    sizes = {"tilt": 0.2, "offset": 0.2, "shift": 3.0 * unit}
+    drawn = {n: rng.uniform(-s, s) for n in robot.deviations for word, s in sizes.items() if word in n}
+    true = robot.calibrated(drawn)
+    for number in range(150):
+        axes = rng.uniform(-179.0, 179.0, 6)
+        if number % 3 == 0:
+            axes[rng.integers(6)] = rng.choice((-90.0, 0.0, 90.0)) + 10.0 ** -rng.integers(1, 12)
+        frame, configuration = true.forward(tuple(axes))
+        for reference in ((0.0,) * 6, (900.0, -700.0, 0.0, 0.0, 0.0, 400.0)):
+            back = true.forward(true.inverse(frame, configuration, reference))[0]
+            assert np.abs(np.subtract(back.position, frame.position)).max() < EXACT * 1000.0 * unit
+            assert np.abs(np.subtract(back.rotation, frame.rotation)).max() < EXACT
+
+
 @pytest.mark.parametrize("name", ["Kin_ArticulatedRobot_6DOF", "Softkin_HeadTable_BC", "Kin_Scara4_ZCcoupled_Type1"])
 def test_the_jacobian_is_the_derivative(name: str) -> None:
     """By differences of the chain."""

@@ -105,6 +105,10 @@ class Meeting:
             return found
         if any(turns) or self._far(found.axes, reference) or self.machine._beyond_limits(found.axes):
             found = self._on_turns(found, target, signs, turns, reference)
+            shifted = self._shifted(found.axes, turns, reference)
+            is_other = any(n and n != own for n, own in zip(turns, self.machine._periods(found.axes), strict=True))
+            if is_other or self.machine._beyond_limits(found.axes) and not self.machine._beyond_limits(shifted):
+                found = found._replace(axes=shifted)
         return found.axes if len(self.fixed) == 3 else self._in_plane(found, target)
 
     def _on_turns(self, found: At, target: Placed, signs: Signs, turns: Turns, reference: Reals) -> At:
@@ -116,6 +120,17 @@ class Meeting:
             return found
         again = self._stepped(self._at(axes, target), target)
         return again if self._is_met(again, signs) else found
+
+    def _shifted(self, axes: Reals, turns: Turns, reference: Reals) -> Reals:
+        """The axes after whole turns of their joints: on the turns that are named, else next to the reference. Next to
+        a singular pose the nominal machine, asked for its own frame, may have other joints, and not tell the turns.
+        """
+        found = list(axes)
+        for i, number, size in zip(self.machine.PERIOD_AXES, turns, self.machine._turn_sizes(), strict=True):
+            turn = 360.0 / (size * self.machine._gains[i])
+            wanted = 360.0 * (number - 1 if number > 0 else number) / size if number else reference[i]
+            found[i] += turn * round((wanted - found[i]) / turn) if reasonable(wanted) else 0.0
+        return tuple(found)
 
     def _far(self, axes: Reals, others: Reals) -> bool:
         """Whether axes are so far from others that they may be on another turn."""
