@@ -3,7 +3,8 @@
  * A machine as an FMU of FMI 3.0, for Co-Simulation and Model Exchange: its outputs are functions of its inputs, and
  * there are no states. Whatever is read is computed when it is read first after an input has changed.
  *
- * The only allocations are in fmi3Instantiate…, and in fmi3GetFMUState where the caller has no state yet.
+ * The only allocations are in fmi3Instantiate…, and in fmi3GetFMUState and fmi3DeserializeFMUState where the caller has
+ * no state yet.
  */
 
 #include "softkin_fmu.h"
@@ -27,9 +28,9 @@ static const softkin_mechanism *const kind = SOFTKIN_FMU_MECHANISM;
 
 /* What fmi3GetFMUState keeps: all that an instance has, without what it computes of it. */
 typedef struct {
-  bool is_running; /* behind the initialization: parameters are fixed */
-  bool is_made;    /* the machine has the present parameters */
-  bool is_stale;   /* an input has changed since the outputs were computed */
+  uint8_t is_running; /* behind the initialization: parameters are fixed */
+  uint8_t is_made;    /* the machine has the present parameters */
+  uint8_t is_stale;   /* an input has changed since the outputs were computed */
 } flags;
 
 typedef struct {
@@ -145,6 +146,11 @@ static void find_pose(fmu *m, softkin_refusal *why) {
   }
 }
 
+/* A byte of a configuration: a state that was damaged may hold any number. */
+static int8_t byte_of(double value) {
+  return value >= -128.0 && value <= 127.0 ? (int8_t)value : 0;
+}
+
 static void find_solution(fmu *m, softkin_refusal *why) {
   softkin_frame frame;
   int8_t bytes[SOFTKIN_MOST_BRANCHES + SOFTKIN_MOST_AXES];
@@ -152,7 +158,7 @@ static void find_solution(fmu *m, softkin_refusal *why) {
   memcpy(frame.position, target, sizeof frame.position);
   memcpy(frame.rotation, target + 3, sizeof frame.rotation);
   for (size_t i = 0; i < size_of(CONFIGURATION); i += 1) {
-    bytes[i] = (int8_t)m->values[m->starts[CONFIGURATION] + i];
+    bytes[i] = byte_of(m->values[m->starts[CONFIGURATION] + i]);
   }
   const double *reference = m->values + m->starts[REFERENCE];
   double *axes = m->values + m->starts[SOLUTION];
