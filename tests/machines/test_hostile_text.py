@@ -17,6 +17,7 @@ from derive.description.errors import DescriptionError
 from derive.description.mechanism import Mechanism
 from derive.description.validate import validate
 from derive.emit.c.printer import text as c_text
+from derive.emit.fmu import package as fmu
 from derive.emit.language import markdown
 from derive.emit.page.page import index_of, page_of
 from derive.emit.softmotion.description import literal
@@ -226,6 +227,18 @@ def with_text(one: Any, path: tuple[Any, ...], text: str) -> Any:
     if isinstance(one, tuple):
         return (*one[:head], with_text(one[head], tuple(rest), text), *one[head + 1 :])
     return replace(one, **{head: with_text(getattr(one, head), tuple(rest), text)})
+
+
+@EVERY
+def test_fmu(name: str) -> None:
+    """The same elements; the description of the FMU holds the texts for people as they are."""
+    parts = [fmu.part(one) for one in pair(name).kinematics]
+    path = next(path for path in parts[0]["files"] if path.endswith("modelDescription.xml"))  # type: ignore[index]
+    odd, usual = (list(ET.fromstring(part["files"][path].encode()).iter()) for part in parts)  # type: ignore[index]
+    assert [one.tag for one in odd] == [one.tag for one in usual]
+    mechanism, found = pair(name).kinematics[0].mechanism, " ".join(one.get("description", "") for one in odd)
+    for text in (mechanism.summary, *(joint.meaning for joint in mechanism.joints)):
+        assert " ".join(text.split()) in " ".join(found.split())
 
 
 @EVERY
