@@ -5,7 +5,7 @@ later step refuses there, this is not final: the branch calls the program of `cl
 near its singularity the refusal is final, and the branch does nothing more.
 
 A step that turns one length to another needs both alike. Where they nearly vanish, the rounding of their squares is
-large beside them: such a step refuses lengths that differ.
+large beside them. Lengths that differ there are always lost digits: the steps on the closure decide.
 """
 
 from __future__ import annotations
@@ -53,8 +53,9 @@ def with_doubts(machine: Machine, statements: Sequence[Statement]) -> tuple[Stat
 
 
 def _with_lengths(machine: Machine, statements: Sequence[Statement]) -> list[Statement]:
-    """The statements, with a refusal behind each step whose two lengths may differ because digits are lost: a step
-    behind a refusal that is not final. Behind one two-root step alone both have the same digits.
+    """The statements, with a condition behind each step whose two lengths may differ because digits are lost: a step
+    behind a refusal that is not final. Behind one two-root step alone both have the same digits. `meeting` leaves the
+    condition to the steps on the closure.
     """
     turned = {sine(c.angle): c for c in machine.inverse.derivation.conditionings if c.missed is not None}
     found: list[Statement] = []
