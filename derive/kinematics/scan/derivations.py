@@ -7,7 +7,7 @@ the root that was found.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -108,30 +108,37 @@ def from_joints(mechanism: Mechanism) -> Program:
 
 def trial_on_branch(both: Scanned) -> Trial:
     """One trial on the wanted branch; SIDE = -1 takes the other solution of its two-root step."""
+    first, solved = _statements(both)
+    return _trial(both, *_sides(both, first, solved), solved)
+
+
+def trial_of_all_signs(both: Scanned) -> Trial:
+    """A trial whose signs are all positive."""
+    first, solved = _statements(both)
+    return _trial(both, tuple(first), {a.sigma: sp.Integer(1) for a in both.trial_branches}, solved)
+
+
+def _statements(both: Scanned) -> tuple[list[Let], tuple[Statement, ...]]:
+    """What a trial knows, and the statements that solve it."""
     mechanism = both.mechanism
     assert mechanism.search is not None
     joint = mechanism.search.joint.symbol
     own = (Let(cosine(joint), sp.cos(TRIED)), Let(sine(joint), sp.sin(TRIED)))
-    solved = with_branch_signs(both.trial.derivation.statements, both.trial_branches)
-    residual = real("residual")
-    left = Let(residual, both.trial.derivation.residuals[0])
     held = (let for j in mechanism.held_joints for let in held_lets(j))
-    first, signs = _sides(both, (*fixed_lets(mechanism), *own, *held, *both.trial.closure.lets), solved)
-    statements = with_goal(named_apart((*first, *solved, left), "tried"))
-    statements = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
-    angles = _turning_fast(both.trial.derivation)
-    joints = {j.symbol: j for j in mechanism.joints}
-    trial = trial_of(statements, real("residual_tried"), [(a, reference_value(joints[a])) for a in angles])
-    return replace(trial, angles=tuple(real(f"{a.name}_tried") for a in angles))
+    known = [*fixed_lets(mechanism), *own, *held, *both.trial.closure.lets]
+    return known, with_branch_signs(both.trial.derivation.statements, both.trial_branches)
 
 
-def _turning_fast(derivation: Derivation) -> list[sp.Symbol]:
-    """The angles that may be free, or turn fast: also those of steps beside a point, which may be near its axis. The
-    angles of a wrist that follows the positions move no residual: one that is free keeps its reference.
-    """
-    angles = [m.angle for m in derivation.conditionings]
-    angles += [d.step for d in derivation.determinants if d.legs is not None and d.step not in angles]
-    return [angle for angle in angles if angle not in derivation.wrist]
+def _trial(
+    both: Scanned, first: Sequence[Let], signs: Mapping[sp.Symbol, sp.Expr], solved: Sequence[Statement]
+) -> Trial:
+    derivation = both.trial.derivation
+    left = Let(real("residual"), derivation.residuals[0])
+    short = [m.value for m in derivation.conditionings if m.angle not in derivation.wrist]
+    lengths = [Let(real(f"turning_length_{k}"), value) for k, value in enumerate(short, 1)]
+    statements = with_goal(named_apart((*first, *solved, left, *lengths), "tried"))
+    signed = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
+    return trial_of(signed, real("residual_tried"), [real(f"{let.name.name}_tried") for let in lengths])
 
 
 def _sides(

@@ -1,13 +1,8 @@
-"""Root scan: one joint is tried around the circle, and the others are solved at each trial; a root leaves no residual.
-
-Three programs with the same inputs. `try_joint` computes the residual of the closure at a trial, and its slope (see
-`FindRoot`). `finish_root` computes the joints at a root, improves them by Newton's method on the closure, and tells
-whether they lie on the wanted branch. `find_root` finds the root that is nearest to the reference; `ir/roots` says how.
-"""
+"""A trial, which solves all joints but one, and the steps on the closure from what it gives."""
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -15,18 +10,24 @@ import sympy as sp
 from derive.description.mechanism import Mechanism, Turning
 from derive.equations.axes import reference_value
 from derive.equations.named_pose import named_pose
-from derive.ir.constants import BOUNDARY, DAMPED, IMPROVEMENTS, MET, NEARLY
+from derive.ir.constants import (
+    BOUNDARY,
+    CONVERGED,
+    COST_OF_A_STALL,
+    LEAST_DAMPING,
+    LONGEST_STEP,
+    NEARLY,
+    PASSES,
+    SHARE_OF_DAMPING,
+    STALLED,
+)
 from derive.ir.passes import normalise
-from derive.ir.primitives import Atan2, Root, Select
-from derive.ir.program import FindRoot, Iterate, Let, Output, Program, Solve, Statement, Status, rewritten
+from derive.ir.primitives import Atan2, Root, Select, larger
+from derive.ir.program import Iterate, Let, Output, Program, Solve, Statement, rewritten
 from derive.ir.symbols import (
     COORDINATE_NAMES,
-    FREED,
-    FREED_ANGLE,
-    PLACE,
     ROTATION_ENTRIES,
     SCALE,
-    TRIED,
     cosine,
     count,
     flag,
@@ -34,8 +35,6 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.kinematics.differential import scaled_entries, solved_entries
-from derive.kinematics.scan.guards import conditions_of, least, room_of
-from derive.kinematics.scan.slopes import slope_name, with_slopes
 
 START = real("start")
 LOOKED_FOR = flag("looked_for")
@@ -43,6 +42,8 @@ GOAL = {real(c): real(f"goal_{c}") for c in COORDINATE_NAMES} | {r: real(f"goal_
 """The names of the commanded pose in these programs."""
 AGREEMENT = real("agreement")
 FITS = "fits"
+IS_MET = flag("is_met")
+_SHRINKING = real("shrinking")
 FOUND = flag("found")
 """Whether there is a root on the wanted branch."""
 _ZERO = sp.Integer(0)
@@ -57,69 +58,36 @@ class Trial:
     statements: tuple[Let, ...]
     value: sp.Expr
     """The residual, a number without a unit."""
-    guard: sp.Expr
-    """Negative where the other joints have no solution."""
-    angles: tuple[sp.Symbol, ...]
-    """The angles that may be free, and turn fast near the pose where they are."""
+    lengths: tuple[sp.Symbol, ...]
+    """Each turns an angle, which turns fast where it is short."""
 
 
-def try_program(trial: Trial) -> Program:
-    """The program of a trial: residual and guard with their slopes, and the directions of angles that may turn fast."""
-    value, guard = real("value"), real("guard")
-    left = Let(value, trial.value, "residual of the closure")
-    differentiated = with_slopes([*_roots_named(trial.statements), left, Let(guard, trial.guard)], TRIED)
-    bound = {s.name for s in differentiated if isinstance(s, Let)}
-    slopes = [slope_name(n) if slope_name(n) in bound else _ZERO for n in (value, guard)]
-    outputs = [
-        Output("remainder", value),
-        Output("slope", slopes[0]),
-        Output("room", guard),
-        Output("room_slope", slopes[1]),
-    ]
-    for number, angle in enumerate(trial.angles, 1):
-        outputs += [Output(f"direction_{number}_cos", cosine(angle)), Output(f"direction_{number}_sin", sine(angle))]
-    program = normalise("try_joint", differentiated, outputs)
-    return replace(
-        program, summary="The residual of the closure at a trial, its slope, and the angles that may turn fast"
-    )
+def joints_program(mechanism: Mechanism, trial: Trial) -> Program:
+    """The program that computes the joints at a joint value that was found."""
+    outputs = [Output(begun(j.symbol).name, solved_value(mechanism, j.symbol)) for j in mechanism.solved_joints]
+    program = normalise("joints_at", trial.statements, outputs)
+    return replace(program, summary="The joints with the searched one known")
 
 
-def find_program(
-    mechanism: Mechanism, trial: Program, finish: Program, arguments: Sequence[sp.Symbol], sides: tuple[int, ...] = ()
-) -> Program:
-    """The program that finds the root on the wanted branch that is nearest to the start.
+def begun(joint: sp.Symbol) -> sp.Symbol:
+    """A joint where the steps on the closure begin."""
+    return real(f"begun_{joint.name}")
 
-    sides: those of the candidates that the trial lists; none where it is scanned.
+
+def finish_program(mechanism: Mechanism, wanted: Sequence[sp.Expr], determinant: sp.Symbol) -> Program:
+    """The program that meets the pose from joints nearby, and tells whether it does, and whether these joints fit: no
+    value in `wanted` may be negative.
     """
-    search = mechanism.search
-    assert search is not None
-    names = (FOUND, *(real(o.name) for o in finish.outputs[1:]))
-    note = f"{'roots' if sides else 'root scan'} along {search.joint.name}"
-    is_always = search.where is None
-    wanted = sp.true if is_always else LOOKED_FOR
-    found = FindRoot(trial, finish, START, wanted, names, tuple(arguments), note, sides)
-    program = normalise("find_root", (found,), [Output(n.name, n) for n in names])
-    otherwise = "there is none" if is_always else "the machine needs no scan"
-    return replace(program, summary=f"The joints at the root that is nearest to the start; zeros where {otherwise}")
-
-
-def finish_program(
-    mechanism: Mechanism, trial: Sequence[Statement], wanted: Sequence[sp.Expr], determinant: sp.Symbol
-) -> Program:
-    """The program that computes the joints at a root, and whether they fit: no value in `wanted` may be negative."""
     joints = [j.symbol for j in mechanism.solved_joints]
     held = [Let(j.symbol, reference_value(j)) for j in mechanism.held_joints]
-    solved = {j: solved_value(mechanism, j) for j in joints}
-    error = real("error")
-    conditions = [sp.Le(error, MET), *(sp.Ge(w, -NEARLY) for w in wanted)]
-    loop, jacobian = newton(mechanism, [solved[j] for j in joints])
+    loop, jacobian = steps_on_closure(mechanism, [begun(j) for j in joints])
     last = Solve((), jacobian, (), determinant, "determinant of the Jacobian, positions in characteristic lengths")
-    fits = Let(flag(FITS), sp.And(*conditions))
-    outputs = [Output(FITS, fits.name), *(Output(f"found_{j.symbol.name}", j.symbol) for j in mechanism.joints)]
-    program = normalise("finish_root", (*trial, *held, loop, last, fits), outputs)
-    return replace(
-        program, summary="The joints at a root, improved by Newton's method, and whether they are on the branch"
-    )
+    met = Let(IS_MET, sp.Le(real("error"), CONVERGED))
+    fits = Let(flag(FITS), sp.And(IS_MET, *(sp.Ge(w, -NEARLY) for w in wanted)))
+    outputs = [Output(FITS, fits.name), Output(IS_MET.name, IS_MET)]
+    outputs += [Output(f"joint_{j.symbol.name}", j.symbol) for j in mechanism.joints]
+    program = normalise("finish_root", (*held, loop, last, met, fits), outputs)
+    return replace(program, summary="The joints that meet the pose, and whether they are on the branch")
 
 
 def solved_value(mechanism: Mechanism, joint: sp.Symbol) -> sp.Expr:
@@ -129,12 +97,11 @@ def solved_value(mechanism: Mechanism, joint: sp.Symbol) -> sp.Expr:
     return Atan2(real(f"{sine(joint).name}_tried"), real(f"{cosine(joint).name}_tried"))
 
 
-def newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tuple[sp.Expr, ...]]:
-    """Newton's method on the closure: a step is taken where the next error, about its square, is smaller than this one.
+def steps_on_closure(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tuple[sp.Expr, ...]]:
+    """Steps on the closure, those of damped least squares, J^T (J J^T + d)^-1 e, and the Jacobian where they end.
 
-    The step is that of damped least squares, J^T (J J^T + d^2)^-1 e. Where the machine is singular it leaves an error
-    that only a long step could remove: there a root is known to a few digits, and the long step would lead away from
-    it.
+    The damping d is a share of the error. What does not change the pose does not move. Next to a double root every
+    step leaves a third of the error; steps that leave nearly all of it are soon given up.
     """
     joints = [j.symbol for j in mechanism.solved_joints]
     lengths = {j.symbol for j in mechanism.solved_joints if not j.is_angle}
@@ -144,11 +111,12 @@ def newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tup
     errors = [Let(real(f"error_{k}"), v) for k, v in enumerate(_errors(mechanism), 1)]
     names = [let.name for let in errors]
     steps = tuple(real(f"step_{j.name}") for j in joints)
-    pairs = list(zip(joints, steps, strict=True))
-    error, passes, taken = real("error"), count("passes"), flag("taken")
+    error, before, left, cost = real("error"), real("error_before"), count("passes_left"), count("cost")
     agreement = _agreement(mechanism)
     squares = [*(n**2 for n in names), *(Select(sp.Gt(let.name, 1), _ZERO, sp.Integer(1)) for let in agreement)]
     rates, jacobian = _named_entries(scaled, len(joints))
+    is_last = sp.Or(sp.Gt(2 * error, before), sp.Le(left, 0))
+    is_stalled = sp.Gt(error, STALLED * before)
     body = (
         *composed.statements,
         *pose,
@@ -158,33 +126,24 @@ def newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tup
         *lets,
         *rates,
         *_shortest_step(jacobian, names, steps),
-        *_taken(steps, error, taken),
+        Let(cost, Select(is_stalled, sp.Integer(COST_OF_A_STALL), sp.Integer(1))),
     )
     loop = Iterate(
-        state=(*joints, passes),
-        start=(*start, _ZERO),
+        state=(*joints, before, left),
+        start=(*start, sp.Integer(9), sp.Integer(PASSES)),
         step=tuple(s for s in body if isinstance(s, Let | Solve)),
-        following=(*(j + Select(taken, _way(j, s, lengths), _ZERO) for j, s in pairs), passes + 1),
-        done=sp.Or(sp.Le(error, BOUNDARY / 100), sp.Ge(passes, IMPROVEMENTS), sp.Not(taken)),
-        limit=IMPROVEMENTS + 1,
-        otherwise=Status.UNREACHABLE,
-        note="Newton's method on the closure",
+        following=(*(j + _way(j, s, lengths) for j, s in zip(joints, steps, strict=True)), error, left - cost),
+        done=sp.Or(sp.Le(error, BOUNDARY / 100), sp.And(sp.Le(error, CONVERGED), is_last), sp.Le(left, 0)),
+        limit=PASSES + 1,
+        otherwise=None,
+        note="steps of damped least squares on the closure",
     )
     return loop, tuple(jacobian)
 
 
 def _way(joint: sp.Symbol, step: sp.Symbol, lengths: Container[sp.Symbol]) -> sp.Expr:
-    """The step of a joint: that of a slide is counted in lengths of the machine."""
-    return step * SCALE if joint in lengths else step
-
-
-def _taken(steps: Sequence[sp.Symbol], error: sp.Symbol, taken: sp.Symbol) -> tuple[Let, Let]:
-    """The statements that tell whether a step is taken."""
-    size = real("size")
-    return (
-        Let(size, sp.Add(*[s**2 for s in steps])),
-        Let(taken, sp.Le(size, error), "whether the error becomes smaller"),
-    )
+    """The step of a joint, within bounds: that of a slide is counted in lengths of the machine."""
+    return step * _SHRINKING * (SCALE if joint in lengths else 1)
 
 
 def _named_entries(entries: Sequence[sp.Expr], width: int) -> tuple[list[Let], sp.Matrix]:
@@ -195,18 +154,23 @@ def _named_entries(entries: Sequence[sp.Expr], width: int) -> tuple[list[Let], s
 
 
 def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequence[sp.Symbol]) -> list[Let | Solve]:
-    """The step of damped least squares, J^T (J J^T + d^2)^-1 e."""
+    """The step of damped least squares, J^T (J J^T + d)^-1 e, and what it is multiplied by so that it is not too long."""
     size, product = len(errors), jacobian * jacobian.T
     upper = [(i, j) for i in range(size) for j in range(i, size)]
     names = {(i, j): real(f"product_{i + 1}_{j + 1}") for i, j in upper}
     multipliers = tuple(real(f"multiplier_{k + 1}") for k in range(size))
     matrix = tuple(names[min(i, j), max(i, j)] for i in range(size) for j in range(size))
+    damping, length = real("damping"), real("step_length")
+    is_long = sp.Gt(length, LONGEST_STEP)
     return [
-        *(Let(names[i, j], product[i, j] + (DAMPED if i == j else 0)) for i, j in upper),
+        Let(damping, larger(SHARE_OF_DAMPING * real("error"), LEAST_DAMPING)),
+        *(Let(names[i, j], product[i, j] + (damping if i == j else 0)) for i, j in upper),
         Solve(
             multipliers, matrix, tuple(errors), None, "damped least squares: the shortest step that cancels the error"
         ),
         *(Let(step, value) for step, value in zip(steps, jacobian.T * sp.Matrix(multipliers), strict=True)),
+        Let(length, Root(sp.Add(*[step**2 for step in steps]))),
+        Let(_SHRINKING, Select(is_long, LONGEST_STEP / Select(is_long, length, sp.Integer(1)), sp.Integer(1))),
     ]
 
 
@@ -232,43 +196,12 @@ def _errors(mechanism: Mechanism) -> list[sp.Expr]:
     return [*places, *((turn[i, j] - turn[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0)))]
 
 
-def trial_of(statements: Sequence[Statement], value: sp.Expr, angles: Sequence[tuple[sp.Symbol, sp.Symbol]]) -> Trial:
-    """A trial from solved statements. angles: those that may be free, each with its value where it is."""
-    rooms, guard = _rooms(conditions_of(statements))
-    found: list[Let] = []
-    choices: dict[sp.Expr, sp.Expr] = {}
-    conditions: dict[sp.Expr, sp.Basic] = {}
-    for number, (angle, reference) in enumerate(angles):
-        chosen = real(f"chosen_{angle.name}")
-        is_freed = sp.Eq(FREED, number)
-        found.append(
-            Let(chosen, Select(is_freed, FREED_ANGLE, reference), f"{angle.name} where the pose leaves it free")
-        )
-        for function in (sp.cos, sp.sin):
-            choices[function(reference)] = function(chosen)
-            conditions[function(reference)] = sp.Ne(FREED, number)
-    for s in statements:
-        if isinstance(s, Let):
-            found.append(replace(s, value=_freed(s.value, choices, conditions)))
-    return Trial((*found, *rooms), value, guard, tuple(a for a, _ in angles))
+def trial_of(statements: Sequence[Statement], value: sp.Expr, lengths: Sequence[sp.Symbol]) -> Trial:
+    """A trial from solved statements."""
+    return Trial(tuple(s for s in statements if isinstance(s, Let)), value, tuple(lengths))
 
 
-def _rooms(conditions: Sequence[sp.Basic]) -> tuple[list[Let], sp.Expr]:
-    """The statements that bind by how much every condition holds, where there are several, and the least of these."""
-    rooms = [room_of(c) for c in conditions]
-    if len(rooms) < 2:
-        return [], rooms[0] if rooms else sp.Integer(1)
-    lets = [Let(real(f"room_{k}"), room) for k, room in enumerate(rooms, 1)]
-    return lets, least([let.name for let in lets])
-
-
-def _freed(value: sp.Expr, choices: dict[sp.Expr, sp.Expr], conditions: dict[sp.Expr, sp.Basic]) -> sp.Expr:
-    if isinstance(value, Select) and value.args[2] in choices:
-        return Select(sp.And(value.args[0], conditions[value.args[2]]), value.args[1], choices[value.args[2]])
-    return value
-
-
-def _roots_named(statements: Sequence[Let]) -> list[Let]:
+def roots_named(statements: Sequence[Let]) -> list[Let]:
     """The statements with every root under a name, so that root and slope are computed once."""
     found: list[Let] = []
     for s in statements:
@@ -277,15 +210,6 @@ def _roots_named(statements: Sequence[Let]) -> list[Let]:
         found += [Let(name, root) for root, name in names.items()]
         found.append(replace(s, value=s.value.xreplace(names)))
     return found
-
-
-def names_of_search(mechanism: Mechanism, trial: Trial) -> Iterator[sp.Symbol]:
-    """The names that the programs of a search bind, or that are their arguments."""
-    yield from (*PLACE, *GOAL.values(), START, LOOKED_FOR, FOUND, flag(FITS))
-    yield from (real(n) for n in ("value", "guard", "remainder", "slope", "room", "room_slope", "error"))
-    yield from (s.name for s in trial.statements)
-    loop, _ = newton(mechanism, [_ZERO] * len(mechanism.solved_joints))
-    yield from (name for s in loop.step for name in s.bound())
 
 
 def with_goal(statements: Sequence[Statement]) -> tuple[Statement, ...]:
