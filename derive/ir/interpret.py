@@ -189,7 +189,7 @@ def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> N
     status[rows] = own if call.refusal is None else [s if s is Status.OK else call.refusal[0] for s in own]
     outputs = {o.name: o.value for o in call.program.outputs}
     for name in call.names:
-        known[name.name] = np.zeros(status.shape, dtype=bool if is_condition(name) else float)
+        known[name.name] = np.zeros(status.shape, _declared(name))
         known[name.name][rows] = evaluate(outputs[name.name], inner) if own.size else 0.0
 
 
@@ -236,7 +236,7 @@ def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]
 
 def _loop(loop: Iterate) -> _Step:
     """Run a loop: rows that are done keep their state and the names of the step, while the others go on."""
-    is_done, names = _evaluator(loop.done), [name.name for name in loop.state]
+    is_done, names, step = _evaluator(loop.done), [name.name for name in loop.state], _step_of(loop)
     starts, followings = (
         [(_evaluator(value), _declared(name)) for name, value in zip(loop.state, values, strict=True)]
         for values in (loop.start, loop.following)
@@ -248,8 +248,9 @@ def _loop(loop: Iterate) -> _Step:
         done = np.zeros(status.shape, dtype=bool)
         counted = _REPEATS.get() or Repeats()
         for _ in range(loop.limit):
-            counted.passes += int(np.sum(~done & (status == Status.OK)))
-            _execute(loop.step, known, status)
+            going = ~done & (status == Status.OK)
+            counted.passes += int(np.sum(going))
+            step(known, status, going)
             done = _broadcast(is_done(known), status.shape)
             if np.all(done | (status != Status.OK)):
                 break
@@ -258,6 +259,26 @@ def _loop(loop: Iterate) -> _Step:
         _require(done, loop.otherwise, status)
 
     return iterate
+
+
+def _step_of(loop: Iterate) -> Callable[[_State, _Statuses, NDArray[np.bool_]], None]:
+    """One pass. If the step runs other programs, they run only in the rows that go on."""
+    if not loop.calls():
+        return lambda known, status, _: _execute(loop.step, known, status)
+    bound = [name for s in loop.step for name in s.bound()]
+    read = {name.name for s in loop.step for name in s.reads().difference(bound, {DEGREE})}
+
+    def one_pass(known: _State, status: _Statuses, going: NDArray[np.bool_]) -> None:
+        inner, own = {name: _broadcast(known[name], status.shape)[going] for name in read}, status[going]
+        for name in bound:
+            known.setdefault(name.name, np.zeros(status.shape, _declared(name)))
+        if own.size:
+            _execute(loop.step, inner, own)
+            status[going] = own
+            for name in bound:
+                known[name.name][going] = inner[name.name]
+
+    return one_pass
 
 
 def _system(system: Solve) -> _Step:
