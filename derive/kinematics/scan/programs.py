@@ -22,7 +22,7 @@ from derive.ir.constants import (
     STALLED,
 )
 from derive.ir.passes import normalise
-from derive.ir.primitives import Atan2, Root, Select, larger
+from derive.ir.primitives import Atan2, Root, Select, Wrap, larger
 from derive.ir.program import Iterate, Let, Output, Program, Solve, Statement, rewritten
 from derive.ir.symbols import (
     COORDINATE_NAMES,
@@ -64,7 +64,8 @@ class Trial:
 
 def joints_program(mechanism: Mechanism, trial: Trial) -> Program:
     """The program that computes the joints at a joint value that was found."""
-    outputs = [Output(begun(j.symbol).name, solved_value(mechanism, j.symbol)) for j in mechanism.solved_joints]
+    solved = [(j, solved_value(mechanism, j.symbol)) for j in mechanism.solved_joints]
+    outputs = [Output(begun(j.symbol).name, Wrap(v) if j.is_angle else v) for j, v in solved]
     program = normalise("joints_at", trial.statements, outputs)
     return replace(program, summary="The joints with the searched one known")
 

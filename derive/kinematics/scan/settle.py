@@ -131,7 +131,7 @@ def _steps(trial: Program, arguments: Sequence[sp.Symbol], start: sp.Symbol) -> 
         Let(size, sp.Abs(real("remainder"))),
         Let(is_less, sp.Lt(size, least)),
         Let(best_now, Select(is_less, place, best)),
-        Let(way_now, Select(is_less, Select(sp.Ne(slope, 0), real("remainder") / Select(sp.Ne(slope, 0), slope, _ONE), _ZERO), way)),
+        Let(way_now, Select(is_less, Select(sp.Gt(sp.Abs(slope), 0), real("remainder") / Select(sp.Gt(sp.Abs(slope), 0), slope, _ONE), _ZERO), way)),
         Let(share_now, Select(is_less, _ONE, share / 4)),
         Let(following, _inside(best_now - share_now * way_now)),
     )
@@ -140,7 +140,7 @@ def _steps(trial: Program, arguments: Sequence[sp.Symbol], start: sp.Symbol) -> 
         start=(start, start, sp.Float("1e30"), _ZERO, _ONE, _ZERO),
         step=step,
         following=(following, best_now, Select(is_less, size, least), way_now, share_now, number + 1),
-        done=sp.Or(sp.Ge(number, NEWTONS), sp.Eq(following, place)),
+        done=sp.Or(sp.Ge(number, NEWTONS), sp.Le(sp.Abs(following - place), 0)),
         limit=NEWTONS + 1,
         otherwise=None,
         note="Newton's method on the residual of the branch",
@@ -186,13 +186,12 @@ def _shortest_program(trial: Program, arguments: Sequence[sp.Symbol]) -> Program
         state=(place, best, least, last, before, bend, number),
         start=(LOW, LOW, sp.Float("1e30"), LOW, _ZERO, _ZERO, _ZERO),
         step=step,
-        following=(following, best_now, Select(is_less, length, least), real("place_now"), growth, bend_now, number + 1),
+        following=(following, best_now, Select(is_less, length, least), last + way, growth, bend_now, number + 1),
         done=sp.Ge(number, GRID + SECANTS),
         limit=GRID + SECANTS + 1,
         otherwise=None,
         note="where the length is shortest",
     )
-    loop = replace(loop, step=(*step, Let(real("place_now"), place)))
     shortest = Select(is_less, length, least)
     aside = Select(sp.Gt(bend_now, 0), _ASIDE * shortest / Root(Select(sp.Gt(bend_now, 0), bend_now, _ONE)), _ZERO)
     program = normalise("find_shortest", (loop,), [Output("shortest_place", best_now), Output("aside", aside)])
