@@ -11,9 +11,10 @@ from dataclasses import dataclass
 from derive.equations.limits import value_of
 from derive.equations.rotation_repair import rotation_program
 from derive.ir.passes import normalise
-from derive.ir.program import FindRoot, Output, Program, reason_expressions
-from derive.ir.symbols import PLACE, branch_sign, symbols_of
+from derive.ir.program import Output, Program, reason_expressions
+from derive.ir.symbols import branch_sign, symbols_of
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.scan.search import FIND_ROOT
 
 Shape = str | tuple["Shape", ...]
 Arrays = tuple[tuple[str, tuple[Shape, ...]], ...]
@@ -67,18 +68,12 @@ def names_in(program: Program) -> set[str]:
     values = [e for s in program.body for e in (*s.children(), *reason_expressions(s))] + [
         o.value for o in program.outputs
     ]
-    given = {g.name for s in searches(program) for p in (s.trial, s.finish) for g in s.given(p)}
-    return {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
+    return {s.name for value in values for s in symbols_of(value)}
 
 
-def searches(program: Program) -> list[FindRoot]:
-    """The searches that a program makes."""
-    return [s for s in program.body if isinstance(s, FindRoot)]
-
-
-def search_of(kin: Kinematics) -> tuple[Program, FindRoot]:
-    """The first search of a machine, and the program that makes it."""
-    return next((program, search) for program in kin.shared for search in searches(program))
+def search_of(kin: Kinematics) -> Program:
+    """The program that finds a root, of a machine whose joint is searched."""
+    return next(program for program in kin.shared if program.name == FIND_ROOT)
 
 
 def axes_of(kin: Kinematics) -> Arrays:

@@ -13,9 +13,10 @@ from typing import Any, Protocol, TypeAlias
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from derive.ir import cells, constants, roots
+from derive.ir import constants
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.scan.search import AHEAD, ELSEWHERE
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 TEMPLATES, RUNTIME = (
@@ -124,17 +125,11 @@ _NUMBERS = {
     )},
     "EXACT": float(constants.EXACT_ROTATION),
     "LARGEST_ERROR": float(constants.ROTATION),
-    "TRIALS": constants.TRIALS,
-    "FINISHED": constants.FINISHED,
+    "ELSEWHERE": float(ELSEWHERE),
+    "AHEAD": float(AHEAD),
 }  # fmt: skip
 """Bounds, tolerances, and bounds of iterations."""
-_OF_THE_SEARCH = {
-    name: (vars(cells) | vars(roots))[name] for name in (
-        *("AHEAD", "ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
-        *("NEXT", "RESERVE", "RIM", "SEAM", "SHIFTS", "TOUCHED", "TURNED", "VANISHING"),
-    )
-}  # fmt: skip
-CONSTANTS: dict[str, float | tuple[float, ...]] = dict(sorted((_NUMBERS | _OF_THE_SEARCH).items()))
+CONSTANTS: dict[str, float | tuple[float, ...]] = dict(sorted(_NUMBERS.items()))
 """The constants by their names in the runtimes."""
 _MEANINGS = {
     Status.OK: "no error",

@@ -11,7 +11,7 @@ import sympy as sp
 
 from derive.emit.braced import Braced, block, indented
 from derive.emit.refusals import Refusals
-from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve
+from derive.ir.program import Call, Iterate, Let, Require, Solve
 from derive.ir.tree import If, Item, grouped
 
 
@@ -43,10 +43,6 @@ class Body(ABC):
         """A call of a shared program."""
 
     @abstractmethod
-    def search(self, search: FindRoot) -> list[str]:
-        """A search for a root."""
-
-    @abstractmethod
     def begin(self, state: Sequence[sp.Symbol], values: Sequence[str]) -> list[str]:
         """The variables of the state of a loop, with their first values."""
 
@@ -68,8 +64,6 @@ class Body(ABC):
                 return self._loop(item)
             case Call():
                 return self.call(item)
-            case FindRoot():
-                return self.search(item)
 
     def _let(self, let: Let) -> list[str]:
         """A variable, or what is assigned to one that is declared."""

@@ -25,13 +25,14 @@ from derive.ir.symbols import (
     HEADING,
     MIN_TYPE2_MARGIN,
     OFFSET,
-    PLACE,
     POSITION,
     REFUSAL,
     ROTATION_ENTRIES,
     SCALE,
+    SIDE,
     START_POSITION,
     START_ROTATION,
+    TRIED,
     cosine,
     real,
     sine,
@@ -48,7 +49,7 @@ _SHARED = frozenset(
     symbol.name
     for symbol in (
         *(ASSEMBLY_SIGN, DETERMINANT, HEADING, SCALE, *POSITION, *ROTATION_ENTRIES, *OFFSET),
-        *(*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS, *PLACE),
+        *(*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS, TRIED, SIDE),
     )
 ) | {"check_limits", "warning_distance", "tie", "searched", "found", CHECK_FORWARD, MIN_TYPE2_MARGIN, REFUSAL}
 """Inputs and outputs of the programs of every mechanism."""

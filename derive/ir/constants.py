@@ -1,5 +1,4 @@
-"""The numerical constants of the product. Each is defined here and nowhere else; the root scan has its own constants
-in `cells` and `roots`."""
+"""The numerical constants of the product. Each is defined here and nowhere else."""
 
 from __future__ import annotations
 
@@ -57,16 +56,9 @@ CONVERGED = sp.Float("1e-11")
 NEARLY = sp.Float("1e-6")
 """A root of a scan counts as on a branch where its scaled margin has the wrong sign by no more than this, which is
 the square root of `BOUNDARY`."""
-TRIALS = 760
-"""The largest number of trials in a root scan."""
-FINISHED = 24
-"""The largest number of roots that a scan examines."""
 MET = sp.Float("1e-10")
 """A root of a scan meets the pose where its error is at most this share of the machine's scale, and at most this
 many radians."""
-DAMPED = sp.Float("1e-12")
-"""The square of the damping in damped least squares: an error that the joints reduce more slowly than the damping, in
-lengths of the machine, is left."""
 DOUBTFUL = sp.Float("1e-2")
 """A step whose margin is at most this may have lost digits that a later step needs; there its angle is set free."""
 NEARLY_FREE = sp.Float("1e-5")
@@ -93,8 +85,6 @@ SHARE_OF_DAMPING = sp.Float("1e-3")
 """The damping of such a step, as a share of the error: it lets the steps end fast where solutions are not isolated."""
 LEAST_DAMPING = sp.Float("1e-13")
 """The least damping of such a step, so that the equations stay solvable."""
-IMPROVEMENTS = 6
-"""The largest number of Newton steps that improve a root of a scan."""
 TIE = sp.Float("1e-6")
 """An automatic choice takes a later branch only where its squared distance (degrees) is smaller by more than this."""
 TIE_SHARE = sp.Float("1e-6")

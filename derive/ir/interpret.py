@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache, partial
 from operator import itemgetter
 
@@ -13,12 +14,10 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.ir.cells import At
 from derive.ir.constants import DEGREE, PIVOT, SOLVABLE
 from derive.ir.primitives import VALUES
-from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, Statement, Status
-from derive.ir.roots import nearest, nearest_listed
-from derive.ir.symbols import PLACE, Flag, is_condition, is_count, is_decided
+from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement, Status
+from derive.ir.symbols import Flag, is_count, is_decided
 from derive.kept import kept_by_identity
 from derive.work import spend_steps
 
@@ -32,12 +31,10 @@ _FEW = 8
 class Repeats:
     """How often the bodies of loops have run, for all rows together."""
 
-    trials: int = 0
-    """Trials of root scans."""
-    finished: int = 0
-    """Roots that the finishing program examined."""
-    passes: int = 0
-    """Passes of iterations."""
+    passes: Counter[str] = field(default_factory=Counter)
+    """Passes of iterations, by their notes."""
+    runs: Counter[str] = field(default_factory=Counter)
+    """Runs of called programs, by their names."""
 
 
 _REPEATS: ContextVar[Repeats | None] = ContextVar("repeats", default=None)
@@ -161,7 +158,7 @@ def _step(statement: Statement) -> _Step:
         return _system(statement)
     if isinstance(statement, Call):
         return partial(_call, statement)
-    return partial(_find, statement) if isinstance(statement, FindRoot) else _loop(statement)
+    return _loop(statement)
 
 
 def _let(let: Let) -> _Step:
@@ -183,6 +180,8 @@ def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> N
     """Run a shared program in rows where it is wanted and nothing has refused; a refused row has its status."""
     wanted = _broadcast(evaluate(call.wanted, known), status.shape) & (status == Status.OK)
     rows, own = (wanted, status[wanted]) if call.is_conditional else (..., status)
+    counted = _REPEATS.get() or Repeats()
+    counted.runs[call.program.name] += own.size
     given = {s.name: known[s.name] for s in call.constants} | {n.name: evaluate(v, known) for n, v in call.given}
     inner = {name: _broadcast(value, status.shape)[rows] for name, value in given.items()}
     _execute(call.program.body if own.size else (), inner, own)
@@ -191,47 +190,6 @@ def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> N
     for name in call.names:
         known[name.name] = np.zeros(status.shape, _declared(name))
         known[name.name][rows] = evaluate(outputs[name.name], inner) if own.size else 0.0
-
-
-def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]) -> None:
-    """Find roots, only in rows where they are wanted and no statement has refused yet."""
-    shape = status.shape
-    looked = np.broadcast_to(evaluate(search.wanted, known), shape) & (status == Status.OK)
-    rows = {k: np.broadcast_to(v, shape)[looked] for k, v in known.items()}
-    places = [s.name for s in PLACE]
-    read = {p.name: [s.name for s in p.inputs if s.name not in places] for p in (search.trial, search.finish)}
-    counted = _REPEATS.get() or Repeats()
-
-    def at(program: Program, place: At) -> list[Array]:
-        if not len(place.rows):
-            return [np.zeros(0, dtype=bool if is_condition(o.value) else float) for o in program.outputs]
-        there = {name: rows[name][place.rows] for name in read[program.name]}
-        outputs, _ = run(program, there | dict(zip(places, place[1:], strict=True)))
-        return [np.broadcast_to(outputs[o.name], place.joint.shape) for o in program.outputs]
-
-    def tried(place: At) -> Array:
-        counted.trials += len(place.rows)
-        return np.stack(at(search.trial, place), axis=1)
-
-    def finished(place: At) -> tuple[NDArray[np.bool_], Array]:
-        counted.finished += len(place.rows)
-        fits, *values = at(search.finish, place)
-        return np.asarray(fits, dtype=bool), np.stack(values, axis=1)
-
-    def listed() -> list[tuple[Array, NDArray[np.bool_], int]]:
-        counted.trials += len(start)
-        outputs, _ = run(search.trial, {name: rows[name] for name in read[search.trial.name]})
-        joints, offered = ([np.broadcast_to(v, start.shape) for v in [*outputs.values()][k::2]] for k in (0, 1))
-        return [(j, o.astype(np.bool_), s) for j, o, s in zip(joints, offered, search.sides, strict=True)]
-
-    start = np.broadcast_to(evaluate(search.start, known), shape)[looked]
-    if search.is_listed:
-        found, values = nearest_listed(listed(), finished, start)
-    else:
-        found, values = nearest(tried, finished, start)
-    for name, column in zip(search.names, (found, *values.T), strict=True):
-        known[name.name] = np.zeros(shape, dtype=column.dtype)
-        known[name.name][looked] = column
 
 
 def _loop(loop: Iterate) -> _Step:
@@ -249,7 +207,7 @@ def _loop(loop: Iterate) -> _Step:
         counted = _REPEATS.get() or Repeats()
         for _ in range(loop.limit):
             going = ~done & (status == Status.OK)
-            counted.passes += int(np.sum(going))
+            counted.passes[loop.note] += int(np.sum(going))
             step(known, status, going)
             done = _broadcast(is_done(known), status.shape)
             if np.all(done | (status != Status.OK)):

@@ -23,7 +23,7 @@ from sympy.logic.boolalg import Boolean
 
 from derive.ir.reason import Reason
 from derive.ir.statement import Common
-from derive.ir.symbols import PLACE, is_decided, names_in
+from derive.ir.symbols import is_decided, names_in
 
 
 class Status(Enum):
@@ -198,50 +198,7 @@ class Call(Common):
         return super().reads() | set(self.constants)
 
 
-@dataclass(frozen=True)
-class FindRoot(Common):
-    """Bind `names` to true and the outputs of `finish` at the root of `trial` that fits and is nearest to `start` on
-    the circle.
-
-    A trial is a function of `TRIED`, with the two-root step on the wanted side (`SIDE` = 1) or the other (-1), and the
-    angle of the step with the number `FREED` set to `FREED_ANGLE` (-1: no step). Its outputs are the residual with its
-    slope, the guard, which is negative if there is no solution, with its slope, then cosine and sine of every angle
-    that may be free. `finish` has the same arguments; its first output tells whether the root is on the wanted
-    branch. `roots` says how roots are found. If there is none, or `wanted` is false, the names are bound to false
-    and zeros.
-
-    Where candidates for the roots are known in closed form, nothing is tried: `trial` lists them. Its outputs are, for
-    each of `sides`, a joint value, and whether it is a candidate on this side.
-    """
-
-    expression_fields, name_fields, program_fields = ("start", "wanted"), ("names",), ("trial", "finish")
-    is_straight = False
-    trial: Program
-    finish: Program
-    start: sp.Expr
-    wanted: Boolean
-    names: tuple[sp.Symbol, ...]
-    arguments: tuple[sp.Symbol, ...]
-    """The arguments of both programs besides the place; their other inputs are constants of the machine."""
-    note: str = ""
-    sides: tuple[int, ...] = ()
-    """The side of each listed candidate; empty if a trial is scanned."""
-
-    @property
-    def is_listed(self) -> bool:
-        """Whether the trial lists candidates for its roots, and nothing is scanned."""
-        return bool(self.sides)
-
-    def given(self, program: Program) -> tuple[sp.Symbol, ...]:
-        """The arguments of one of the programs, in the order of its inputs."""
-        return tuple(s for s in program.inputs if s in self.arguments or s in PLACE)
-
-    def reads(self) -> set[sp.Symbol]:
-        """The names that it reads, and those that its programs read besides the place."""
-        return super().reads() | {s for p in self.programs() for s in p.inputs}.difference(PLACE)
-
-
-Statement = Let | Require | Solve | Iterate | Call | FindRoot
+Statement = Let | Require | Solve | Iterate | Call
 
 
 @dataclass(frozen=True)

@@ -146,9 +146,8 @@ BASE_AXIS = tuple(real(f"base_axis_{c}") for c in COORDINATE_NAMES)
 START_POSITION = tuple(real(f"start_{c}") for c in COORDINATE_NAMES)
 START_ROTATION = tuple(real(f"start_{r.name}") for r in ROTATION_ENTRIES)
 
-TRIED, SIDE, FREED, FREED_ANGLE = real("tried"), count("side"), count("freed"), real("freed_angle")
-PLACE = (TRIED, SIDE, FREED, FREED_ANGLE)
-"""The arguments that say where a trial is made: see `FindRoot`."""
+TRIED, SIDE = real("tried"), count("side")
+"""Where a trial of a root search is made: the joint value, and the side of a two-root step: 1 the wanted one, -1."""
 
 BOUND_OF = "bound_of_"
 """How the names of bounds begin that allow for the rounding of a machine whose lengths differ much: 1, but for that."""

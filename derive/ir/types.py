@@ -23,7 +23,7 @@ from sympy.core.relational import Relational
 
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import PRIMITIVES, Atan2, NearestOnArc, NearestPeriod, Select, ToReal, Wrap
-from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, Statement
+from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement
 from derive.ir.symbols import Flag, is_count, is_decided, names_in
 
 
@@ -104,8 +104,6 @@ def angles_of(statement: Statement, known: Known) -> dict[sp.Symbol, Type]:
     elif isinstance(statement, Call):
         types = output_types(statement.program)
         found = {name: types[name.name] for name in statement.names}
-    elif isinstance(statement, FindRoot):
-        found = dict(zip(statement.names, output_types(statement.finish).values(), strict=True))
     return {name: kind for name, kind in found.items() if kind in TURNING}
 
 
@@ -138,11 +136,6 @@ def check_statement(statement: Statement, known: Known) -> dict[sp.Symbol, Type]
         types = output_types(statement.program)
         for name in statement.names:
             _check(name, types[name.name], type_of(name, bound))
-    if isinstance(statement, FindRoot):
-        found = list(output_types(statement.finish).values())
-        for name, kind in zip(statement.names, found, strict=True):
-            _check(name, kind, type_of(name, bound))
-        _check(statement.names[0], found[0], Type.BOOL)
     return bound
 
 
@@ -164,8 +157,6 @@ def _wanted(statement: Statement) -> Iterator[tuple[sp.Basic, Type]]:
     elif isinstance(statement, Call):
         yield from ((value, type_of(name)) for name, value in statement.given)
         yield statement.wanted, Type.BOOL
-    elif isinstance(statement, FindRoot):
-        yield from ((statement.start, Type.REAL), (statement.wanted, Type.BOOL))
 
 
 def _check_loop(loop: Iterate, known: Known, inside: Known) -> None:

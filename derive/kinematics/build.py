@@ -15,7 +15,7 @@ from derive.equations.axes import Forward, finite
 from derive.equations.limits import limits_program
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
-from derive.ir.program import Let, Output, Program, Statement
+from derive.ir.program import Let, Output, Program, Statement, shared
 from derive.ir.symbols import OFFSET, real
 from derive.kinematics.branches.assembly import Assembled, assembly_checks, bound_checks, mirror_checks
 from derive.kinematics.branches.assignment import Assignment, assign, margin_lets, with_branch_signs
@@ -32,10 +32,9 @@ from derive.kinematics.margins import samples_anywhere, singularity_program
 from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.refusals.no_pose import near_home
 from derive.kinematics.sampling import sample_machine, with_share
-from derive.kinematics.scan.derivations import Scanned, from_joints, trial_on_branch
-from derive.kinematics.scan.inverse import branch_statements, search_given
+from derive.kinematics.scan.derivations import Scanned, from_joints
+from derive.kinematics.scan.inverse import branch_statements, search_given, search_of
 from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements
-from derive.kinematics.scan.programs import names_of_search
 from derive.kinematics.shared_names import SharedName, refuse_names, refuse_shared_names, with_free_names
 from derive.kinematics.solution import Solved, prepared, solve_machine
 from derive.plate.newton import found_again
@@ -119,7 +118,7 @@ def _scanned(both: Scanned) -> Kinematics:
     and the determinant of the Jacobian is the margin.
     """
     mechanism = both.mechanism
-    refuse_names(mechanism, names_of_search(mechanism, trial_on_branch(both)))
+    refuse_names(mechanism, (name for p in shared([search_of(both)]) for name in p.bound()))
     statements, margins = margin_statements(both)
     determinant, scaled = determinant_margin(both)
     margin = Let(real(f"margin_{DETERMINANT.name}"), scaled)

@@ -9,6 +9,7 @@ an iteration count. Values that `Initialize` has computed do not count.
 from __future__ import annotations
 
 import operator
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
@@ -16,10 +17,10 @@ from functools import cache
 import sympy as sp
 
 from derive.equations.rotation_repair import rotation_program, surely_exact
-from derive.ir.constants import DEGREE, FINISHED, TRIALS
+from derive.ir.constants import DEGREE
 from derive.ir.interpret import Repeats
 from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root
-from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve, Statement
+from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement
 from derive.ir.tree import If, Item
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Called, Case, Kinematics
@@ -109,8 +110,6 @@ _PRIMITIVES: dict[type[sp.Basic], Cost] = {
     NearestOnArc: Cost(additions=5, multiplications=2),
 }
 """The cost of the shared functions of Structured Text."""
-_OF_A_TRIAL = Cost(additions=24, multiplications=24, divisions=3, roots=1)
-"""The largest cost of the scan itself for one trial: the place of the trial, the cells on either side of it."""
 _PERIOD_BYTE = Cost(additions=3, multiplications=1)
 """The number of the turn in which an axis value lies."""
 
@@ -215,10 +214,7 @@ def _statement(statement: Statement, repeats: Repeats | None = None) -> Cost:
         return entries + solve_cost(statement.size, statement.columns)
     if isinstance(statement, Call):
         return _given(statement) + _runs(statement, 1, repeats)
-    if isinstance(statement, FindRoot):
-        tried, looked = _most_of(statement) if repeats is None else (repeats.trials, repeats.finished)
-        return (cost_of(statement.trial) + _OF_A_TRIAL) * tried + cost_of(statement.finish) * looked
-    calls, passes = statement.calls(), statement.limit if repeats is None else repeats.passes
+    calls, passes = statement.calls(), statement.limit if repeats is None else repeats.passes[statement.note]
     one_pass = _total(_given(s) if isinstance(s, Call) else _statement(s) for s in statement.step) + _total(
         map(expression_cost, (statement.done, *statement.following))
     )
@@ -234,19 +230,13 @@ def _runs(call: Call, times: int, repeats: Repeats | None) -> Cost:
     """The cost of all runs of a shared program. Passes that are counted, or bounded by `passes`, are those of all runs
     together.
     """
-    if repeats is None and call.passes is None:
-        return cost_of(call.program) * times
     once = cost_of(call.program, repeats=Repeats())
-    if repeats is None:
-        in_loops = (cost_of(call.program, repeats=Repeats(passes=1)) + once * -1) * (call.passes or 0)
-    else:
-        in_loops = cost_of(call.program, repeats=repeats) + once * -1
-    return once * times + in_loops
-
-
-def _most_of(search: FindRoot) -> tuple[int, int]:
-    """The largest numbers of trials and of roots that are examined."""
-    return (1, len(search.sides)) if search.is_listed else (TRIALS, FINISHED)
+    if repeats is not None:
+        return once * (repeats.runs[call.program.name] - 1) + cost_of(call.program, repeats=repeats)
+    if call.passes is None:
+        return cost_of(call.program) * times
+    each = Repeats(passes=Counter({s.note: 1 for s in call.program.body if isinstance(s, Iterate)}))
+    return once * times + (cost_of(call.program, repeats=each) + once * -1) * call.passes
 
 
 def _product(node: sp.Expr) -> Cost:
@@ -273,9 +263,6 @@ def _bounds(program: Program) -> Iterator[Bound]:
         if isinstance(statement, Iterate):
             yield Bound(program.name, statement.note, statement.limit)
             yield from (bound for call in statement.calls() for bound in _bounds(call.program))
-        elif isinstance(statement, FindRoot):
-            yield from _bounds(statement.trial) if statement.is_listed else ()
-            yield Bound(program.name, statement.note, len(statement.sides) or TRIALS)
         elif isinstance(statement, Call):
             yield from _bounds(statement.program)
 

@@ -14,30 +14,25 @@ from derive.emit.braced import harmless
 from derive.emit.c.description import counts, in_words, inputs, tables
 from derive.emit.c.every_branch import MOST_SLOTS, constants_of_branches, every_branch_lines
 from derive.emit.c.every_branch import NAME as EVERY_BRANCH
-from derive.emit.c.functions import FRAME, Function, functions, rotation_function
+from derive.emit.c.functions import FRAME, function_name, functions, rotation_function
 from derive.emit.c.lanes import constants_of_lanes
-from derive.emit.c.printer import C, comment, laid_out, list_of, member, number, page, text, type_of
+from derive.emit.c.printer import comment, laid_out, list_of, member, number, page, text
 from derive.emit.c.program import (
-    Body,
-    Refusals,
-    arguments_read,
     constants_read,
-    directions_of,
     function_lines,
     function_of,
-    of_search,
     setup,
-    taken,
 )
-from derive.emit.interface import arguments_of, read_by, search_of, searches
+from derive.emit.interface import arguments_of, read_by, search_of
 from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environment, head_of, runtime
-from derive.ir.symbols import symbols_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.scan.programs import START
+from derive.kinematics.scan.search import ONWARD
 from derive.report.reasons import NO_MEANING, reasons_of, reasons_of_rotation
 
 name, title = "c", "C"
-MOST_AXES, MOST_BRANCHES, MOST_DIRECTIONS, MOST_LISTED = 24, 12, 6, 10
+MOST_AXES, MOST_BRANCHES = 24, 12
 bound = f"no C: its calls hold {MOST_AXES} axes and {MOST_BRANCHES} branches"
 _WRITTEN = ("softkin_constants.h", "softkin_rotation.h")
 """The files beside the runtime that hold constants and a program."""
@@ -50,7 +45,7 @@ _TAKEN = frozenset(
 
 
 def part(kinematics: Kinematics) -> Part | None:
-    """Header and source of one mechanism; None if it has more axes, branches or directions than the calls hold."""
+    """Header and source of one mechanism; None if it has more axes or branches than the calls hold."""
     return _written(kinematics) if _fits(kinematics) else None
 
 
@@ -87,12 +82,8 @@ def module_name(mechanism: str) -> str:
 
 
 def _fits(kin: Kinematics) -> bool:
-    found = [search for program in kin.shared for search in searches(program)]
     given = () if kin.search_given is None else kin.search_given.outputs
     sizes = [(len(kin.mechanism.joints), MOST_AXES), (len(kin.branches), MOST_BRANCHES), (len(given), 2 * MOST_AXES)]
-    sizes += [(directions_of(search), MOST_DIRECTIONS) for search in found]
-    sizes += [(len(search.sides), MOST_LISTED) for search in found]
-    sizes += [(len(search.names), MOST_AXES + 1) for search in found]
     return all(size <= most for size, most in sizes)
 
 
@@ -109,8 +100,6 @@ def _templates() -> Environment:
         "no_meaning": NO_MEANING,
         "most_axes": MOST_AXES,
         "most_branches": MOST_BRANCHES,
-        "most_directions": MOST_DIRECTIONS,
-        "most_listed": MOST_LISTED,
         "most_together": MOST_SLOTS,
     }
     return templates
@@ -129,7 +118,7 @@ def _known(kin: Kinematics, module: str) -> dict[str, Any]:
     read |= constants_of_branches(kin) | constants_of_lanes(kin)
     made = setup(kin, module, read, inputs(kin))
     stored = {name: f"k->{member(name)}" for name in made.constants}
-    of_programs = [lines for f in found for lines in _function(kin, f, f"{module}_machine", stored)]
+    of_programs = [function_lines(f, f"{module}_machine", stored, reasons_of(kin)) for f in found]
     further = _further(kin, module, stored)
     more = [lines for _, lines in further.values()]
     programs = {f.key: f.name for f in found if f.key} | {key: function for key, (function, _) in further.items()}
@@ -157,12 +146,6 @@ def _known(kin: Kinematics, module: str) -> dict[str, Any]:
         "is_searched": kin.search_given is not None,
         "needs_reference": _needed(kin),
     }
-
-
-def _function(kin: Kinematics, function: Function, machine: str, stored: dict[str, str]) -> list[list[str]]:
-    """The function of a program, and those through which its searches call others."""
-    before = [lines for search in searches(function.program) for lines in of_search(search)]
-    return [*before, function_lines(function, machine, stored, reasons_of(kin))]
 
 
 def _described(meaning: str, unit: str, words: str, default: float | None) -> str:
@@ -202,7 +185,7 @@ def _further(kin: Kinematics, module: str, stored: dict[str, str]) -> dict[str, 
     if kin.starts:
         found |= _starts(f"{module}_machine", stored)
     if kin.search_given is not None:
-        found["every_root"] = ("find_every_root", _every_root(kin, module, stored))
+        found["every_root"] = ("find_every_root", _every_root(kin))
     if any(joint.is_geared for joint in kin.period_joints):
         sizes = [number(float(j.turns)) if j.turns.is_number else stored[str(j.turns)] for j in kin.period_joints]
         inner = [f"sizes[{i}] = {size};" for i, size in enumerate(sizes)]
@@ -232,19 +215,18 @@ def _starts(machine: str, stored: dict[str, str]) -> dict[str, tuple[str, list[s
     }
 
 
-def _every_root(kin: Kinematics, module: str, stored: dict[str, str]) -> list[str]:
-    """The function that finds all roots of a scan; its arguments are those of the scan itself."""
-    program, search = search_of(kin)
-    body = Body(Refusals(reasons_of(kin), C(stored)))
-    read = {*arguments_read(search), *symbols_of(search.start), *symbols_of(search.wanted)}
-    wanted = {s.name for s in read}
-    own = [(name, f"given[{i}]") for i, name in enumerate(arguments_of(program, kin)) if name in wanted]
-    inner = [
-        f"const {module}_machine *k = machine;",
-        *taken(own, {s.name: type_of(s) for s in program.inputs}),
-        *body.searched(search),
-        f"softkin_every_root(&search, {body.sought(search)}, take, context);",
-    ]
+def _every_root(kin: Kinematics) -> list[str]:
+    """The function that finds all roots of a search; its arguments are those of the search itself."""
+    program = search_of(kin)
+    given = arguments_of(program, kin)
+    places = f"{len(given)}, {given.index(START.name)}, {given.index(ONWARD.name)}, {len(kin.mechanism.joints)}"
     head = "const void *machine, const double *given, softkin_take take, void *context"
+    inner = [
+        f"const softkin_roots of = {{{function_name(program)}_of, machine, given, {places}}};",
+        "softkin_every_root(&of, take, context);",
+    ]
+    call = f"return {function_name(program)}(machine, given, results, why);"
+    asked = "const void *machine, const double *given, double *results, softkin_refusal *why"
+    own = function_of("", f"static softkin_status {function_name(program)}_of({asked})", [call])
     summary = "The joints at every root of the search, the nearest to the reference first."
-    return function_of(summary, f"static void find_every_root({head})", inner)
+    return [*own, "", *function_of(summary, f"static void find_every_root({head})", inner)]

@@ -19,16 +19,13 @@ from derive.emit.interface import names_in, read_by
 from derive.emit.setup import setup_of
 from derive.equations.windows import Window
 from derive.ir.constants import TIE
-from derive.ir.program import Call, FindRoot, Require, Solve, Status
+from derive.ir.program import Call, Require, Solve, Status
 from derive.ir.reason import Unit
-from derive.ir.symbols import PLACE
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import CHECK_LIMITS, TIE_OF_LENGTHS, WARNING_DISTANCE, chooses_by_lengths
 from derive.lowering.passes import structured
 from derive.lowering.scheduling import decided
 from derive.report.reasons import Reasons
-
-_PLACES = {name.name: f"place->{name.name}" for name in PLACE}
 
 
 def function_lines(function: Function, machine: str, constants: Mapping[str, str], reasons: Reasons) -> list[str]:
@@ -138,62 +135,6 @@ class Body(walk.Body):
             *lines,
             *(taken(own, types) if declares else assigned),
         ]
-
-    def search(self, search: FindRoot) -> list[str]:
-        """The search for the nearest root."""
-        root = self.another("root")
-        own = [(name.name, f"{root}[{i}]") for i, name in enumerate(search.names)]
-        return [
-            *comment(search.note),
-            *self.searched(search),
-            f"double {root}[{len(search.names)}];",
-            f"softkin_nearest_root(&search, {self.sought(search)}, {root});",
-            *taken(own, {name.name: type_of(name) for name in search.names}),
-        ]
-
-    def searched(self, search: FindRoot) -> list[str]:
-        """The search as data."""
-        names = ", ".join(f"{function_name(p)}_at" for p in (search.trial, search.finish))
-        sides = [f"const int sides[] = {list_of(map(str, search.sides))};"] if search.is_listed else []
-        listed = f"{'sides' if sides else 'NULL'}, {len(search.sides)}"
-        sizes = f"{directions_of(search)}, {len(search.names)}, {listed}"
-        return [
-            f"const double arguments[] = {list_of(self.printer.name(s) for s in arguments_read(search))};",
-            *sides,
-            f"const softkin_search search = {{k, arguments, {names}, {sizes}}};",
-        ]
-
-    def sought(self, search: FindRoot) -> str:
-        """The start of the scan, and whether the scan is wanted."""
-        return f"{self.printer.print(search.start)}, {self.printer.print(search.wanted)}"
-
-
-def directions_of(search: FindRoot) -> int:
-    """The number of directions of a trial."""
-    return 0 if search.is_listed else (len(search.trial.outputs) - 4) // 2
-
-
-def arguments_read(search: FindRoot) -> list[sp.Symbol]:
-    """The arguments that the trial or the end of a search reads."""
-    given = {s for program in (search.trial, search.finish) for s in search.given(program)}
-    return [name for name in search.arguments if name in given]
-
-
-def of_search(search: FindRoot) -> list[list[str]]:
-    """The functions through which the search calls its trial and its end."""
-    found = []
-    places = _PLACES | {name.name: f"arguments[{i}]" for i, name in enumerate(arguments_read(search))}
-    given = "const void *machine, const double *arguments, const softkin_place *place, double *results"
-    for program in (search.trial, search.finish):
-        name = function_name(program)
-        read = search.given(program)
-        inner = [
-            *([] if {*PLACE} & {*read} else ["(void)place;"]),
-            f"const double given[] = {list_of(places[s.name] for s in read)};",
-            f"return {name}(machine, given, results, NULL);",
-        ]
-        found.append(function_of("", f"static softkin_status {name}_at({given})", inner))
-    return found
 
 
 class Refusals(refusals.Refusals):

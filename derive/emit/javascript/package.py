@@ -17,11 +17,13 @@ from derive.emit.braced import block
 from derive.emit.interface import arguments_of, read_by, search_of
 from derive.emit.javascript.description import description, inputs
 from derive.emit.javascript.functions import functions, rotation_function
-from derive.emit.javascript.printer import PRINTER, RUNTIME, comment, laid_out, list_of, spelled, text
-from derive.emit.javascript.program import function_lines, looked_for, refusals_of, setup_lines
+from derive.emit.javascript.printer import PRINTER, RUNTIME, comment, function_name, laid_out, list_of, text
+from derive.emit.javascript.program import function_lines, refusals_of, setup_lines
 from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environment, head_of, runtime
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
+from derive.kinematics.scan.programs import START
+from derive.kinematics.scan.search import ONWARD
 from derive.report.reasons import reasons_of, reasons_of_rotation
 
 name, title, bound = "javascript", "JavaScript", ""
@@ -146,10 +148,13 @@ def _further(kin: Kinematics) -> tuple[list[list[str]], list[str]]:
 
 
 def _all_joints(kin: Kinematics) -> list[str]:
-    """The function that finds all roots of a scan; its arguments are those of the scan itself."""
-    program, search = search_of(kin)
-    taken = f"const {list_of(map(spelled, arguments_of(program, kin)))} = given;"
-    body = block("function findAllJoints(k, given)", [taken, f"return {looked_for(search, 'everyRoot')};"])
+    """The function that finds all roots of a search; its arguments are those of the search itself."""
+    program = search_of(kin)
+    given = arguments_of(program, kin)
+    places = f"{given.index(START.name)}, {given.index(ONWARD.name)}"
+    body = block(
+        "function findAllJoints(k, given)", [f"return everyRoot({function_name(program.name)}, k, given, {places});"]
+    )
     return ["/** The joints at every root of the search, the nearest to the reference first. */", *body]
 
 

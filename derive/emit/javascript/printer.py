@@ -112,7 +112,7 @@ class JavaScript(Braced):
 
 PRINTER = JavaScript()
 RUNTIME = frozenset(JavaScript.function(KEYS[one]) for one in FUNCTIONS if one is not Select) | {
-    "DEGREE", "RADIAN", "Machine", "Refusal", "Status", "everyRoot", "isReasonable", "nearestRoot", "refuse",
+    "DEGREE", "RADIAN", "Machine", "Refusal", "Status", "everyRoot", "isReasonable", "refuse",
     "solveLinear", "turnInside",
 }  # fmt: skip
 """The names that a module may import from the runtime."""

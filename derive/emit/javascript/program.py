@@ -15,14 +15,12 @@ from derive.emit.javascript.functions import Function
 from derive.emit.javascript.printer import PRINTER, comment, function_name, list_of, spelled, status, text
 from derive.emit.setup import setup_of
 from derive.equations.windows import Window
-from derive.ir.program import Call, FindRoot, Require, Solve, Status
-from derive.ir.symbols import PLACE, is_condition
+from derive.ir.program import Call, Require, Solve, Status
+from derive.ir.symbols import is_condition
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.passes import structured
 from derive.lowering.scheduling import decided
 from derive.report.reasons import Reasons
-
-_PLACE = "({ tried, side, freed, freed_angle }) => "
 
 
 def function_lines(function: Function, refusals: Refusals) -> list[str]:
@@ -86,26 +84,6 @@ class Body(walk.Body):
         tail = [f"{word}{list_of(taken)} = {found};"] if taken else []
         refused = PRINTER.when(f"{found} instanceof Refusal", self.refusals.of_call(call, found))
         return [*comment(call.note), f"const {found} = {value};", *refused, *tail]
-
-    def search(self, search: FindRoot) -> list[str]:
-        """The search for the nearest root."""
-        return [*comment(search.note), f"const {list_of(PRINTER.names(search.names))} = {looked_for(search)};"]
-
-
-def looked_for(search: FindRoot, function: str = "nearestRoot") -> str:
-    """The call of the root scan, whose trials are functions of the place."""
-    programs = [
-        f"{_PLACE}{function_name(p.name)}(k, {list_of(_given(s) for s in search.given(p))})"
-        for p in (search.trial, search.finish)
-    ]
-    values = [PRINTER.print(search.start), PRINTER.print(search.wanted), str(len(search.names))]
-    values += [list_of(map(str, search.sides))] if search.is_listed else []
-    return f"{function}({', '.join([*programs, *values])})"
-
-
-def _given(name: sp.Symbol) -> str:
-    """An argument of a trial: a part of the place, which the search sets, or a value."""
-    return name.name if name in PLACE else PRINTER.name(name)
 
 
 def _matrix(entries: Sequence[sp.Expr], width: int) -> str:

@@ -15,7 +15,6 @@ from derive.emit.braced import harmless
 from derive.emit.c import package as c
 from derive.emit.c.description import in_words, inputs
 from derive.emit.c.printer import C, list_of, member, number, page, text
-from derive.emit.interface import searches
 from derive.emit.language import GENERATED, Part, environment
 from derive.emit.linuxcnc.words import LETTERS, Orientation, Words, flange_of, turn_row, words_of
 from derive.ir.constants import COINCIDENT, LARGEST, TIE
@@ -130,7 +129,7 @@ def _known(kin: Kinematics, words: Words, module: str) -> dict[str, Any]:
         "letters_used": "".join(words.letters),
         "joints": len(kin.mechanism.joints),
         "branches": len(kin.branches),
-        "is_searched": any(searches(program) for program in kin.shared),
+        "is_searched": kin.search_given is not None,
         "starts_forward": kin.starts,
         "parameters": [
             {"pin": text(f"softkin.{pins[p.name]}"), "is_flag": "true" if p.role is Role.FLAG else "false"}

@@ -12,7 +12,7 @@ from derive.emit.page.mathml import WIDTH, MathML, element
 from derive.emit.page.names import Spelling
 from derive.emit.st.shared import method_name
 from derive.ir.primitives import Select
-from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve, Statement
+from derive.ir.program import Call, Iterate, Let, Require, Solve, Statement
 from derive.ir.tree import If, Item
 
 _EQUALS = 10
@@ -78,11 +78,9 @@ class Lines:
             yield from self._linear(item)
         elif isinstance(item, Iterate):
             yield from self._loop(item)
-        elif isinstance(item, Call):
+        else:
             line = self._call(item)
             yield replace(line, note=f"only where a pose would be refused: {line.note}") if item.is_rare else line
-        else:
-            yield from self._search(item)
 
     def _call(self, call: Call) -> Line:
         pairs = [(name, value) for name, value in call.given if name != value]
@@ -144,13 +142,6 @@ class Lines:
         yield Line("where", math=self.math.lines(item.done), note="the end is reached", depth=1)
         following = zip(item.state, item.following, strict=True)
         yield Line("otherwise", math=tuple(line for s, v in following for line in self.math.equation(s, v)), depth=1)
-
-    def _search(self, item: FindRoot) -> Iterator[Line]:
-        arguments = ", ".join(self._spelling(s.name) for s in item.arguments)
-        what = item.note or "search for a root"
-        of = "candidates" if item.is_listed else "trials"
-        note = f"{what}: the root nearest to the value below, of {of} that read {arguments}"
-        yield Line("call", math=(self.math.inline(item.start),), note=note)
 
 
 def steps_by_name(spans: Sequence[tuple[int, Sequence[Statement]]]) -> dict[str, int]:

@@ -15,20 +15,17 @@ from derive.emit.python.program import (
     array_head,
     binding_lines,
     constants_of,
-    has_search,
     step_lines,
     unpacked,
     values_of,
 )
 from derive.ir.primitives import FUNCTIONS, KEYS, NearestPeriod
-from derive.ir.program import Call, FindRoot, Iterate, Let, Require, Solve, Statement
+from derive.ir.program import Call, Iterate, Let, Require, Solve, Statement
 from derive.ir.symbols import START_POSITION, START_ROTATION, Flag, is_count, symbols_of
 from derive.ir.tree import If, Item, Tree, given_to, grouped, read_in
 from derive.kinematics.kinematics import Kinematics
 from derive.lowering.passes import ARRAYS, NOTHING, UNCONVERTED, applied
 
-OF_A_SEARCH = 120_000
-"""The number of values for one row of a root scan, whose trials are computed together: measured."""
 CALLED = frozenset(ArrayPrinter.function(KEYS[one]) for one in FUNCTIONS) | {
     "DEGREE", "advanced", "degrees", "elsewhere", "initial", "opposite", "passed", "reasonable", "require", "run_where",
     "settled", "solve", "sqrt",
@@ -78,8 +75,6 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
             lines += [*array_head(item, printer), *step, *array_end(item, printer)]
         elif isinstance(item, Call):
             lines += calls.array_lines(item, printer)
-        elif isinstance(item, FindRoot):
-            lines += calls.array_search(item, printer)
         elif isinstance(item, Require):
             condition = sp.And(*(r.condition for r in same))
             notes = [line for note in dict.fromkeys(r.comment for r in same) for line in note_lines(note)]
@@ -96,7 +91,7 @@ def values_of_a_row(kin: Kinematics) -> int:
     called = {call.program.name for call in kin.branch.calls() if not call.is_rare}
     programs = [(kin.branch, 1), *((p, 2 ** len(kin.branches) if p.name in called else 1) for p in kin.shared)]
     own = sum(slots * (len(p.inputs) + len(p.bound())) for p, slots in programs)
-    return own + OF_A_SEARCH * any(map(has_search, kin.shared))
+    return own
 
 
 def array_arm_lines(

@@ -3,12 +3,14 @@ the program."""
 
 from __future__ import annotations
 
-import sympy as sp
+from collections.abc import Sequence
 
 from derive.emit.python.layout import note_lines, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
-from derive.ir.program import Call, FindRoot
-from derive.ir.symbols import PLACE, is_condition
+from derive.ir.program import Call, Program
+from derive.ir.symbols import is_condition
+from derive.kinematics.scan.programs import START
+from derive.kinematics.scan.search import ONWARD
 
 FOUND = "found"
 """The result of a shared program: its values or, on plain numbers, the status of its refusal."""
@@ -42,38 +44,10 @@ def _nothing(call: Call) -> str:
     return tuple_of(["False" if is_condition(o.value) else "0.0" for o in call.program.outputs])
 
 
-def scalar_search(search: FindRoot, printer: ScalarPrinter) -> list[str]:
-    """The lines that find the root of a trial on plain numbers."""
-    return _found(search, _looked_for(search, "nearest_root", ("self._", ""), printer))
-
-
-def array_search(search: FindRoot, printer: ScalarPrinter) -> list[str]:
-    """The lines that find the root of a trial on arrays, for the rows that are not refused."""
-    return _found(search, _looked_for(search, "nearest_root", ("self.", "status, "), printer))
-
-
-def every_root(search: FindRoot, printer: ScalarPrinter) -> list[str]:
-    """The lines that find all roots of a trial on plain numbers."""
-    return [f"return {_looked_for(search, 'every_root', ('self._', ''), printer)}"]
-
-
-def _found(search: FindRoot, text: str) -> list[str]:
-    return [*_note(search), f"{FOUND} = {text}", *taken_apart([spelled(n.name) for n in search.names], FOUND)]
-
-
-def _looked_for(search: FindRoot, function: str, spelling: tuple[str, str], printer: ScalarPrinter) -> str:
-    prefix, status = spelling
-    programs = ", ".join(f"{prefix}{p.name}" for p in (search.trial, search.finish))
-    given = ", ".join(tuple_of([_given(s, printer) for s in search.given(p)]) for p in (search.trial, search.finish))
-    values = f"{printer.print(search.start)}, {printer.print(search.wanted)}, {status}{given}, {len(search.names)}"
-    sides = f"({', '.join(map(str, search.sides))},)"
-    scan = "" if status else f", self._array_programs().{search.trial.name}"
-    return f"{function}({programs}, {values}{f', sides={sides}' if search.is_listed else scan})"
-
-
-def _given(name: sp.Symbol, printer: ScalarPrinter) -> str:
-    """An argument of a trial: a value, or the name of a coordinate that the search sets."""
-    return f'"{name.name}"' if name in PLACE else printer.name(name)
+def every_root(program: Program, given: Sequence[str]) -> list[str]:
+    """The lines that find all roots of a search on plain numbers."""
+    places = f"{given.index(START.name)}, {given.index(ONWARD.name)}"
+    return [f"return every_root(self._{program.name}, given, {places})"]
 
 
 def _values(call: Call, printer: ScalarPrinter) -> str:
@@ -92,5 +66,5 @@ def _taken(call: Call, source: str) -> list[str]:
     return taken_apart(targets, source)
 
 
-def _note(call: Call | FindRoot) -> list[str]:
+def _note(call: Call) -> list[str]:
     return note_lines(call.note)

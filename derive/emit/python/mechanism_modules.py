@@ -8,17 +8,18 @@ from typing import Any
 
 from derive.emit import native
 from derive.emit.every_branch import can_be_unrolled, has_doubts, is_unrolled
+from derive.emit.interface import arguments_of, search_of
 from derive.emit.python import entries, setup
 from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in, values_of_a_row
 from derive.emit.python.calls import every_root
 from derive.emit.python.methods import array_methods, methods, rows_of_twist
-from derive.emit.python.printer import ScalarPrinter, primitives_in
-from derive.emit.python.program import Method, constants_of, has_search, scalar_body, unpacked
+from derive.emit.python.printer import primitives_in
+from derive.emit.python.program import Method, constants_of, scalar_body
 from derive.emit.python.refusal import explained
 from derive.emit.python.runtime import templates
 from derive.emit.python.straight_line import Function, Unrolled, is_trusted, trusted_branch, unrolled
 from derive.ir.passes import without_reasons
-from derive.ir.program import FindRoot, Iterate
+from derive.ir.program import Iterate
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 from derive.report.reasons import reasons_of
@@ -90,7 +91,7 @@ def _class_context(kin: Kinematics, arrays: Sequence[Method], straight_line: Unr
         "has_doubts": has_doubts(kin),
         "binds_in_loops": any(isinstance(s, Iterate) and s.otherwise is None for p in kin.shared for s in p.body),
         "margins": tuple(m.name for m in kin.margins),
-        "every_root": _every_root(scalar),
+        "every_root": every_root(search_of(kin), arguments_of(search_of(kin), kin)) if kin.search_given else [],
         "chain": chain,
         "methods": [
             {"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)
@@ -105,7 +106,7 @@ def _called(kin: Kinematics, bodies: Sequence[Sequence[str]], further: Sequence[
     return {
         "primitives": primitives_in((*lines, *further)),
         "of_limits": [n for n in ("beyond", "beyond_turn", "turn_inside") if any(f"{n}(" in line for line in lines)],
-        "searches": any(map(has_search, kin.shared)),
+        "searches": kin.search_given is not None,
     }
 
 
@@ -123,7 +124,7 @@ def _array_context(kin: Kinematics, arrays: Sequence[Method]) -> dict[str, Any]:
         "methods": [
             {"head": head, "summary": m.summary, "body": body} for m, (head, body) in zip(arrays, texts, strict=True)
         ],
-        "searches": any(map(has_search, kin.shared)),
+        "searches": kin.search_given is not None,
     }
 
 
@@ -135,15 +136,6 @@ def _constants_read(kin: Kinematics, programs: Iterable[Method], straight_line: 
     found |= {TIE_OF_LENGTHS.name} if chooses_by_lengths(kin.mechanism) else set()
     search = kin.mechanism.search
     return found | ({"searched"} if search is not None and search.where is not None else set())
-
-
-def _every_root(found: Sequence[Method]) -> list[str]:
-    """The body of the method that finds all roots of a search; empty for a mechanism without a search."""
-    for method in (m for m in found if has_search(m.program)):
-        (search,) = method.program.body
-        assert isinstance(search, FindRoot)
-        return [*unpacked(method), *every_root(search, ScalarPrinter())]
-    return []
 
 
 def _array_programs(kin: Kinematics) -> str:

@@ -25,9 +25,7 @@ _ARRANGED = (
     "setup.py",
     "softkin/__init__.py",
     "softkin/_array_rotation.py",
-    "softkin/_cells.py",
     "softkin/_constants.py",
-    "softkin/_roots.py",
     "softkin/_rotation.py",
 )
 """The files that the compiler writes; all others are the runtime as it stands."""

@@ -19,7 +19,7 @@ TAKEN = _PRIMITIVES | {
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
     "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "no_offsets", "opposite", "holds",
     "reasonable", "p", "machine", "joints", "every", "refused", "base_axis", "flange_axis", "start_position",
-    "start_rotation", "beyond", "beyond_turn", "turn_inside", "every_root", "nearest_root", "find_root",
+    "start_rotation", "beyond", "beyond_turn", "turn_inside", "every_root",
     "find_platform", "finish", "finish_root", "try_joint", "unrolled", "np", "any", "bool", "float", "isinstance",
     "range", "tuple", "max", "min", "super", "zip", "len",
 }  # fmt: skip

@@ -14,7 +14,7 @@ from derive.emit.python.printer import ScalarPrinter, literal, spelled
 from derive.emit.python.refusal import PLAIN, Refusals, conjunction
 from derive.ir.constants import EDGE
 from derive.ir.primitives import NearestPeriod, Select, ToReal
-from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Require, Solve
+from derive.ir.program import Call, Iterate, Let, Program, Require, Solve
 from derive.ir.tree import If, Item, grouped
 from derive.lowering.passes import NOTHING, UNCONVERTED, applied, structured
 from derive.lowering.scheduling import decided
@@ -86,8 +86,6 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
             lines += scalar_end(item, conjunction([item.done]), refusal, printer)
         elif isinstance(item, Call):
             lines += _called(item, refusals, printer)
-        elif isinstance(item, FindRoot):
-            lines += python_calls.scalar_search(item, printer)
         else:
             lines += _item_lines(item, refusals, printer)
     return lines
@@ -125,11 +123,6 @@ def _turn_lines(let: Let, value: NearestPeriod, printer: ScalarPrinter) -> list[
         f"if not {low} <= {away} < {high}:",
         f"    {name} = nearest_period({name}, {centre})",
     ]
-
-
-def has_search(program: Program) -> bool:
-    """Whether a program searches for a root."""
-    return any(isinstance(s, FindRoot) for s in program.body)
 
 
 def binding_lines(statement: Let | Solve, printer: ScalarPrinter) -> list[str]:

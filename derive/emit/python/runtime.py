@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from textwrap import wrap
 
 from jinja2 import Environment
@@ -14,14 +13,13 @@ from derive.description.dimensions import Role
 from derive.emit.interface import rotation_entry
 from derive.emit.language import CONSTANTS, GENERATED, STATUSES, environment
 from derive.emit.python import entries
-from derive.emit.python.arrays import CALLED, OF_A_SEARCH, TYPES, array_body, named_in
+from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
 from derive.emit.python.layout import documented
 from derive.emit.python.methods import ROTATION_ARGUMENT
 from derive.emit.python.printer import ScalarPrinter, literal, primitives_in
 from derive.emit.python.program import Method, scalar_body
 from derive.emit.python.refusal import explained
 from derive.equations.rotation_repair import rotation_program, surely_exact
-from derive.ir import cells, roots
 from derive.ir.passes import without_reasons
 from derive.ir.reason import Why
 from derive.report.reasons import NO_MEANING, OTHER_TURN, reasons_of_rotation
@@ -46,8 +44,6 @@ def templates() -> Environment:
         "version": _VERSION,
         "rotation": rotation_functions(),
         "constants": _constants(),
-        "cells": _after_docstring(Path(cells.__file__).read_text()),
-        "roots": _after_docstring(Path(roots.__file__).read_text()),
         "usual": {role.value: entries.usual(role) for role in Role},
     }
     return found
@@ -56,7 +52,7 @@ def templates() -> Environment:
 def _constants() -> dict[str, str]:
     """The literals of the constants that modules of the runtime import, by their names."""
     texts = {"ABOVE": Why.ABOVE.value, "BELOW": Why.BELOW.value, "NO_MEANING": NO_MEANING, "OTHER_TURN": OTHER_TURN}
-    values = {**CONSTANTS, **texts, "OF_A_SEARCH": OF_A_SEARCH}
+    values = {**CONSTANTS, **texts}
     return {name: _literal(values[name]) for name in sorted(values)}
 
 
@@ -65,12 +61,6 @@ def _literal(value: str | float | tuple[float, ...]) -> str:
     if isinstance(value, tuple):
         return f"({', '.join(map(literal, value))})"
     return entries.literal(value) if isinstance(value, str) else literal(value)
-
-
-def _after_docstring(source: str) -> str:
-    """The text of a module of the compiler without docstring and first import, as a part of the package."""
-    text = source.split("from __future__ import annotations", 1)[1].strip()
-    return text.replace("from derive.ir.cells", "from softkin._cells").replace("import TypeVar", "import Any, TypeVar")
 
 
 def _paragraph(text: str, indent: int = 0) -> str:

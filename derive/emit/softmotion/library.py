@@ -28,7 +28,6 @@ from derive.emit.st.expression import literal
 from derive.emit.st.layout import assigned, beside, case, gathered, quoted
 from derive.emit.st.reserved import refuse_clashes
 from derive.emit.st.rotation import limits_function, rotation_function
-from derive.emit.st.scan import SEARCH
 from derive.ir.constants import COINCIDENT, EDGE, HELD, LARGEST, LEAST, PIVOT, SOLVABLE
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
@@ -170,7 +169,6 @@ def _templates() -> Environment:
         solvable=literal(float(SOLVABLE)),
         smallest=literal(float(1 / SOLVABLE)),
         tolerance=literal(TOLERANCE),
-        search=SEARCH,
         statuses=[status.name for status in Status],
         not_initialized=NOT_INITIALIZED,
         no_meaning=NO_MEANING,

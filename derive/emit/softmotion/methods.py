@@ -20,11 +20,10 @@ from derive.emit.st.names import respelled
 from derive.emit.st.program import Printed, printed
 from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal, Tested
 from derive.emit.st.refused_inputs import OfInputs, conditions_first, pairs_of_limits, without_limits
-from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st.shared import method_name, own_names, signature_of
 from derive.equations.windows import windows
 from derive.ir.constants import LEAST
-from derive.ir.program import FindRoot, Program, shared
+from derive.ir.program import Program, shared
 from derive.ir.symbols import branch_sign
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
@@ -60,8 +59,6 @@ class _Source:
     signature: Signature
     program: Program | None = None
     is_shared: bool = False
-    search: FindRoot | None = None
-    """The search, for the methods that search for a root."""
 
 
 def methods_of(kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> tuple[Method, ...]:
@@ -136,10 +133,8 @@ def _shared(program: Program | None, kinematics: Kinematics, contract: Contract,
     called = shared([program]) if program is not None else ()
     for inner in (p for p in called if p.name not in ready):
         ready.add(inner.name)
-        if (search := search_in(inner)) is not None and not search.is_listed:
-            yield _Source(try_at_signature(search), search=search)
         signature = signature_of(inner, spelled_inputs(kinematics), contract)
-        yield _Source(signature, inner, is_shared=True, search=search)
+        yield _Source(signature, inner, is_shared=True)
 
 
 def _names(block: Block, contract: Contract) -> list[str]:
@@ -176,9 +171,7 @@ def _method(
     context: dict[str, object] = {"block": block, "method": name, "reads_rotation": reads}
     if name == "ReasonOf":
         context["reasons"] = texts(kinematics)
-    if source.search is not None:
-        context |= {"shared": search_text(source.search), "search": SEARCH}
-    elif source.program is not None:
+    if source.program is not None:
         context["program"] = program = _printed(source, source.program, kinematics, block, contract)
         own = own_names(source.program, spelled_inputs(kinematics))
         context["results"] = [(own[o], text) for o, text in program.outputs.items() if o in own and own[o] != text]
@@ -187,9 +180,7 @@ def _method(
             for p in source.signature.parameters
             if p.name in (REASON, MISSING, TURN) and f"{p.name} :=" not in program.body
         ]
-    template = "Shared" if source.is_shared and source.search is None else name
-    if source.search is not None and source.search.is_listed:
-        template = "FindListedRoot"
+    template = "Shared" if source.is_shared else name
     text = templates.get_template(f"methods/{template}.st.j2").render(contract.spelling, **context)
     return Method(source.signature.head(), with_gathered(tidy(text)))
 

@@ -4,8 +4,7 @@ With one joint known the others are solved, and one equation is left: the residu
 commanded point the third coordinate is left; held joints are known anyway. Every rotary joint is tried in turn. The
 positions are solved before the rotation, so their equations may hold no more unknown joints than there are equations
 (one more where three axes are parallel); a joint that violates this is not tried. Of several suitable joints the one
-is taken whose trial has the fewest branches, then the fewest guards, then the fewest operations. Where its residual is
-a conic in cosine and sine of the joint, its roots are known in closed form, and nothing is scanned.
+is taken whose trial has the fewest branches, then the fewest guards, then the fewest operations.
 """
 
 from __future__ import annotations
@@ -19,15 +18,13 @@ from derive.description.mechanism import Joint, Mechanism, Search, Turning, cros
 from derive.equations.closures.commanded import closure_at
 from derive.equations.closures.fixed_names import fixed_lets
 from derive.equations.conditions import with_conditions
-from derive.ir.primitives import ToReal
 from derive.ir.program import Let
-from derive.ir.symbols import SIDE, TRIED, cosine, names_in, sine
+from derive.ir.symbols import cosine, names_in, sine
 from derive.kinematics.branches.derived import with_named_steps
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, solve_at, solve_pose
 from derive.kinematics.refusals.neighbours import fitting_task, what_misses
 from derive.kinematics.scan.guards import guards_of
-from derive.kinematics.scan.quartic import quartic_of
 from derive.kinematics.shared_names import refuse_shared_names
 from derive.solver.solve import MOST_TERMS
 from derive.solver.unsolved import Undetermined, Unsolved, with_advice
@@ -133,27 +130,11 @@ def _note(mechanism: Mechanism, found: _Candidate) -> str:
     """The note about the root scan for users."""
     (last,) = (b for b in mechanism.branches if b.is_crossing)
     joint = found.joint.name
-    if _is_quartic(mechanism, found):
-        first = (
-            f"With {joint} known the other joints are solved, and one equation is left, a conic in cosine and sine of "
-            f"{joint}. The inverse finds its up to four roots in closed form."
-        )
-    else:
-        first = (
-            f"No closed form is known: with {joint} known the other joints are solved, and one equation is left. The "
-            f"inverse looks for its roots along {joint}, all around the circle."
-        )
+    first = (
+        f"No closed form is known: with {joint} known the other joints are solved, and one equation is left. The "
+        f"inverse looks for its roots along {joint}, all around the circle."
+    )
     return (
         f"{first} The byte {last.name} tells whether the residual rises or falls with {joint} at the root; of the "
         f"roots of one branch the answer is the one whose {joint} is nearest to the reference."
     )
-
-
-def _is_quartic(mechanism: Mechanism, found: _Candidate) -> bool:
-    """Whether the roots of the residual are known in closed form."""
-    angle, trial = found.joint.symbol, found.trial
-    own = (Let(cosine(angle), sp.cos(TRIED)), Let(sine(angle), sp.sin(TRIED)))
-    signs = (Let(sign, ToReal(SIDE)) for sign in trial.signs)
-    solved = (s for s in trial.derivation.statements if isinstance(s, Let))
-    statements = (*own, *signs, *fixed_lets(mechanism), *trial.closure.lets, *solved)
-    return quartic_of(statements, trial.derivation.residuals[0]) is not None

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.description.mechanism import Branch, DescriptionError, Mechanism
-from derive.equations.axes import Forward, axis_lets, frozen_lets, held_lets, reference_lets, reference_value
+from derive.equations.axes import Forward, axis_lets, frozen_lets, held_lets, reference_lets
 from derive.equations.closures.fixed_names import fixed_lets
 from derive.geometry.frames import Chain
 from derive.ir.passes import normalise, renamed
@@ -26,7 +26,6 @@ from derive.kinematics.inverse import Inverse, of_angle, solve_at, solve_pose
 from derive.kinematics.scan.guards import conditions_of, guards_of, room_of
 from derive.kinematics.scan.programs import Trial, trial_of, with_goal
 from derive.kinematics.scan.slopes import slope_name, with_slopes
-from derive.solver.solve import Derivation
 from derive.work import stage
 
 SEARCHED = flag("searched")
@@ -143,7 +142,7 @@ def _trial(
 
 def _sides(
     both: Scanned, first: Sequence[Let], solved: Sequence[Statement]
-) -> tuple[tuple[Statement, ...], dict[sp.Symbol, sp.Expr]]:
+) -> tuple[tuple[Let, ...], dict[sp.Symbol, sp.Expr]]:
     """The signs of the steps, by those that are wanted and the side of the trial, and the statements that they read.
 
     The side is that of the step which, with the wanted signs, comes first to the end of its reach.
@@ -162,7 +161,7 @@ def _sides(
         statements.append(Let(is_first, sp.And(*[sp.Le(room * rates[r], r * rates[room]) for r in others])))
         folding = steps[guard.step]
         signs[folding.sigma] = wanted(folding.branch) * Select(_tried(is_first), SIDE, sp.Integer(1))
-    return tuple(statements), signs
+    return tuple(s for s in statements if isinstance(s, Let)), signs
 
 
 def _with_rooms(first: Sequence[Let], solved: Sequence[Statement], rooms: Sequence[sp.Symbol]) -> Iterator[Statement]:

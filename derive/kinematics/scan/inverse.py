@@ -1,7 +1,6 @@
-"""The inverse of a mechanism with a root scan: one program with the closed form and the scan. Where the residual of a
-trial is a conic in cosine and sine of the joint, its roots are listed in closed form in place of a scan.
+"""The inverse of a mechanism with a root search: one program with the closed form and the search.
 
-The conditions of the closed form refuse nothing where a scan is made.
+The conditions of the closed form refuse nothing where a root is searched.
 """
 
 from __future__ import annotations
@@ -16,10 +15,9 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, Select
 from derive.ir.program import Call, Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Why, about_joint, about_machine
-from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, cosine, real, sine
+from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, SIDE, cosine, real, sine
 from derive.kinematics.branches.assignment import with_branch_signs
 from derive.kinematics.inverse import Inverse
-from derive.kinematics.scan.candidates import candidates_program
 from derive.kinematics.scan.derivations import (
     SEARCHED,
     Scanned,
@@ -31,10 +29,11 @@ from derive.kinematics.scan.derivations import (
     wanted,
 )
 from derive.kinematics.scan.margins import DETERMINANT, margins_wanted
-from derive.kinematics.scan.own_side import on_own_side
-from derive.kinematics.scan.position_first import with_position_first
-from derive.kinematics.scan.programs import FOUND, GOAL, LOOKED_FOR, START, find_program, finish_program, try_program
-from derive.kinematics.scan.quartic import quartic_of
+from derive.kinematics.scan.parts import part_program
+from derive.kinematics.scan.programs import FOUND, GOAL, LOOKED_FOR, START, finish_program, joints_program
+from derive.kinematics.scan.search import ONWARD, search_program
+from derive.kinematics.scan.settle import settle_program, try_program
+from derive.kinematics.scan.wave import wave_program
 
 
 def branch_statements(both: Scanned) -> tuple[Statement, ...]:
@@ -73,6 +72,7 @@ def _arguments(both: Scanned, program: Program) -> tuple[tuple[sp.Symbol, sp.Exp
     given |= {START: reference_value(mechanism.search.joint), LOOKED_FOR: SEARCHED}
     given |= {wanted(b): sigma(b) for b in mechanism.branches}
     given |= {reference_value(j): reference_value(j) for j in mechanism.joints}
+    given[ONWARD] = sp.false
     return tuple((name, given[name]) for name in program.inputs if name in given)
 
 
@@ -88,15 +88,16 @@ def search_of(both: Scanned) -> Program:
     """The program that finds the root of a branch, with the programs that it calls."""
     mechanism = both.mechanism
     assert mechanism.search is not None
-    trial = trial_on_branch(both)
     arguments = (*GOAL.values(), *map(wanted, mechanism.branches), *map(reference_value, mechanism.joints))
-    quartic = quartic_of(trial.statements, trial.value)
-    at_root = trial if quartic is None else on_own_side(trial, quartic)
-    finish = finish_program(mechanism, with_position_first(both, at_root), margins_wanted(both), DETERMINANT)
-    if quartic is None:
-        return find_program(mechanism, try_program(trial), finish, arguments)
-    listed, sides = candidates_program(quartic, reference_value(mechanism.search.joint))
-    return find_program(mechanism, listed, finish, arguments, sides)
+    wave, degree = wave_program(both)
+    trial = trial_on_branch(both)
+    tries = try_program(trial)
+    settle = settle_program(tries, (*arguments, SIDE))
+    finish = finish_program(mechanism, margins_wanted(both), DETERMINANT)
+    programs = (wave, part_program(degree), tries, settle, joints_program(mechanism, trial), finish)
+    joints = [j.symbol for j in mechanism.solved_joints], [j.symbol for j in mechanism.joints]
+    is_always = mechanism.search.where is None
+    return search_program(programs, joints, mechanism.search.joint.symbol, arguments, is_always)
 
 
 def _chosen(both: Scanned) -> Iterable[Let]:

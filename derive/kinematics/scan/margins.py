@@ -21,7 +21,7 @@ from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.primitives import Select, ToReal
 from derive.ir.program import Let, Output, Solve, Statement
-from derive.ir.symbols import FREED, FREED_ANGLE, SCALE, SIDE, TRIED, cosine, real, sine
+from derive.ir.symbols import SCALE, SIDE, TRIED, cosine, real, sine
 from derive.ir.verify import BrokenProgram
 from derive.kinematics.branches.assignment import Assignment
 from derive.kinematics.differential import scaled_entries, solved_entries
@@ -174,7 +174,7 @@ def _measured_slope(both: Scanned, samples: dict[str, NDArray[np.float64]]) -> N
     held = mechanism.held_joints
     for j in mechanism.joints:
         known[reference_value(j).name] = values[j.symbol.name] if j in held else np.zeros(_SAMPLES)
-    known |= {SIDE.name: np.ones(_SAMPLES), FREED.name: -np.ones(_SAMPLES), FREED_ANGLE.name: np.zeros(_SAMPLES)}
+    known |= {SIDE.name: np.ones(_SAMPLES)}
     ends = []
     for shift in (1e-6, -1e-6):
         tried = np.radians(samples[joint.axis.name] - samples[joint.offset.name]) + shift

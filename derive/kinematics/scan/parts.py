@@ -18,7 +18,14 @@ from derive.ir.program import Iterate, Let, Output, Program
 from derive.ir.symbols import count, flag, real
 from derive.kinematics.scan.wave import NOISE, names_of, turned
 
-AT, END, LOW, HIGH, IS_PART, STEPS = real("at"), real("end"), real("low"), real("high"), flag("is_part"), count("steps_left")
+AT, END, LOW, HIGH, IS_PART, STEPS = (
+    real("at"),
+    real("end"),
+    real("low"),
+    real("high"),
+    flag("is_part"),
+    count("steps_left"),
+)
 """Where the next part is looked for, up to which angle; the ends of the part, if there is one; the steps that are left."""
 MOST_STEPS = 1000
 """The steps around the circle, at most."""
@@ -103,7 +110,7 @@ def _safe_step() -> Iterator[Let]:
     for name in falls:
         yield Let(name, larger(-sign * real(name.name.removeprefix("falls_")), _ZERO))
     slope, bend, third, fourth = falls
-    length, safe, long = _ONE, _ZERO, _ONE
+    length, safe, long, best = _ONE, _ZERO, _ONE, real("safe_1")
     for k in range(1, 1 + _TRIES):
         curve, divisor, allowed, best = (real(f"{n}_{k}") for n in ("curve", "divisor", "allowed", "safe"))
         yield Let(curve, bend + length * (third + length * (fourth + length * real("bound_of_fifth"))))

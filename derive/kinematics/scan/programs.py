@@ -42,7 +42,7 @@ GOAL = {real(c): real(f"goal_{c}") for c in COORDINATE_NAMES} | {r: real(f"goal_
 """The names of the commanded pose in these programs."""
 AGREEMENT = real("agreement")
 FITS = "fits"
-IS_MET = flag("is_met")
+IS_MET = flag("meets_pose")
 _SHRINKING = real("shrinking")
 FOUND = flag("found")
 """Whether there is a root on the wanted branch."""
@@ -155,7 +155,7 @@ def _named_entries(entries: Sequence[sp.Expr], width: int) -> tuple[list[Let], s
 
 
 def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequence[sp.Symbol]) -> list[Let | Solve]:
-    """The step of damped least squares, J^T (J J^T + d)^-1 e, and what it is multiplied by so that it is not too long."""
+    """The step of damped least squares, J^T (J J^T + d)^-1 e, and a factor that keeps it within bounds."""
     size, product = len(errors), jacobian * jacobian.T
     upper = [(i, j) for i in range(size) for j in range(i, size)]
     names = {(i, j): real(f"product_{i + 1}_{j + 1}") for i, j in upper}

@@ -22,6 +22,8 @@ from derive.kinematics.scan.programs import FITS, FOUND, IS_MET, LOOKED_FOR, STA
 from derive.kinematics.scan.settle import NUMBER, SETTLED, next_number
 from derive.kinematics.scan.wave import BEGIN
 
+FIND_ROOT = "find_root"
+"""The name of the program."""
 ONWARD = flag("onward")
 """Whether the next root ahead of the start is wanted, not the nearest one."""
 AWAY = real("away")
@@ -33,6 +35,8 @@ AHEAD = sp.Float("1e-7")
 symmetric about its start, roots are as far to both sides, and rounding would choose, in every language another one.
 The next root ahead is further away than this.
 """
+ELSEWHERE = sp.Float("2.5")
+"""All roots are found onward from so far ahead of the reference, which may be a root."""
 _TURN = 2 * sp.pi
 _ZERO, _ONE, _FAR = sp.Integer(0), sp.Integer(1), sp.Integer(9)
 
@@ -44,7 +48,7 @@ def search_program(
     arguments: Sequence[sp.Symbol],
     is_always: bool,
 ) -> Program:
-    """The search by its programs: wave, part, trial, settle, joints and finish. joints: those that are solved, and all."""
+    """The search by its programs: wave, part, trial, settle, joints, finish. joints: those that are solved, and all."""
     wave, part, trial, settle, joints_at, finish = programs
     solved, every = joints
     begin, end = real("begin"), real("end_of_circle")
@@ -58,9 +62,7 @@ def search_program(
     first = [begin, begin, begin, *[_ZERO] * (len(state) - 3)]
     start = dict(zip(state, first, strict=True)) | {STEPS_LEFT: sp.Integer(MOST_STEPS), SIDE_NOW: _ONE}
     start |= {STARTS: sp.Integer(MOST_STARTS), NEAREST: _FAR}
-    is_done = sp.Or(
-        sp.Ge(PLACE, end), sp.Le(STARTS, 0), sp.And(ONWARD, sp.Lt(NEAREST, _FAR), sp.Eq(NUMBER_NOW, 0))
-    )
+    is_done = sp.Or(sp.Ge(PLACE, end), sp.Le(STARTS, 0), sp.And(ONWARD, sp.Lt(NEAREST, _FAR), sp.Eq(NUMBER_NOW, 0)))
     loop = Iterate(
         state=tuple(state),
         start=tuple(start[n] for n in state),
@@ -71,19 +73,29 @@ def search_program(
         otherwise=None,
         note="the parts of the circle, and their starts",
     )
-    before = [
+    before: list[Let | Call | Iterate] = [
         replace(waves, wanted=sp.true if is_always else LOOKED_FOR),
         Let(begin, Select(ONWARD, START + AHEAD, BEGIN)),
         Let(end, begin + Select(ONWARD, _TURN - 2 * AHEAD, _TURN)),
     ]
-    outputs = [Output(FOUND.name, sp.Lt(NEAREST, _FAR)), Output(AWAY.name, Select(sp.Lt(NEAREST, _FAR), NEAREST, _ZERO))]
+    outputs = [
+        Output(FOUND.name, sp.Lt(NEAREST, _FAR)),
+        Output(AWAY.name, Select(sp.Lt(NEAREST, _FAR), NEAREST, _ZERO)),
+    ]
     outputs += [Output(f"found_{j.name}", _kept(j)) for j in every]
-    program = normalise("find_root", (*before, loop), outputs)
-    return replace(program, summary="The joints at the root nearest to the start, or next ahead of it; zeros where there is none")
+    program = normalise(FIND_ROOT, (*before, loop), outputs)
+    return replace(
+        program, summary="The joints at the root nearest to the start, or next ahead of it; zeros where there is none"
+    )
 
 
 PLACE, PART_LOW, PART_HIGH = real("place"), real("low_before"), real("high_before")
-NUMBER_NOW, SIDE_NOW, STEPS_LEFT, STARTS = count("start_before"), count("side_before"), count("steps_before"), count("starts_left")
+NUMBER_NOW, SIDE_NOW, STEPS_LEFT, STARTS = (
+    count("start_before"),
+    count("side_before"),
+    count("steps_before"),
+    count("starts_left"),
+)
 NEAREST, MIRRORED = real("nearest"), count("mirrored")
 
 
@@ -95,9 +107,7 @@ def _mirror(joint: sp.Symbol) -> sp.Symbol:
     return real(f"mirror_{joint.name}")
 
 
-def _state(
-    solved: Sequence[sp.Symbol], every: Sequence[sp.Symbol]
-) -> tuple[list[sp.Symbol], dict[sp.Symbol, sp.Expr]]:
+def _state(solved: Sequence[sp.Symbol], every: Sequence[sp.Symbol]) -> tuple[list[sp.Symbol], dict[sp.Symbol, sp.Expr]]:
     """The state of the search, and what follows."""
     goes_on = flag("goes_on")
     following: dict[sp.Symbol, sp.Expr] = {
@@ -183,7 +193,5 @@ def _answer(
     width = real("high_now") - real("low_now")
     follows = next_number(trial, count("number_now"), width)
     yield Let(count("next_side"), Select(mirrors, SIDE_NOW, -SIDE_NOW))
-    yield Let(
-        count("next_start"), Select(sp.Or(mirrors, sp.Not(is_second)), count("number_now"), follows)
-    )
+    yield Let(count("next_start"), Select(sp.Or(mirrors, sp.Not(is_second)), count("number_now"), follows))
     yield Let(flag("goes_on"), sp.And(has_part, sp.Gt(count("next_start"), 0)))

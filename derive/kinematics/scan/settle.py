@@ -51,10 +51,10 @@ def points_of(width: sp.Expr) -> sp.Expr:
 def next_number(trial: Program, number: sp.Expr, width: sp.Expr) -> sp.Expr:
     """The number of the next start in a part, 0 where there is none."""
     lengths = lengths_of(trial)
-    last, points = POINTS + BESIDE * lengths, points_of(width)
-    has_lengths = sp.Gt(width, _NARROW) if lengths else sp.false
-    behind = Select(has_lengths, sp.Integer(POINTS + 1), _ZERO) if lengths else _ZERO
-    return Select(sp.Lt(number, points), number + 1, Select(sp.Le(number, POINTS), behind, Select(sp.Lt(number, last), number + 1, _ZERO)))
+    last = POINTS + BESIDE * lengths
+    behind: sp.Expr = Select(sp.Gt(width, _NARROW), sp.Integer(POINTS + 1), _ZERO) if lengths else _ZERO
+    at_lengths = Select(sp.Le(number, POINTS), behind, Select(sp.Lt(number, last), number + 1, _ZERO))
+    return Select(sp.Lt(number, points_of(width)), number + 1, at_lengths)
 
 
 def lengths_of(trial: Program) -> int:
@@ -75,7 +75,9 @@ def try_program(trial: Trial) -> Program:
     for k, name in enumerate(trial.lengths, 1):
         outputs += [Output(f"length_{k}", name), Output(f"growth_{k}", name * slope[name])]
     program = normalise("try_joint", differentiated, outputs)
-    return replace(program, summary="The residual of the closure at a trial, with its slope, and lengths that turn angles")
+    return replace(
+        program, summary="The residual of the closure at a trial, with its slope, and lengths that turn angles"
+    )
 
 
 def settle_program(trial: Program, arguments: Sequence[sp.Symbol]) -> Program:
@@ -121,17 +123,17 @@ def _trial(trial: Program, arguments: Sequence[sp.Symbol], at: sp.Expr, outputs:
 
 def _steps(trial: Program, arguments: Sequence[sp.Symbol], start: sp.Symbol) -> Iterate:
     """Newton's method, as long as the residual becomes smaller; a step that does not lower it is shortened."""
-    place, best, least, way, share, number = (*map(real, ("place", "best_place", "least", "way", "share")), count("steps"))
-    size, is_less, best_now, way_now, share_now = (
-        *(real("size"), flag("is_less")), *map(real, ("best_now", "way_now", "share_now"))
-    )
+    place, best, least, way, share = map(real, ("place", "best_place", "least", "way", "share"))
+    best_now, way_now, share_now = map(real, ("best_now", "way_now", "share_now"))
+    size, is_less, number = real("size"), flag("is_less"), count("steps")
     slope, following = real("slope"), real("next_place")
+    divisor = Select(sp.Gt(sp.Abs(slope), 0), slope, sp.Float("1e30"))
     step = (
         _trial(trial, arguments, place, ("remainder", "slope")),
         Let(size, sp.Abs(real("remainder"))),
         Let(is_less, sp.Lt(size, least)),
         Let(best_now, Select(is_less, place, best)),
-        Let(way_now, Select(is_less, Select(sp.Gt(sp.Abs(slope), 0), real("remainder") / Select(sp.Gt(sp.Abs(slope), 0), slope, _ONE), _ZERO), way)),
+        Let(way_now, Select(is_less, real("remainder") / divisor, way)),
         Let(share_now, Select(is_less, _ONE, share / 4)),
         Let(following, _inside(best_now - share_now * way_now)),
     )
@@ -152,12 +154,10 @@ def _shortest_program(trial: Program, arguments: Sequence[sp.Symbol]) -> Program
 
     The growth, half the slope of the squared length, vanishes there: from the best of some points on by secants.
     """
-    place, best, least, last, before, bend, number = (
-        *map(real, ("place", "best_place", "least", "last_place", "growth_before", "bend")), count("steps")
-    )
-    length, growth, gap, way, is_less, best_now, bend_now = (
-        *map(real, ("length", "growth", "gap", "way")), flag("is_less"), *map(real, ("best_now", "bend_now"))
-    )
+    place, best, least = map(real, ("place", "best_place", "least"))
+    last, before, bend, number = real("last_place"), real("growth_before"), real("bend"), count("steps")
+    length, growth, gap, way = map(real, ("length", "growth", "gap", "way"))
+    is_less, best_now, bend_now = flag("is_less"), real("best_now"), real("bend_now")
     chosen = {n: _chosen(n, lengths_of(trial)) for n in ("length", "growth")}
     outputs = [o.name for o in trial.outputs if o.name not in ("remainder", "slope")]
     spread, following = (HIGH - LOW) / (GRID - 1), real("next_place")
@@ -195,7 +195,9 @@ def _shortest_program(trial: Program, arguments: Sequence[sp.Symbol]) -> Program
     shortest = Select(is_less, length, least)
     aside = Select(sp.Gt(bend_now, 0), _ASIDE * shortest / Root(Select(sp.Gt(bend_now, 0), bend_now, _ONE)), _ZERO)
     program = normalise("find_shortest", (loop,), [Output("shortest_place", best_now), Output("aside", aside)])
-    return replace(program, summary="Where a length that turns an angle is shortest, and how far beside it turns by a sixth")
+    return replace(
+        program, summary="Where a length that turns an angle is shortest, and how far beside it turns by a sixth"
+    )
 
 
 def _chosen(word: str, lengths: int) -> sp.Expr:

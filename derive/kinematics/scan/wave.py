@@ -47,7 +47,8 @@ def names_of(degree: int) -> list[sp.Symbol]:
 
 def turned(degree: int, angle: sp.Expr, word: str = "") -> tuple[list[Let], list[sp.Expr], list[sp.Expr]]:
     """The statements that compute cosines and sines of multiples of an angle, up to the degree, and their names."""
-    c, s = ([sp.Integer(start), *(real(f"{word}{f}_{n}") for n in range(1, degree + 1))] for f, start in (("cos", 1), ("sin", 0)))
+    c, s = ([real(f"{word}{f}_{n}") for n in range(degree + 1)] for f in ("cos", "sin"))
+    c[0], s[0] = sp.Integer(1), sp.Integer(0)
     lets = [Let(c[1], sp.cos(angle)), Let(s[1], sp.sin(angle))]
     for n in range(2, degree + 1):
         lets += [Let(c[n], c[n - 1] * c[1] - s[n - 1] * s[1]), Let(s[n], s[n - 1] * c[1] + c[n - 1] * s[1])]
@@ -87,7 +88,9 @@ def wave_program(both: Scanned) -> tuple[Program, int]:
     beyond = [n for n in names if n not in own]
     outputs = [*(Output(n.name, n) for n in own), Output(NOISE.name, NOISE)]
     program = normalise("compute_wave", (loop, *_noise(own, beyond)), outputs)
-    return replace(program, summary="The product of the residuals of all branches as a sum of waves, and its rounding"), degree
+    return replace(
+        program, summary="The product of the residuals of all branches as a sum of waves, and its rounding"
+    ), degree
 
 
 def _noise(own: Sequence[sp.Symbol], beyond: Sequence[sp.Symbol]) -> Iterator[Let]:

@@ -18,7 +18,7 @@ from sympy.logic.boolalg import BooleanFalse, BooleanTrue
 
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root, Select, ToReal, Wrap
-from derive.ir.program import Call, FindRoot, Iterate, Let, Program, Solve, Statement
+from derive.ir.program import Call, Iterate, Let, Program, Solve, Statement
 from derive.ir.symbols import Flag, is_condition
 from derive.witness.exact.field import PRIME, element, inverse, root, root_of_whole
 from derive.witness.exact.values import MINUS_ONE, ONE, ZERO, Angles, NotAlgebraic, Value, fraction
@@ -114,8 +114,6 @@ class Run:
             inner = Run(statement.program, given, self._angles, self._signs, self._degree, self._input_of)
             outputs = zip(statement.names, statement.program.outputs, strict=False)
             self.known |= {name.name: inner.output(o.name) for name, o in outputs}
-        elif isinstance(statement, FindRoot):
-            raise NotAlgebraic("roots are searched along a joint")
         elif isinstance(statement, Iterate):
             raise NotAlgebraic("it iterates")
 

@@ -23,11 +23,11 @@ import { constantsOf } from "./limits.js";
 import { isReasonable } from "./numbers.js";
 import { Refusal, inWords, refuse } from "./refusal.js";
 import { findRotation } from "./rotation.js";
-import { everyRoot, nearestRoot } from "./roots.js";
+import { everyRoot } from "./roots.js";
 import { sceneOf } from "./scene.js";
 
 export * from "./numbers.js";
-export { MEANINGS, Refusal, Status, everyRoot, inWords, nearestRoot, refuse, refuseParameters, turnInside };
+export { MEANINGS, Refusal, Status, everyRoot, inWords, refuse, refuseParameters, turnInside };
 
 /** Plain data that nobody can change. */
 export function freeze(data) {
