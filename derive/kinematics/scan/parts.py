@@ -26,7 +26,7 @@ AT, END, LOW, HIGH, IS_PART, STEPS = (
     flag("is_part"),
     count("steps_left"),
 )
-"""Where the next part is looked for, up to which angle; the ends of the part, if there is one; the steps that are left."""
+"""Where the next part is looked for, up to which angle; its ends, if there is one; the steps that are left."""
 MOST_STEPS = 1000
 """The steps around the circle, at most."""
 _FIRST, _LONGEST, _SHORTEST = sp.Float("1e-13"), sp.Rational(1, 2), sp.Float("1e-15")

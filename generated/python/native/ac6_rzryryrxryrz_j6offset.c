@@ -131,17 +131,532 @@ static const int PERIOD_AXES[] = {0, 1, 2, 3, 4, 5};
 
 static const int DISTANCE_AXES[] = {0, 1, 2, 3, 4, 5};
 
-/* The residual of the closure at a trial, its slope, and the angles that may turn fast. */
+/* The product of the residuals of all branches as a sum of waves, and its rounding. */
+static softkin_status find_compute_wave(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  (void)why;
+  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
+  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
+      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
+      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11];
+  /* the residuals of all branches, multiplied, at equal distances around the circle */
+  int sample = 0;
+  double wave_cos_0 = 0.0;
+  double wave_cos_1 = 0.0;
+  double wave_cos_2 = 0.0;
+  double wave_cos_3 = 0.0;
+  double wave_cos_4 = 0.0;
+  double wave_cos_5 = 0.0;
+  double wave_cos_6 = 0.0;
+  double wave_cos_7 = 0.0;
+  double wave_cos_8 = 0.0;
+  double wave_cos_9 = 0.0;
+  double wave_cos_10 = 0.0;
+  double wave_sin_1 = 0.0;
+  double wave_sin_2 = 0.0;
+  double wave_sin_3 = 0.0;
+  double wave_sin_4 = 0.0;
+  double wave_sin_5 = 0.0;
+  double wave_sin_6 = 0.0;
+  double wave_sin_7 = 0.0;
+  double wave_sin_8 = 0.0;
+  double wave_sin_9 = 0.0;
+  double wave_sin_10 = 0.0;
+  double tried, cos_q6_tried, sin_q6_tried, wrist_x_tried, wrist_y_tried, factor_8_part, wrist_z_tried,
+      wrist_z_from_q1_tried, factor_9_root_1_part, factor_13_root_1_part, factor_11_root_1_part,
+      factor_14_root_1_part, wrist_x_from_q1_root_1_part, product_in_factor_17_part, factor_17_part,
+      factor_18_part, length_q2_part, factor_18_root_1_part, product_in_factor_105_part, factor_105_part,
+      factor_106_part, factor_27_part, factor_29_part, factor_34_part, factor_27_part_minus_factor_29_part,
+      factor_34_root_1_part, factor_123_root_1_part, factor_124_root_1_part, r12_from_q1_root_1_part,
+      sum_q3_part, one_by_sum_q3_part, factor_31_part, factor_42_part, factor_44_part, factor_31_root_1_part,
+      factor_42_root_1_part, factor_44_root_1_part, factor_37_part, factor_46_root_3_part,
+      factor_47_root_3_part, factor_61_part, factor_50_part, factor_52_part, factor_64_part,
+      arm_across_q2_part, factor_69_part, factor_61_root_1_part, factor_50_root_1_part,
+      factor_52_root_1_part, factor_64_root_1_part, arm_across_q2_root_1_part, factor_69_root_1_part,
+      one_by_factor_106_part, factor_109_root_1_part, factor_48_root_3_part, factor_49_root_3_part,
+      factor_54_root_3_part, factor_57_root_3_part, arm_along_q2_root_3_part, factor_71_root_3_part,
+      factor_71_root_1_root_3_part, product_in_factor_108_root_3_part, factor_108_root_3_part,
+      product_in_factor_109_root_3_part, factor_109_root_3_part, factor_109_root_1_root_3_part,
+      factor_156_root_1_root_3_part, factor_73_part, factor_74_part, factor_74_root_1_part,
+      factor_116_root_1_part, factor_76_root_3_part, factor_116_root_3_part, factor_116_root_1_root_3_part,
+      factor_166_root_1_root_3_part, cos_q23_root_1_root_3_part, product_in_factor_187_root_3_part,
+      factor_187_root_3_part, factor_107_part, factor_109_part, product_in_factor_131_root_3_part,
+      factor_131_root_3_part, factor_132_root_3_part, factor_115_part, factor_116_part,
+      product_in_factor_137_root_3_part, factor_137_root_3_part, factor_142_root_3_part, sin_q23_root_3_part,
+      factor_190_root_3_part, r12_from_q123_root_3_part, factor_198_root_3_part, factor_120_root_1_part,
+      factor_121_root_1_part, r11_from_q1_root_1_part, product_in_factor_175_root_3_part,
+      factor_175_root_3_part, factor_178_root_3_part, r11_from_q123_root_3_part, factor_202_root_3_part,
+      r12_from_q123_before_q6_root_3_part, factor_153_root_3_part, factor_156_root_3_part,
+      factor_165_root_3_part, factor_166_root_3_part, cos_q23_root_3_part, factor_188_root_1_root_3_part,
+      factor_132_root_1_root_3_part, factor_142_root_1_root_3_part, sin_q23_root_1_root_3_part,
+      factor_190_root_1_root_3_part, r12_from_q123_root_1_root_3_part, factor_198_root_1_root_3_part,
+      factor_176_root_1_root_3_part, factor_178_root_1_root_3_part, r11_from_q123_root_1_root_3_part,
+      factor_202_root_1_root_3_part, r12_from_q123_before_q6_root_1_root_3_part, factor_297_part,
+      factor_298_part, factor_298_root_1_part, factor_301_root_1_part, factor_150_part,
+      product_in_factor_151_part, factor_151_part, product_in_factor_154_part, product_in_factor_154_part_2,
+      factor_154_part, factor_156_part, factor_160_part, product_in_factor_161_part, factor_161_part,
+      product_in_factor_163_part, factor_163_part, factor_166_part, cos_q23_part, factor_188_root_1_part,
+      product_in_factor_127_root_1_part, factor_127_root_1_part, factor_130_root_1_part,
+      factor_132_root_1_part, product_in_factor_138_root_1_part, factor_138_root_1_part,
+      factor_141_root_1_part, factor_142_root_1_part, sin_q23_root_1_part, factor_190_root_1_part,
+      r12_from_q123_root_1_part, factor_198_root_1_part, factor_176_root_1_part, factor_178_root_1_part,
+      r11_from_q123_root_1_part, factor_202_root_1_part, r12_from_q123_before_q6_root_1_part,
+      factor_151_root_1_part, factor_155_root_1_part, factor_156_root_1_part, factor_161_root_1_part,
+      factor_164_root_1_part, factor_166_root_1_part, cos_q23_root_1_part, factor_186_part, factor_126_part,
+      factor_127_part, factor_129_part, factor_132_part, factor_136_part, factor_138_part, factor_140_part,
+      factor_142_part, sin_q23_part, factor_190_part, r12_from_q123_part, factor_198_part, factor_174_part,
+      factor_178_part, r11_from_q123_part, factor_202_part, r12_from_q123_before_q6_part,
+      factor_304_root_1_part, product_306_root_1_part, factor_308_part, factor_309_part, factor_300_part,
+      factor_301_part, factor_303_part, factor_304_part, product_306_part, factor_310_part, product_311_part,
+      taken, level, cos_2, sin_2, cos_3, sin_3, cos_4, sin_4, cos_5, sin_5, cos_6, sin_6, cos_7, sin_7,
+      cos_8, sin_8, cos_9, sin_9, cos_10, sin_10;
+  for (int pass = 0; pass < 22; pass += 1) {
+    tried = 0.1 + 0.299199300341885*sample;
+    cos_q6_tried = cos(tried);
+    sin_q6_tried = sin(tried);
+    wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*k->j6_offset_x - k->d6*goal_r13;
+    wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*k->j6_offset_x - k->d6*goal_r23;
+    factor_8_part = -wrist_x_tried*wrist_x_tried - wrist_y_tried*wrist_y_tried;
+    wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*k->j6_offset_x - k->d6*goal_r33;
+    wrist_z_from_q1_tried = wrist_z_tried - k->d1;
+    factor_9_root_1_part = -wrist_x_tried/factor_8_part;
+    factor_13_root_1_part = factor_9_root_1_part*wrist_x_tried;
+    factor_11_root_1_part = -wrist_y_tried/factor_8_part;
+    factor_14_root_1_part = factor_11_root_1_part*wrist_y_tried;
+    wrist_x_from_q1_root_1_part = factor_13_root_1_part + factor_14_root_1_part;
+    product_in_factor_17_part = factor_8_part*wrist_x_from_q1_root_1_part;
+    factor_17_part = -product_in_factor_17_part*wrist_x_from_q1_root_1_part;
+    factor_18_part = k->a1_squared + factor_17_part;
+    length_q2_part = factor_18_part + wrist_z_from_q1_tried*wrist_z_from_q1_tried;
+    factor_18_root_1_part = -k->twice_a1*wrist_x_from_q1_root_1_part;
+    product_in_factor_105_part = factor_18_root_1_part*factor_8_part;
+    factor_105_part = factor_18_root_1_part*product_in_factor_105_part;
+    factor_106_part = factor_105_part + length_q2_part*length_q2_part;
+    factor_27_part = k->a2_plus_length_25_squared - length_q2_part;
+    factor_29_part = length_q2_part - k->a2_minus_length_25_squared;
+    factor_34_part = factor_105_part + factor_27_part*factor_29_part;
+    factor_27_part_minus_factor_29_part = factor_27_part - factor_29_part;
+    factor_34_root_1_part = factor_18_root_1_part*factor_27_part_minus_factor_29_part;
+    factor_123_root_1_part = factor_9_root_1_part*goal_r12;
+    factor_124_root_1_part = factor_11_root_1_part*goal_r22;
+    r12_from_q1_root_1_part = factor_123_root_1_part + factor_124_root_1_part;
+    sum_q3_part = factor_27_part + factor_29_part;
+    one_by_sum_q3_part = 1.0/sum_q3_part;
+    factor_31_part = -factor_27_part_minus_factor_29_part*one_by_sum_q3_part;
+    factor_42_part = k->a3*factor_31_part;
+    factor_44_part = factor_42_part*k->one_by_length_25;
+    factor_31_root_1_part = 2.0*factor_18_root_1_part*one_by_sum_q3_part;
+    factor_42_root_1_part = k->a3*factor_31_root_1_part;
+    factor_44_root_1_part = factor_42_root_1_part*k->one_by_length_25;
+    factor_37_part = 2.0*one_by_sum_q3_part;
+    factor_46_root_3_part = k->d4*factor_37_part;
+    factor_47_root_3_part = factor_46_root_3_part*k->one_by_length_25;
+    factor_61_part = k->a3*factor_44_part;
+    factor_50_part = -k->d4*factor_31_part;
+    factor_52_part = factor_50_part*k->one_by_length_25;
+    factor_64_part = -k->d4*factor_52_part;
+    arm_across_q2_part = k->a2 + factor_61_part + factor_64_part;
+    factor_69_part = arm_across_q2_part*wrist_z_from_q1_tried;
+    factor_61_root_1_part = k->a3*factor_44_root_1_part;
+    factor_50_root_1_part = -k->d4*factor_31_root_1_part;
+    factor_52_root_1_part = factor_50_root_1_part*k->one_by_length_25;
+    factor_64_root_1_part = -k->d4*factor_52_root_1_part;
+    arm_across_q2_root_1_part = factor_61_root_1_part + factor_64_root_1_part;
+    factor_69_root_1_part = arm_across_q2_root_1_part*wrist_z_from_q1_tried;
+    one_by_factor_106_part = 1.0/factor_106_part;
+    factor_109_root_1_part = (factor_69_root_1_part*length_q2_part - factor_18_root_1_part*factor_69_part)
+        *one_by_factor_106_part;
+    factor_48_root_3_part = k->a3*factor_37_part;
+    factor_49_root_3_part = factor_48_root_3_part*k->one_by_length_25;
+    factor_54_root_3_part = k->a3*factor_49_root_3_part;
+    factor_57_root_3_part = k->d4*factor_47_root_3_part;
+    arm_along_q2_root_3_part = factor_54_root_3_part + factor_57_root_3_part;
+    factor_71_root_3_part = -k->a1*arm_along_q2_root_3_part;
+    factor_71_root_1_root_3_part = arm_along_q2_root_3_part*wrist_x_from_q1_root_1_part;
+    product_in_factor_108_root_3_part = one_by_factor_106_part*product_in_factor_105_part;
+    factor_108_root_3_part = factor_71_root_1_root_3_part*product_in_factor_108_root_3_part;
+    product_in_factor_109_root_3_part = length_q2_part*one_by_factor_106_part;
+    factor_109_root_3_part = factor_108_root_3_part + factor_71_root_3_part*product_in_factor_109_root_3_part;
+    factor_109_root_1_root_3_part = (factor_71_root_1_root_3_part*length_q2_part
+        - factor_18_root_1_part*factor_71_root_3_part)*one_by_factor_106_part;
+    factor_156_root_1_root_3_part = factor_109_root_1_part*factor_47_root_3_part
+        + factor_109_root_1_root_3_part*factor_44_part + factor_109_root_3_part*factor_44_root_1_part;
+    factor_73_part = -arm_across_q2_root_1_part*product_in_factor_17_part;
+    factor_74_part = factor_73_part - k->a1*arm_across_q2_part;
+    factor_74_root_1_part = arm_across_q2_part*wrist_x_from_q1_root_1_part - k->a1*arm_across_q2_root_1_part;
+    factor_116_root_1_part = (factor_74_root_1_part*length_q2_part - factor_18_root_1_part*factor_74_part)
+        *one_by_factor_106_part;
+    factor_76_root_3_part = -arm_along_q2_root_3_part*wrist_z_from_q1_tried;
+    factor_116_root_3_part = factor_76_root_3_part*product_in_factor_109_root_3_part;
+    factor_116_root_1_root_3_part = -factor_18_root_1_part*factor_76_root_3_part*one_by_factor_106_part;
+    factor_166_root_1_root_3_part = -factor_116_root_1_part*factor_49_root_3_part
+        - factor_116_root_1_root_3_part*factor_52_part - factor_116_root_3_part*factor_52_root_1_part;
+    cos_q23_root_1_root_3_part = factor_156_root_1_root_3_part + factor_166_root_1_root_3_part;
+    product_in_factor_187_root_3_part = factor_8_part*r12_from_q1_root_1_part;
+    factor_187_root_3_part = -product_in_factor_187_root_3_part*cos_q23_root_1_root_3_part;
+    factor_107_part = factor_69_root_1_part*product_in_factor_108_root_3_part;
+    factor_109_part = factor_107_part + factor_69_part*product_in_factor_109_root_3_part;
+    product_in_factor_131_root_3_part = factor_52_root_1_part*factor_8_part;
+    factor_131_root_3_part = -factor_109_root_1_root_3_part*product_in_factor_131_root_3_part;
+    factor_132_root_3_part = factor_131_root_3_part + factor_109_part*factor_49_root_3_part
+        + factor_109_root_3_part*factor_52_part;
+    factor_115_part = factor_74_root_1_part*product_in_factor_108_root_3_part;
+    factor_116_part = factor_115_part + factor_74_part*product_in_factor_109_root_3_part;
+    product_in_factor_137_root_3_part = factor_44_root_1_part*factor_8_part;
+    factor_137_root_3_part = -factor_116_root_1_root_3_part*product_in_factor_137_root_3_part;
+    factor_142_root_3_part = factor_137_root_3_part + factor_116_part*factor_47_root_3_part
+        + factor_116_root_3_part*factor_44_part;
+    sin_q23_root_3_part = factor_132_root_3_part + factor_142_root_3_part;
+    factor_190_root_3_part = -goal_r32*sin_q23_root_3_part;
+    r12_from_q123_root_3_part = factor_187_root_3_part + factor_190_root_3_part;
+    factor_198_root_3_part = r12_from_q123_root_3_part*cos_q6_tried;
+    factor_120_root_1_part = factor_9_root_1_part*goal_r11;
+    factor_121_root_1_part = factor_11_root_1_part*goal_r21;
+    r11_from_q1_root_1_part = factor_120_root_1_part + factor_121_root_1_part;
+    product_in_factor_175_root_3_part = factor_8_part*r11_from_q1_root_1_part;
+    factor_175_root_3_part = -product_in_factor_175_root_3_part*cos_q23_root_1_root_3_part;
+    factor_178_root_3_part = -goal_r31*sin_q23_root_3_part;
+    r11_from_q123_root_3_part = factor_175_root_3_part + factor_178_root_3_part;
+    factor_202_root_3_part = r11_from_q123_root_3_part*sin_q6_tried;
+    r12_from_q123_before_q6_root_3_part = factor_198_root_3_part + factor_202_root_3_part;
+    factor_153_root_3_part = -factor_109_root_1_root_3_part*product_in_factor_137_root_3_part;
+    factor_156_root_3_part = factor_153_root_3_part + factor_109_part*factor_47_root_3_part
+        + factor_109_root_3_part*factor_44_part;
+    factor_165_root_3_part = factor_116_root_1_root_3_part*product_in_factor_131_root_3_part;
+    factor_166_root_3_part = factor_165_root_3_part - factor_116_part*factor_49_root_3_part
+        - factor_116_root_3_part*factor_52_part;
+    cos_q23_root_3_part = factor_156_root_3_part + factor_166_root_3_part;
+    factor_188_root_1_root_3_part = r12_from_q1_root_1_part*cos_q23_root_3_part;
+    factor_132_root_1_root_3_part = factor_109_root_1_part*factor_49_root_3_part
+        + factor_109_root_1_root_3_part*factor_52_part + factor_109_root_3_part*factor_52_root_1_part;
+    factor_142_root_1_root_3_part = factor_116_root_1_part*factor_47_root_3_part
+        + factor_116_root_1_root_3_part*factor_44_part + factor_116_root_3_part*factor_44_root_1_part;
+    sin_q23_root_1_root_3_part = factor_132_root_1_root_3_part + factor_142_root_1_root_3_part;
+    factor_190_root_1_root_3_part = -goal_r32*sin_q23_root_1_root_3_part;
+    r12_from_q123_root_1_root_3_part = factor_188_root_1_root_3_part + factor_190_root_1_root_3_part;
+    factor_198_root_1_root_3_part = r12_from_q123_root_1_root_3_part*cos_q6_tried;
+    factor_176_root_1_root_3_part = r11_from_q1_root_1_part*cos_q23_root_3_part;
+    factor_178_root_1_root_3_part = -goal_r31*sin_q23_root_1_root_3_part;
+    r11_from_q123_root_1_root_3_part = factor_176_root_1_root_3_part + factor_178_root_1_root_3_part;
+    factor_202_root_1_root_3_part = r11_from_q123_root_1_root_3_part*sin_q6_tried;
+    r12_from_q123_before_q6_root_1_root_3_part = factor_198_root_1_root_3_part
+        + factor_202_root_1_root_3_part;
+    factor_297_part = -factor_8_part*r12_from_q123_before_q6_root_1_root_3_part
+        *r12_from_q123_before_q6_root_1_root_3_part;
+    factor_298_part = factor_297_part
+        + r12_from_q123_before_q6_root_3_part*r12_from_q123_before_q6_root_3_part;
+    factor_298_root_1_part = 2.0*r12_from_q123_before_q6_root_1_root_3_part
+        *r12_from_q123_before_q6_root_3_part;
+    factor_301_root_1_part = factor_298_part*factor_34_root_1_part + factor_298_root_1_part*factor_34_part;
+    factor_150_part = -factor_109_root_1_part*product_in_factor_137_root_3_part;
+    product_in_factor_151_part = factor_34_part*factor_47_root_3_part;
+    factor_151_part = factor_109_root_3_part*product_in_factor_151_part;
+    product_in_factor_154_part = factor_34_root_1_part*factor_8_part;
+    product_in_factor_154_part_2 = factor_47_root_3_part*product_in_factor_154_part;
+    factor_154_part = -factor_109_root_1_root_3_part*product_in_factor_154_part_2;
+    factor_156_part = factor_150_part + factor_151_part + factor_154_part + factor_109_part*factor_44_part;
+    factor_160_part = factor_116_root_1_part*product_in_factor_131_root_3_part;
+    product_in_factor_161_part = factor_34_part*factor_49_root_3_part;
+    factor_161_part = -factor_116_root_3_part*product_in_factor_161_part;
+    product_in_factor_163_part = factor_49_root_3_part*product_in_factor_154_part;
+    factor_163_part = factor_116_root_1_root_3_part*product_in_factor_163_part;
+    factor_166_part = factor_160_part + factor_161_part + factor_163_part - factor_116_part*factor_52_part;
+    cos_q23_part = factor_156_part + factor_166_part;
+    factor_188_root_1_part = r12_from_q1_root_1_part*cos_q23_part;
+    product_in_factor_127_root_1_part = factor_109_root_3_part*factor_34_root_1_part;
+    factor_127_root_1_part = factor_49_root_3_part*product_in_factor_127_root_1_part;
+    factor_130_root_1_part = factor_109_root_1_root_3_part*product_in_factor_161_part;
+    factor_132_root_1_part = factor_127_root_1_part + factor_130_root_1_part
+        + factor_109_part*factor_52_root_1_part + factor_109_root_1_part*factor_52_part;
+    product_in_factor_138_root_1_part = factor_116_root_3_part*factor_34_root_1_part;
+    factor_138_root_1_part = factor_47_root_3_part*product_in_factor_138_root_1_part;
+    factor_141_root_1_part = factor_116_root_1_root_3_part*product_in_factor_151_part;
+    factor_142_root_1_part = factor_138_root_1_part + factor_141_root_1_part
+        + factor_116_part*factor_44_root_1_part + factor_116_root_1_part*factor_44_part;
+    sin_q23_root_1_part = factor_132_root_1_part + factor_142_root_1_part;
+    factor_190_root_1_part = -goal_r32*sin_q23_root_1_part;
+    r12_from_q123_root_1_part = factor_188_root_1_part + factor_190_root_1_part;
+    factor_198_root_1_part = r12_from_q123_root_1_part*cos_q6_tried;
+    factor_176_root_1_part = r11_from_q1_root_1_part*cos_q23_part;
+    factor_178_root_1_part = -goal_r31*sin_q23_root_1_part;
+    r11_from_q123_root_1_part = factor_176_root_1_part + factor_178_root_1_part;
+    factor_202_root_1_part = r11_from_q123_root_1_part*sin_q6_tried;
+    r12_from_q123_before_q6_root_1_part = factor_198_root_1_part + factor_202_root_1_part;
+    factor_151_root_1_part = factor_47_root_3_part*product_in_factor_127_root_1_part;
+    factor_155_root_1_part = factor_109_root_1_root_3_part*product_in_factor_151_part;
+    factor_156_root_1_part = factor_151_root_1_part + factor_155_root_1_part
+        + factor_109_part*factor_44_root_1_part + factor_109_root_1_part*factor_44_part;
+    factor_161_root_1_part = -factor_49_root_3_part*product_in_factor_138_root_1_part;
+    factor_164_root_1_part = -factor_116_root_1_root_3_part*product_in_factor_161_part;
+    factor_166_root_1_part = factor_161_root_1_part + factor_164_root_1_part
+        - factor_116_part*factor_52_root_1_part - factor_116_root_1_part*factor_52_part;
+    cos_q23_root_1_part = factor_156_root_1_part + factor_166_root_1_part;
+    factor_186_part = -product_in_factor_187_root_3_part*cos_q23_root_1_part;
+    factor_126_part = -factor_109_root_1_part*product_in_factor_131_root_3_part;
+    factor_127_part = factor_109_root_3_part*product_in_factor_161_part;
+    factor_129_part = -factor_109_root_1_root_3_part*product_in_factor_163_part;
+    factor_132_part = factor_126_part + factor_127_part + factor_129_part + factor_109_part*factor_52_part;
+    factor_136_part = -factor_116_root_1_part*product_in_factor_137_root_3_part;
+    factor_138_part = factor_116_root_3_part*product_in_factor_151_part;
+    factor_140_part = -factor_116_root_1_root_3_part*product_in_factor_154_part_2;
+    factor_142_part = factor_136_part + factor_138_part + factor_140_part + factor_116_part*factor_44_part;
+    sin_q23_part = factor_132_part + factor_142_part;
+    factor_190_part = -goal_r32*sin_q23_part;
+    r12_from_q123_part = factor_186_part + factor_190_part;
+    factor_198_part = r12_from_q123_part*cos_q6_tried;
+    factor_174_part = -product_in_factor_175_root_3_part*cos_q23_root_1_part;
+    factor_178_part = -goal_r31*sin_q23_part;
+    r11_from_q123_part = factor_174_part + factor_178_part;
+    factor_202_part = r11_from_q123_part*sin_q6_tried;
+    r12_from_q123_before_q6_part = factor_198_part + factor_202_part;
+    factor_304_root_1_part = 2.0*r12_from_q123_before_q6_part*r12_from_q123_before_q6_root_1_part;
+    product_306_root_1_part = factor_304_root_1_part - factor_301_root_1_part;
+    factor_308_part = product_306_root_1_part*product_306_root_1_part;
+    factor_309_part = -factor_308_part*factor_8_part;
+    factor_300_part = -factor_298_root_1_part*product_in_factor_154_part;
+    factor_301_part = factor_300_part + factor_298_part*factor_34_part;
+    factor_303_part = -factor_8_part*r12_from_q123_before_q6_root_1_part*r12_from_q123_before_q6_root_1_part;
+    factor_304_part = factor_303_part + r12_from_q123_before_q6_part*r12_from_q123_before_q6_part;
+    product_306_part = factor_304_part - factor_301_part;
+    factor_310_part = product_306_part*product_306_part;
+    product_311_part = factor_310_part - factor_309_part;
+    taken = 0.09523809523809523*factor_106_part*factor_8_part*factor_8_part*product_311_part;
+    level = 0.5*taken;
+    cos_2 = cos_q6_tried*cos_q6_tried - sin_q6_tried*sin_q6_tried;
+    sin_2 = 2.0*cos_q6_tried*sin_q6_tried;
+    cos_3 = cos_2*cos_q6_tried - sin_2*sin_q6_tried;
+    sin_3 = cos_2*sin_q6_tried + cos_q6_tried*sin_2;
+    cos_4 = cos_3*cos_q6_tried - sin_3*sin_q6_tried;
+    sin_4 = cos_3*sin_q6_tried + cos_q6_tried*sin_3;
+    cos_5 = cos_4*cos_q6_tried - sin_4*sin_q6_tried;
+    sin_5 = cos_4*sin_q6_tried + cos_q6_tried*sin_4;
+    cos_6 = cos_5*cos_q6_tried - sin_5*sin_q6_tried;
+    sin_6 = cos_5*sin_q6_tried + cos_q6_tried*sin_5;
+    cos_7 = cos_6*cos_q6_tried - sin_6*sin_q6_tried;
+    sin_7 = cos_6*sin_q6_tried + cos_q6_tried*sin_6;
+    cos_8 = cos_7*cos_q6_tried - sin_7*sin_q6_tried;
+    sin_8 = cos_7*sin_q6_tried + cos_q6_tried*sin_7;
+    cos_9 = cos_8*cos_q6_tried - sin_8*sin_q6_tried;
+    sin_9 = cos_8*sin_q6_tried + cos_q6_tried*sin_8;
+    cos_10 = cos_9*cos_q6_tried - sin_9*sin_q6_tried;
+    sin_10 = cos_9*sin_q6_tried + cos_q6_tried*sin_9;
+    if (sample >= 21) {
+      break;
+    }
+    sample = 1 + sample;
+    wave_cos_0 = level + wave_cos_0;
+    wave_cos_1 = wave_cos_1 + taken*cos_q6_tried;
+    wave_cos_2 = wave_cos_2 + taken*cos_2;
+    wave_cos_3 = wave_cos_3 + taken*cos_3;
+    wave_cos_4 = wave_cos_4 + taken*cos_4;
+    wave_cos_5 = wave_cos_5 + taken*cos_5;
+    wave_cos_6 = wave_cos_6 + taken*cos_6;
+    wave_cos_7 = wave_cos_7 + taken*cos_7;
+    wave_cos_8 = wave_cos_8 + taken*cos_8;
+    wave_cos_9 = wave_cos_9 + taken*cos_9;
+    wave_cos_10 = wave_cos_10 + taken*cos_10;
+    wave_sin_1 = wave_sin_1 + taken*sin_q6_tried;
+    wave_sin_2 = wave_sin_2 + taken*sin_2;
+    wave_sin_3 = wave_sin_3 + taken*sin_3;
+    wave_sin_4 = wave_sin_4 + taken*sin_4;
+    wave_sin_5 = wave_sin_5 + taken*sin_5;
+    wave_sin_6 = wave_sin_6 + taken*sin_6;
+    wave_sin_7 = wave_sin_7 + taken*sin_7;
+    wave_sin_8 = wave_sin_8 + taken*sin_8;
+    wave_sin_9 = wave_sin_9 + taken*sin_9;
+    wave_sin_10 = wave_sin_10 + taken*sin_10;
+  }
+  const double rounding_0 = 1e-14
+      *(fabs(wave_cos_0) + fabs(wave_cos_1) + fabs(wave_cos_2) + fabs(wave_cos_3) + fabs(wave_cos_4)
+      + fabs(wave_cos_5) + fabs(wave_cos_6) + fabs(wave_cos_7) + fabs(wave_cos_8) + fabs(wave_sin_1)
+      + fabs(wave_sin_2) + fabs(wave_sin_3) + fabs(wave_sin_4) + fabs(wave_sin_5) + fabs(wave_sin_6)
+      + fabs(wave_sin_7) + fabs(wave_sin_8));
+  const double size_of_wave_cos_9_times_32 = 32.0*fabs(wave_cos_9);
+  const double rounding_1 = size_of_wave_cos_9_times_32 > rounding_0 ? size_of_wave_cos_9_times_32
+      : rounding_0;
+  const double size_of_wave_cos_10_times_32 = 32.0*fabs(wave_cos_10);
+  const double rounding_2 = size_of_wave_cos_10_times_32 > rounding_1 ? size_of_wave_cos_10_times_32
+      : rounding_1;
+  const double size_of_wave_sin_9_times_32 = 32.0*fabs(wave_sin_9);
+  const double rounding_3 = size_of_wave_sin_9_times_32 > rounding_2 ? size_of_wave_sin_9_times_32
+      : rounding_2;
+  const double size_of_wave_sin_10_times_32 = 32.0*fabs(wave_sin_10);
+  const double rounding_4 = size_of_wave_sin_10_times_32 > rounding_3 ? size_of_wave_sin_10_times_32
+      : rounding_3;
+  found[0] = wave_cos_0;
+  found[1] = wave_cos_1;
+  found[2] = wave_cos_2;
+  found[3] = wave_cos_3;
+  found[4] = wave_cos_4;
+  found[5] = wave_cos_5;
+  found[6] = wave_cos_6;
+  found[7] = wave_cos_7;
+  found[8] = wave_cos_8;
+  found[9] = wave_sin_1;
+  found[10] = wave_sin_2;
+  found[11] = wave_sin_3;
+  found[12] = wave_sin_4;
+  found[13] = wave_sin_5;
+  found[14] = wave_sin_6;
+  found[15] = wave_sin_7;
+  found[16] = wave_sin_8;
+  found[17] = rounding_4;
+  return SOFTKIN_OK;
+}
+
+/* The next part of the circle in which the wave may be zero. */
+static softkin_status find_part(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  (void)machine;
+  (void)why;
+  const double at = given[0], end = given[1], noise = given[2], wave_cos_0 = given[4], wave_cos_1 = given[5],
+      wave_cos_2 = given[6], wave_cos_3 = given[7], wave_cos_4 = given[8], wave_cos_5 = given[9],
+      wave_cos_6 = given[10], wave_cos_7 = given[11], wave_cos_8 = given[12], wave_sin_1 = given[13],
+      wave_sin_2 = given[14], wave_sin_3 = given[15], wave_sin_4 = given[16], wave_sin_5 = given[17],
+      wave_sin_6 = given[18], wave_sin_7 = given[19], wave_sin_8 = given[20];
+  const int steps_left = (int)given[3];
+  const double sum_in_bound_of_fifth = 0.008333333333333333*(fabs(wave_cos_1) + fabs(wave_sin_1))
+      + 0.26666666666666666*(fabs(wave_cos_2) + fabs(wave_sin_2))
+      + 2.025*(fabs(wave_cos_3) + fabs(wave_sin_3)) + 8.533333333333333*(fabs(wave_cos_4) + fabs(wave_sin_4))
+      + 26.041666666666668*(fabs(wave_cos_5) + fabs(wave_sin_5)) + 64.8*(fabs(wave_cos_6) + fabs(wave_sin_6))
+      + 273.06666666666666*(fabs(wave_cos_8) + fabs(wave_sin_8));
+  const double bound_of_fifth = sum_in_bound_of_fifth
+      + 140.05833333333334*(fabs(wave_cos_7) + fabs(wave_sin_7));
+  /* steps around the circle that pass no zero of the wave */
+  double place_ = at;
+  double width = 0.0;
+  int steps_still_left = steps_left;
+  double angle, cos_1, sin_1, even_1, cos_2, sin_2, even_2, cos_3, sin_3, even_3, cos_4, sin_4, even_4,
+      cos_5, sin_5, even_5, cos_6, sin_6, even_6, cos_7, sin_7, even_7, cos_8, sin_8, even_8, wave,
+      half_noise_minus_size_of_wave, room, odd_1, odd_2, odd_3, odd_4, odd_5, odd_6, odd_7, odd_8, slope,
+      sign_of_wave, sign_of_wave_times_slope, falls_slope, bend, bend_times_sign_of_wave, falls_bend, third,
+      sign_of_wave_times_third, falls_third, fourth, fourth_times_sign_of_wave, falls_fourth, curve_1,
+      falls_slope_squared, divisor_1, twice_room, allowed_1, safe_1, length_1, curve_2, divisor_2, allowed_2,
+      safe_2, long_2, length_2, curve_3, divisor_3, allowed_3, safe_3, long_3, length_3, curve_4, divisor_4,
+      allowed_4, safe_4, long_4, length_4, curve_5, divisor_5, allowed_5, safe_5, long_5, length_5, curve_6,
+      divisor_6, allowed_6, safe_6, way;
+  bool is_rounding, is_over;
+  for (int pass = 0; pass < 1002; pass += 1) {
+    angle = place_ + width;
+    cos_1 = cos(angle);
+    sin_1 = sin(angle);
+    even_1 = wave_cos_1*cos_1 + wave_sin_1*sin_1;
+    cos_2 = cos_1*cos_1 - sin_1*sin_1;
+    sin_2 = 2.0*cos_1*sin_1;
+    even_2 = wave_cos_2*cos_2 + wave_sin_2*sin_2;
+    cos_3 = cos_1*cos_2 - sin_1*sin_2;
+    sin_3 = cos_1*sin_2 + cos_2*sin_1;
+    even_3 = wave_cos_3*cos_3 + wave_sin_3*sin_3;
+    cos_4 = cos_1*cos_3 - sin_1*sin_3;
+    sin_4 = cos_1*sin_3 + cos_3*sin_1;
+    even_4 = wave_cos_4*cos_4 + wave_sin_4*sin_4;
+    cos_5 = cos_1*cos_4 - sin_1*sin_4;
+    sin_5 = cos_1*sin_4 + cos_4*sin_1;
+    even_5 = wave_cos_5*cos_5 + wave_sin_5*sin_5;
+    cos_6 = cos_1*cos_5 - sin_1*sin_5;
+    sin_6 = cos_1*sin_5 + cos_5*sin_1;
+    even_6 = wave_cos_6*cos_6 + wave_sin_6*sin_6;
+    cos_7 = cos_1*cos_6 - sin_1*sin_6;
+    sin_7 = cos_1*sin_6 + cos_6*sin_1;
+    even_7 = wave_cos_7*cos_7 + wave_sin_7*sin_7;
+    cos_8 = cos_1*cos_7 - sin_1*sin_7;
+    sin_8 = cos_1*sin_7 + cos_7*sin_1;
+    even_8 = wave_cos_8*cos_8 + wave_sin_8*sin_8;
+    wave = even_1 + even_2 + even_3 + even_4 + even_5 + even_6 + even_7 + even_8 + wave_cos_0;
+    is_rounding = fabs(wave) <= noise;
+    is_over = ((place_ >= end) && (width <= 0.0)) || ((width > 0.0) && ((!is_rounding) || (width >= 0.5)));
+    half_noise_minus_size_of_wave = 0.5*noise - fabs(wave);
+    room = -half_noise_minus_size_of_wave > 0.0 ? -half_noise_minus_size_of_wave : 0.0;
+    odd_1 = wave_sin_1*cos_1 - wave_cos_1*sin_1;
+    odd_2 = wave_sin_2*cos_2 - wave_cos_2*sin_2;
+    odd_3 = wave_sin_3*cos_3 - wave_cos_3*sin_3;
+    odd_4 = wave_sin_4*cos_4 - wave_cos_4*sin_4;
+    odd_5 = wave_sin_5*cos_5 - wave_cos_5*sin_5;
+    odd_6 = wave_sin_6*cos_6 - wave_cos_6*sin_6;
+    odd_7 = wave_sin_7*cos_7 - wave_cos_7*sin_7;
+    odd_8 = wave_sin_8*cos_8 - wave_cos_8*sin_8;
+    slope = odd_1 + 2.0*odd_2 + 3.0*odd_3 + 4.0*odd_4 + 5.0*odd_5 + 6.0*odd_6 + 7.0*odd_7 + 8.0*odd_8;
+    sign_of_wave = wave < 0.0 ? -1.0 : 1.0;
+    sign_of_wave_times_slope = sign_of_wave*slope;
+    falls_slope = -sign_of_wave_times_slope > 0.0 ? -sign_of_wave_times_slope : 0.0;
+    bend = -0.5*even_1 - 2.0*even_2 - 4.5*even_3 - 8.0*even_4 - 12.5*even_5 - 18.0*even_6 - 24.5*even_7
+        - 32.0*even_8;
+    bend_times_sign_of_wave = bend*sign_of_wave;
+    falls_bend = -bend_times_sign_of_wave > 0.0 ? -bend_times_sign_of_wave : 0.0;
+    third = -odd_1/6.0 - 4.0*odd_2/3.0 - 4.5*odd_3 - 32.0*odd_4/3.0 - 125.0*odd_5/6.0 - 36.0*odd_6
+        - 343.0*odd_7/6.0 - 256.0*odd_8/3.0;
+    sign_of_wave_times_third = sign_of_wave*third;
+    falls_third = -sign_of_wave_times_third > 0.0 ? -sign_of_wave_times_third : 0.0;
+    fourth = even_1/24.0 + 2.0*even_2/3.0 + 3.375*even_3 + 32.0*even_4/3.0 + 625.0*even_5/24.0 + 54.0*even_6
+        + 2401.0*even_7/24.0 + 512.0*even_8/3.0;
+    fourth_times_sign_of_wave = fourth*sign_of_wave;
+    falls_fourth = -fourth_times_sign_of_wave > 0.0 ? -fourth_times_sign_of_wave : 0.0;
+    curve_1 = bound_of_fifth + falls_bend + falls_fourth + falls_third;
+    falls_slope_squared = falls_slope*falls_slope;
+    divisor_1 = falls_slope + softkin_root(falls_slope_squared + 4.0*curve_1*room);
+    twice_room = 2.0*room;
+    allowed_1 = divisor_1 > twice_room ? 2.0*room/(divisor_1 > twice_room ? divisor_1 : 1.0) : 1.0;
+    safe_1 = allowed_1 > 0.0 ? allowed_1 : 0.0;
+    length_1 = softkin_root(safe_1);
+    curve_2 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth*length_1)*length_1)*length_1;
+    divisor_2 = falls_slope + softkin_root(falls_slope_squared + 4.0*curve_2*room);
+    allowed_2 = divisor_2*length_1 > twice_room
+        ? 2.0*room/(divisor_2*length_1 > twice_room ? divisor_2 : 1.0) : length_1;
+    safe_2 = allowed_2 > safe_1 ? allowed_2 : safe_1;
+    long_2 = divisor_2*length_1 > twice_room ? length_1 : 1.0;
+    length_2 = softkin_root(long_2*safe_2);
+    curve_3 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth*length_2)*length_2)*length_2;
+    divisor_3 = falls_slope + softkin_root(falls_slope_squared + 4.0*curve_3*room);
+    allowed_3 = divisor_3*length_2 > twice_room
+        ? 2.0*room/(divisor_3*length_2 > twice_room ? divisor_3 : 1.0) : length_2;
+    safe_3 = allowed_3 > safe_2 ? allowed_3 : safe_2;
+    long_3 = divisor_3*length_2 > twice_room ? length_2 : long_2;
+    length_3 = softkin_root(long_3*safe_3);
+    curve_4 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth*length_3)*length_3)*length_3;
+    divisor_4 = falls_slope + softkin_root(falls_slope_squared + 4.0*curve_4*room);
+    allowed_4 = divisor_4*length_3 > twice_room
+        ? 2.0*room/(divisor_4*length_3 > twice_room ? divisor_4 : 1.0) : length_3;
+    safe_4 = allowed_4 > safe_3 ? allowed_4 : safe_3;
+    long_4 = divisor_4*length_3 > twice_room ? length_3 : long_3;
+    length_4 = softkin_root(long_4*safe_4);
+    curve_5 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth*length_4)*length_4)*length_4;
+    divisor_5 = falls_slope + softkin_root(falls_slope_squared + 4.0*curve_5*room);
+    allowed_5 = divisor_5*length_4 > twice_room
+        ? 2.0*room/(divisor_5*length_4 > twice_room ? divisor_5 : 1.0) : length_4;
+    safe_5 = allowed_5 > safe_4 ? allowed_5 : safe_4;
+    long_5 = divisor_5*length_4 > twice_room ? length_4 : long_4;
+    length_5 = softkin_root(long_5*safe_5);
+    curve_6 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth*length_5)*length_5)*length_5;
+    divisor_6 = falls_slope + softkin_root(falls_slope_squared + 4.0*curve_6*room);
+    allowed_6 = divisor_6*length_5 > twice_room
+        ? 2.0*room/(divisor_6*length_5 > twice_room ? divisor_6 : 1.0) : length_5;
+    safe_6 = allowed_6 > safe_5 ? allowed_6 : safe_5;
+    way = is_rounding || (width > 0.0) ? 0.0 : (safe_6 > 1e-15 ? safe_6 : 1e-15);
+    if (is_over || (steps_still_left <= 0)) {
+      break;
+    }
+    place_ = place_ + way;
+    width = (width > 0.0 ? 2.0*width : (is_rounding ? 1e-13 : 0.0));
+    steps_still_left = steps_still_left - 1;
+  }
+  const bool is_part = is_over && (width > 0.0);
+  found[0] = (is_part ? place_ : end);
+  found[1] = (is_part ? angle : end);
+  found[2] = is_part;
+  found[3] = steps_still_left;
+  return SOFTKIN_OK;
+}
+
+/* The residual of the closure at a trial, with its slope, and lengths that turn angles. */
 static softkin_status find_try_joint(const void *machine, const double *given, double *found,
     softkin_refusal *why) {
   (void)why;
   const ac6_rzryryrxryrz_j6offset_machine *k = machine;
-  const double freed_angle = given[1], goal_r11 = given[2], goal_r12 = given[3], goal_r13 = given[4],
-      goal_r21 = given[5], goal_r22 = given[6], goal_r23 = given[7], goal_r31 = given[8],
-      goal_r32 = given[9], goal_r33 = given[10], goal_x = given[11], goal_y = given[12], goal_z = given[13],
-      reference_a1 = given[14], reference_a2 = given[15], tried = given[17];
-  const int freed = (int)given[0], side = (int)given[16], wanted_elbow = (int)given[18],
-      wanted_shoulder = (int)given[19];
+  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
+      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
+      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11],
+      reference_a1 = given[12], reference_a2 = given[13], tried = given[15];
+  const int side = (int)given[14], wanted_elbow = (int)given[16], wanted_shoulder = (int)given[17];
   const double cos_q6_tried = cos(tried);
   const double sin_q6_tried = sin(tried);
   /* wrist centre: the last joints do not move this point */
@@ -153,36 +668,28 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   const double distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried);
   const double slope_wrist_x_tried = k->j6_offset_x*(goal_r12*cos_q6_tried + goal_r11*sin_q6_tried);
   const double slope_wrist_y_tried = k->j6_offset_x*(goal_r22*cos_q6_tried + goal_r21*sin_q6_tried);
+  const double slope_distance_q1_tried = distance_q1_tried > 0.0
+      ? (slope_wrist_x_tried*wrist_x_tried + slope_wrist_y_tried*wrist_y_tried)
+      /(distance_q1_tried > 0.0 ? distance_q1_tried : 1.0) : 0.0;
   double cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried;
-  if (distance_q1_tried > k->machine_scale_times_free_angle && freed != 0) {
+  if (distance_q1_tried > k->machine_scale_times_free_angle) {
     const double sign_shoulder_tried = wanted_shoulder; /* shoulder: +1 front, -1 back */
     /* rotation by q1 that points the arm at the point */
     const double along_q1_tried = sign_shoulder_tried*wrist_x_tried;
-    double length_q1_tried, slope_length_q1_tried;
-    if (distance_q1_tried > k->machine_scale_times_free_angle) {
-      length_q1_tried = distance_q1_tried;
-      slope_length_q1_tried = distance_q1_tried > 0.0
-          ? (slope_wrist_x_tried*wrist_x_tried + slope_wrist_y_tried*wrist_y_tried)
-          /(distance_q1_tried > 0.0 ? distance_q1_tried : 1.0) : 0.0;
-    } else {
-      length_q1_tried = 1.0;
-      slope_length_q1_tried = 0.0;
-    }
-    const double one_by_distance_q1_tried = 1.0/length_q1_tried;
+    const double one_by_distance_q1_tried = 1.0/distance_q1_tried;
     /* at a singularity: the angle of the reference */
     cos_q1_tried = along_q1_tried*one_by_distance_q1_tried;
     const double across_q1_tried = sign_shoulder_tried*wrist_y_tried;
     sin_q1_tried = across_q1_tried*one_by_distance_q1_tried;
     const double slope_along_q1_tried = sign_shoulder_tried*slope_wrist_x_tried;
-    slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)*one_by_distance_q1_tried;
+    slope_cos_q1_tried = (slope_along_q1_tried - slope_distance_q1_tried*cos_q1_tried)
+        *one_by_distance_q1_tried;
     const double slope_across_q1_tried = sign_shoulder_tried*slope_wrist_y_tried;
-    slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)
+    slope_sin_q1_tried = (slope_across_q1_tried - slope_distance_q1_tried*sin_q1_tried)
         *one_by_distance_q1_tried;
   } else {
-    /* q1 where the pose leaves it free */
-    const double chosen_q1 = freed == 0 ? freed_angle : reference_a1;
-    cos_q1_tried = cos(chosen_q1); /* at a singularity: the angle of the reference */
-    sin_q1_tried = sin(chosen_q1);
+    cos_q1_tried = cos(reference_a1); /* at a singularity: the angle of the reference */
+    sin_q1_tried = sin(reference_a1);
     slope_cos_q1_tried = 0.0;
     slope_sin_q1_tried = 0.0;
   }
@@ -195,14 +702,16 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   /* distance that the remaining links must span */
   const double reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried
       + wrist_z_from_q1_tried*wrist_z_from_q1_tried);
-  const double sum_in_one_less_cos_q3_tried = k->a2_plus_effective_q3_tried - reach_tried;
-  const double sum_in_one_less_cos_q3_tried_2 = k->a2_plus_effective_q3_tried + reach_tried;
+  const double r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried;
+  const double a2_plus_length_25_minus_reach_tried = k->a2_plus_length_25 - reach_tried;
+  const double a2_plus_length_25_plus_reach_tried = k->a2_plus_length_25 + reach_tried;
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_tried = sum_in_one_less_cos_q3_tried*sum_in_one_less_cos_q3_tried_2;
-  const double sum_in_one_plus_cos_q3_tried = k->a2_minus_effective_q3_tried - reach_tried;
-  const double sum_in_one_plus_cos_q3_tried_2 = k->a2_minus_effective_q3_tried + reach_tried;
+  const double one_less_cos_q3_tried = a2_plus_length_25_minus_reach_tried*a2_plus_length_25_plus_reach_tried;
+  const double a2_minus_length_25_minus_reach_tried = k->a2_minus_length_25 - reach_tried;
+  const double a2_minus_length_25_plus_reach_tried = k->a2_minus_length_25 + reach_tried;
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_tried = -sum_in_one_plus_cos_q3_tried*sum_in_one_plus_cos_q3_tried_2;
+  const double one_plus_cos_q3_tried = -a2_minus_length_25_minus_reach_tried
+      *a2_minus_length_25_plus_reach_tried;
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried;
   const double slope_wrist_z_tried = k->j6_offset_x*(goal_r32*cos_q6_tried + goal_r31*sin_q6_tried);
@@ -212,10 +721,10 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   const double slope_reach_tried = reach_tried > 0.0
       ? (slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried + slope_wrist_z_tried*wrist_z_from_q1_tried)
       /(reach_tried > 0.0 ? reach_tried : 1.0) : 0.0;
-  const double slope_one_less_cos_q3_tried = slope_reach_tried
-      *(sum_in_one_less_cos_q3_tried - sum_in_one_less_cos_q3_tried_2);
-  const double slope_one_plus_cos_q3_tried = (sum_in_one_plus_cos_q3_tried_2 - sum_in_one_plus_cos_q3_tried)
-      *slope_reach_tried;
+  const double slope_one_less_cos_q3_tried = (a2_plus_length_25_minus_reach_tried
+      - a2_plus_length_25_plus_reach_tried)*slope_reach_tried;
+  const double slope_one_plus_cos_q3_tried = (a2_minus_length_25_plus_reach_tried
+      - a2_minus_length_25_minus_reach_tried)*slope_reach_tried;
   double divisor_of_cos_q3_tried, slope_divisor_of_cos_q3_tried;
   if (sum_q3_tried > 0.0) {
     divisor_of_cos_q3_tried = sum_q3_tried;
@@ -232,10 +741,8 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   const double root_of_sin_swing_q3_tried = softkin_root(sine_square_q3_tried);
   const double sin_swing_q3_tried = 2.0*one_by_sum_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3_tried = k->a3_by_effective_q3_tried*cos_swing_q3_tried
-      + k->d4_by_effective_q3_tried*sin_swing_q3_tried;
-  const double sin_q3_tried = k->a3_by_effective_q3_tried*sin_swing_q3_tried
-      - k->d4_by_effective_q3_tried*cos_swing_q3_tried;
+  const double cos_q3_tried = k->a3_by_length_25*cos_swing_q3_tried + k->d4_by_length_25*sin_swing_q3_tried;
+  const double sin_q3_tried = k->a3_by_length_25*sin_swing_q3_tried - k->d4_by_length_25*cos_swing_q3_tried;
   const double slope_cos_swing_q3_tried = (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
       - slope_divisor_of_cos_q3_tried*cos_swing_q3_tried)*one_by_sum_q3_tried;
   const double slope_sine_square_q3_tried = one_less_cos_q3_tried*slope_one_plus_cos_q3_tried
@@ -245,12 +752,12 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
       : 0.0;
   const double slope_sin_swing_q3_tried = (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried
       - slope_divisor_of_cos_q3_tried*sin_swing_q3_tried)*one_by_sum_q3_tried;
-  const double slope_cos_q3_tried = k->a3_by_effective_q3_tried*slope_cos_swing_q3_tried
-      + k->d4_by_effective_q3_tried*slope_sin_swing_q3_tried;
-  const double slope_sin_q3_tried = k->a3_by_effective_q3_tried*slope_sin_swing_q3_tried
-      - k->d4_by_effective_q3_tried*slope_cos_swing_q3_tried;
+  const double slope_cos_q3_tried = k->a3_by_length_25*slope_cos_swing_q3_tried
+      + k->d4_by_length_25*slope_sin_swing_q3_tried;
+  const double slope_sin_q3_tried = k->a3_by_length_25*slope_sin_swing_q3_tried
+      - k->d4_by_length_25*slope_cos_swing_q3_tried;
   double cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried;
-  if (reach_tried > k->machine_scale_times_free_angle && freed != 1) {
+  if (reach_tried > k->machine_scale_times_free_angle) {
     const double arm_along_q2_tried = k->a3*sin_q3_tried + k->d4*cos_q3_tried;
     const double arm_across_q2_tried = k->a2 + k->a3*cos_q3_tried - k->d4*sin_q3_tried;
     /* rotation by q2 that takes the arm to its target point */
@@ -268,7 +775,7 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
         + slope_arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*slope_wrist_z_tried
         - slope_arm_along_q2_tried*wrist_z_from_q1_tried;
     double length_q2_tried, slope_length_q2_tried;
-    if (reach_tried > k->machine_scale_times_free_angle && sum_in_length_q2_tried > 0.0) {
+    if (sum_in_length_q2_tried > 0.0) {
       length_q2_tried = softkin_root(sum_in_length_q2_tried);
       slope_length_q2_tried = length_q2_tried > 0.0
           ? (across_q2_tried*slope_across_q2_tried + along_q2_tried*slope_along_q2_tried)
@@ -286,14 +793,11 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
     slope_sin_q2_tried = (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)
         *one_by_root_of_length_q2_tried;
   } else {
-    /* q2 where the pose leaves it free */
-    const double chosen_q2 = freed == 1 ? freed_angle : reference_a2;
-    cos_q2_tried = cos(chosen_q2); /* at a singularity: the angle of the reference */
-    sin_q2_tried = sin(chosen_q2);
+    cos_q2_tried = cos(reference_a2); /* at a singularity: the angle of the reference */
+    sin_q2_tried = sin(reference_a2);
     slope_cos_q2_tried = 0.0;
     slope_sin_q2_tried = 0.0;
   }
-  const double r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried;
   const double sin_q23_tried = cos_q2_tried*sin_q3_tried + cos_q3_tried*sin_q2_tried;
   const double cos_q23_tried = cos_q2_tried*cos_q3_tried - sin_q2_tried*sin_q3_tried;
   const double r11_from_q123_tried = r11_from_q1_tried*cos_q23_tried - goal_r31*sin_q23_tried;
@@ -313,29 +817,175 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
       + r12_from_q1_tried*slope_cos_q23_tried - goal_r32*slope_sin_q23_tried;
   const double slope_r12_from_q123_before_q6_tried = (r11_from_q123_tried + slope_r12_from_q123_tried)
       *cos_q6_tried + (slope_r11_from_q123_tried - r12_from_q123_tried)*sin_q6_tried;
-  const double guard = 1.000000000001 - cos_swing_q3_tried*cos_swing_q3_tried;
-  const double slope_guard = -2.0*slope_cos_swing_q3_tried*cos_swing_q3_tried;
   found[0] = -r12_from_q123_before_q6_tried;
   found[1] = -slope_r12_from_q123_before_q6_tried;
-  found[2] = guard;
-  found[3] = slope_guard;
-  found[4] = cos_q1_tried;
-  found[5] = sin_q1_tried;
-  found[6] = cos_q2_tried;
-  found[7] = sin_q2_tried;
+  found[2] = distance_q1_tried;
+  found[3] = distance_q1_tried*slope_distance_q1_tried;
+  found[4] = reach_tried;
+  found[5] = reach_tried*slope_reach_tried;
   return SOFTKIN_OK;
 }
 
-/* The joints at a root, improved by Newton's method, and whether they are on the branch. */
-static softkin_status find_finish_root(const void *machine, const double *given, double *found,
+/* Where a length that turns an angle is shortest, and how far beside it turns by a sixth. */
+static softkin_status find_shortest(const void *machine, const double *given, double *found,
     softkin_refusal *why) {
   const ac6_rzryryrxryrz_j6offset_machine *k = machine;
-  const double freed_angle = given[1], goal_r11 = given[2], goal_r12 = given[3], goal_r13 = given[4],
-      goal_r21 = given[5], goal_r22 = given[6], goal_r23 = given[7], goal_r31 = given[8],
-      goal_r32 = given[9], goal_r33 = given[10], goal_x = given[11], goal_y = given[12], goal_z = given[13],
-      reference_a1 = given[14], reference_a2 = given[15], tried = given[17];
-  const int freed = (int)given[0], side = (int)given[16], wanted_crossing = (int)given[18],
-      wanted_elbow = (int)given[19], wanted_shoulder = (int)given[20], wanted_wrist = (int)given[21];
+  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
+      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
+      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11], high = given[12],
+      low = given[13], reference_a1 = given[14], reference_a2 = given[15];
+  const int side = (int)given[16], wanted_elbow = (int)given[17], wanted_shoulder = (int)given[18],
+      which_length = (int)given[19];
+  const double high_minus_low = high - low;
+  const double high_minus_low_times_1_by_32 = high_minus_low/32.0;
+  /* where the length is shortest */
+  double place_ = low;
+  double best_place = low;
+  double least = 1e30;
+  double last_place = low;
+  double growth_before = 0.0;
+  double bend = 0.0;
+  int steps = 0;
+  double length_1, growth_1, length_2, growth_2, growth, length, best_now, gap, way, bend_now, bend_now_2,
+      place_minus_growth_by_bend_now, sum_in_next_place, next_place, shared_value;
+  bool is_less;
+  for (int pass = 0; pass < 22; pass += 1) {
+    double results[6];
+    const double arguments[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+        goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side, place_, wanted_elbow,
+        wanted_shoulder};
+    const softkin_status status = find_try_joint(k, arguments, results, why);
+    if (status != SOFTKIN_OK) {
+      return status;
+    }
+    length_1 = results[2];
+    growth_1 = results[3];
+    length_2 = results[4];
+    growth_2 = results[5];
+    growth = which_length == 2 ? growth_2 : growth_1;
+    length = which_length == 2 ? length_2 : length_1;
+    is_less = length < least;
+    best_now = is_less ? place_ : best_place;
+    gap = growth - growth_before;
+    way = place_ - last_place;
+    bend_now = (steps > 9) && (gap*way > 0.0) ? gap/(gap*way > 0.0 ? way : 1.0) : bend;
+    bend_now_2 = bend_now > 0.0 ? bend_now : 1.0;
+    place_minus_growth_by_bend_now = place_ - growth/bend_now_2;
+    sum_in_next_place = best_now + high_minus_low_times_1_by_32;
+    next_place = steps < 8 ? low + 0.125*(1.0 + steps)*high_minus_low
+        : (steps < 9 ? best_now : (steps == 9
+        ? (sum_in_next_place > high ? best_now - high_minus_low_times_1_by_32 : sum_in_next_place)
+        : (place_minus_growth_by_bend_now < low ? low
+        : (place_minus_growth_by_bend_now > high ? high : place_minus_growth_by_bend_now))));
+    shared_value = is_less ? length : least;
+    if (steps >= 21) {
+      break;
+    }
+    place_ = next_place;
+    best_place = best_now;
+    least = shared_value;
+    last_place = last_place + way;
+    growth_before = growth;
+    bend = bend_now;
+    steps = 1 + steps;
+  }
+  found[0] = best_now;
+  found[1] = (bend_now > 0.0 ? 1.7*shared_value/softkin_root(bend_now_2) : 0.0);
+  return SOFTKIN_OK;
+}
+
+/* The joint value next to a start at which the residual is smallest. */
+static softkin_status find_settle_joint(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
+  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
+      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
+      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11], high = given[12],
+      low = given[13], reference_a1 = given[14], reference_a2 = given[15];
+  const int side = (int)given[16], start_number = (int)given[17], wanted_elbow = (int)given[18],
+      wanted_shoulder = (int)given[19];
+  const bool is_at_length = start_number > 9;
+  double results[2] = {0.0};
+  if (is_at_length) {
+    const double arguments[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+        goal_r32, goal_r33, goal_x, goal_y, goal_z, high, low, reference_a1, reference_a2, side,
+        wanted_elbow, wanted_shoulder, (start_number > 12 ? 2 : 1)};
+    const softkin_status status = find_shortest(k, arguments, results, why);
+    if (status != SOFTKIN_OK) {
+      return status;
+    }
+  }
+  const double shortest_place = results[0], aside = results[1];
+  double start_of_steps;
+  if (is_at_length) {
+    const double sum_in_start_of_steps = shortest_place
+        + ((start_number == 11 ? 1.0 : (start_number == 12 ? -1.0 : 0.0))
+        + (start_number == 14 ? 1.0 : (start_number == 15 ? -1.0 : 0.0)))*aside;
+    start_of_steps = sum_in_start_of_steps < low ? low
+        : (sum_in_start_of_steps > high ? high : sum_in_start_of_steps);
+  } else {
+    const double part_width = high - low;
+    const double value_in_start_of_steps = start_number == 9 ? 0.875
+        : (start_number == 8 ? 0.625
+        : (start_number == 7 ? 0.375
+        : (start_number == 6 ? 0.125
+        : (start_number == 5 ? 0.75
+        : (start_number == 4 ? 0.25 : (start_number == 3 ? 1.0 : (start_number == 2 ? 0.0 : 0.5)))))));
+    start_of_steps = low + part_width*value_in_start_of_steps;
+  }
+  /* Newton's method on the residual of the branch */
+  double place_ = start_of_steps;
+  double best_place = start_of_steps;
+  double least = 1e30;
+  double way = 0.0;
+  double share = 1.0;
+  int steps = 0;
+  double remainder, slope, size, best_now, way_now, share_now, best_now_minus_share_now_times_way_now,
+      next_place;
+  bool is_less;
+  for (int pass = 0; pass < 25; pass += 1) {
+    double results_of_2[6];
+    const double arguments_of_2[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+        goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side, place_, wanted_elbow,
+        wanted_shoulder};
+    const softkin_status status_of_2 = find_try_joint(k, arguments_of_2, results_of_2, why);
+    if (status_of_2 != SOFTKIN_OK) {
+      return status_of_2;
+    }
+    remainder = results_of_2[0];
+    slope = results_of_2[1];
+    size = fabs(remainder);
+    is_less = size < least;
+    best_now = is_less ? place_ : best_place;
+    way_now = is_less ? remainder/(fabs(slope) > 0.0 ? slope : 1e30) : way;
+    share_now = is_less ? 1.0 : 0.25*share;
+    best_now_minus_share_now_times_way_now = best_now - share_now*way_now;
+    next_place = best_now_minus_share_now_times_way_now < low ? low
+        : (best_now_minus_share_now_times_way_now > high ? high : best_now_minus_share_now_times_way_now);
+    if ((steps >= 24) || (fabs(next_place - place_) <= 0.0)) {
+      break;
+    }
+    place_ = next_place;
+    best_place = best_now;
+    least = (is_less ? size : least);
+    way = way_now;
+    share = share_now;
+    steps = 1 + steps;
+  }
+  found[0] = best_now;
+  return SOFTKIN_OK;
+}
+
+/* The joints with the searched one known. */
+static softkin_status find_joints_at(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  (void)why;
+  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
+  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
+      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
+      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11],
+      reference_a1 = given[12], reference_a2 = given[13], tried = given[15];
+  const int side = (int)given[14], wanted_elbow = (int)given[16], wanted_shoulder = (int)given[17];
   const double cos_q6_tried = cos(tried);
   const double sin_q6_tried = sin(tried);
   /* wrist centre: the last joints do not move this point */
@@ -345,21 +995,17 @@ static softkin_status find_finish_root(const void *machine, const double *given,
       - k->d6*goal_r23;
   /* distance of the point from the axis of q1 */
   const double distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried);
-  const double sign_shoulder_tried = wanted_shoulder; /* shoulder: +1 front, -1 back */
   double cos_q1_tried, sin_q1_tried;
-  if (distance_q1_tried > k->machine_scale_times_free_angle && freed != 0) {
+  if (distance_q1_tried > k->machine_scale_times_free_angle) {
+    const double sign_shoulder_tried = wanted_shoulder; /* shoulder: +1 front, -1 back */
     /* rotation by q1 that points the arm at the point */
     const double along_q1_tried = sign_shoulder_tried*wrist_x_tried;
-    const double length_q1_tried = distance_q1_tried > k->machine_scale_times_free_angle ? distance_q1_tried
-        : 1.0;
-    cos_q1_tried = along_q1_tried/length_q1_tried; /* at a singularity: the angle of the reference */
+    cos_q1_tried = along_q1_tried/distance_q1_tried; /* at a singularity: the angle of the reference */
     const double across_q1_tried = sign_shoulder_tried*wrist_y_tried;
-    sin_q1_tried = across_q1_tried/length_q1_tried;
+    sin_q1_tried = across_q1_tried/distance_q1_tried;
   } else {
-    /* q1 where the pose leaves it free */
-    const double chosen_q1 = freed == 0 ? freed_angle : reference_a1;
-    cos_q1_tried = cos(chosen_q1); /* at a singularity: the angle of the reference */
-    sin_q1_tried = sin(chosen_q1);
+    cos_q1_tried = cos(reference_a1); /* at a singularity: the angle of the reference */
+    sin_q1_tried = sin(reference_a1);
   }
   /* coordinate of the point that the remaining links must reach */
   const double wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - k->a1;
@@ -371,11 +1017,11 @@ static softkin_status find_finish_root(const void *machine, const double *given,
   const double reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried
       + wrist_z_from_q1_tried*wrist_z_from_q1_tried);
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_tried = (k->a2_plus_effective_q3_tried + reach_tried)
-      *(k->a2_plus_effective_q3_tried - reach_tried);
+  const double one_less_cos_q3_tried = (k->a2_plus_length_25 + reach_tried)
+      *(k->a2_plus_length_25 - reach_tried);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_tried = (reach_tried - k->a2_minus_effective_q3_tried)
-      *(k->a2_minus_effective_q3_tried + reach_tried);
+  const double one_plus_cos_q3_tried = (reach_tried - k->a2_minus_length_25)
+      *(k->a2_minus_length_25 + reach_tried);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried;
   const double divisor_of_cos_q3_tried = sum_q3_tried > 0.0 ? sum_q3_tried : 1.0;
@@ -386,12 +1032,10 @@ static softkin_status find_finish_root(const void *machine, const double *given,
   const double sin_swing_q3_tried = 2.0*softkin_root(sine_square_q3_tried)*sign_elbow_tried
       /divisor_of_cos_q3_tried;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3_tried = k->a3_by_effective_q3_tried*cos_swing_q3_tried
-      + k->d4_by_effective_q3_tried*sin_swing_q3_tried;
-  const double sin_q3_tried = k->a3_by_effective_q3_tried*sin_swing_q3_tried
-      - k->d4_by_effective_q3_tried*cos_swing_q3_tried;
+  const double cos_q3_tried = k->a3_by_length_25*cos_swing_q3_tried + k->d4_by_length_25*sin_swing_q3_tried;
+  const double sin_q3_tried = k->a3_by_length_25*sin_swing_q3_tried - k->d4_by_length_25*cos_swing_q3_tried;
   double cos_q2_tried, sin_q2_tried;
-  if (reach_tried > k->machine_scale_times_free_angle && freed != 1) {
+  if (reach_tried > k->machine_scale_times_free_angle) {
     const double arm_along_q2_tried = k->a3*sin_q3_tried + k->d4*cos_q3_tried;
     const double arm_across_q2_tried = k->a2 + k->a3*cos_q3_tried - k->d4*sin_q3_tried;
     /* rotation by q2 that takes the arm to its target point */
@@ -400,15 +1044,12 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     const double across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried
         - arm_along_q2_tried*wrist_z_from_q1_tried;
     const double sum_in_length_q2_tried = across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried;
-    const double length_q2_tried = (reach_tried > k->machine_scale_times_free_angle)
-        && (sum_in_length_q2_tried > 0.0) ? softkin_root(sum_in_length_q2_tried) : 1.0;
+    const double length_q2_tried = sum_in_length_q2_tried > 0.0 ? softkin_root(sum_in_length_q2_tried) : 1.0;
     cos_q2_tried = along_q2_tried/length_q2_tried; /* at a singularity: the angle of the reference */
     sin_q2_tried = across_q2_tried/length_q2_tried;
   } else {
-    /* q2 where the pose leaves it free */
-    const double chosen_q2 = freed == 1 ? freed_angle : reference_a2;
-    cos_q2_tried = cos(chosen_q2); /* at a singularity: the angle of the reference */
-    sin_q2_tried = sin(chosen_q2);
+    cos_q2_tried = cos(reference_a2); /* at a singularity: the angle of the reference */
+    sin_q2_tried = sin(reference_a2);
   }
   const double r21_from_q1_tried = goal_r21*cos_q1_tried - goal_r11*sin_q1_tried;
   const double r22_from_q1_tried = goal_r22*cos_q1_tried - goal_r12*sin_q1_tried;
@@ -428,14 +1069,36 @@ static softkin_status find_finish_root(const void *machine, const double *given,
   const double r33_from_q123_tried = goal_r33*cos_q23_tried + r13_from_q1_tried*sin_q23_tried;
   const double r33_from_q1234_tried = r22_from_q123_before_q6_tried*r33_from_q123_tried
       - r23_from_q1_tried*r32_from_q123_before_q6_tried;
-  /* Newton's method on the closure */
-  double q1 = softkin_angle_of(sin_q1_tried, cos_q1_tried);
-  double q2 = softkin_angle_of(sin_q2_tried, cos_q2_tried);
-  double q3 = softkin_angle_of(sin_q3_tried, cos_q3_tried);
-  double q4 = softkin_angle_of(r32_from_q123_before_q6_tried, r22_from_q123_before_q6_tried);
-  double q5 = softkin_angle_of(r13_from_q123_tried, r33_from_q1234_tried);
-  double q6 = softkin_angle_of(sin_q6_tried, cos_q6_tried);
-  int passes = 0;
+  found[0] = softkin_angle_of(sin_q1_tried, cos_q1_tried);
+  found[1] = softkin_angle_of(sin_q2_tried, cos_q2_tried);
+  found[2] = softkin_angle_of(sin_q3_tried, cos_q3_tried);
+  found[3] = softkin_angle_of(r32_from_q123_before_q6_tried, r22_from_q123_before_q6_tried);
+  found[4] = softkin_angle_of(r13_from_q123_tried, r33_from_q1234_tried);
+  found[5] = softkin_angle_of(sin_q6_tried, cos_q6_tried);
+  return SOFTKIN_OK;
+}
+
+/* The joints that meet the pose, and whether they are on the branch. */
+static softkin_status find_finish_root(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  (void)why;
+  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
+  const double begun_q1 = given[0], begun_q2 = given[1], begun_q3 = given[2], begun_q4 = given[3],
+      begun_q5 = given[4], begun_q6 = given[5], goal_r11 = given[6], goal_r12 = given[7],
+      goal_r13 = given[8], goal_r21 = given[9], goal_r22 = given[10], goal_r23 = given[11],
+      goal_r31 = given[12], goal_r32 = given[13], goal_r33 = given[14], goal_x = given[15],
+      goal_y = given[16], goal_z = given[17];
+  const int wanted_crossing = (int)given[18], wanted_elbow = (int)given[19],
+      wanted_shoulder = (int)given[20], wanted_wrist = (int)given[21];
+  /* steps of damped least squares on the closure */
+  double q1 = begun_q1;
+  double q2 = begun_q2;
+  double q3 = begun_q3;
+  double q4 = begun_q4;
+  double q5 = begun_q5;
+  double q6 = begun_q6;
+  double error_before = 9.0;
+  int passes_left = 64;
   double cos_q1, q2_plus_q3, cos_q23, r11_at_q23, sin_q1, sin_q23, r13_at_q23, sin_q4, cos_q4, r13_at_q4,
       sin_q5, cos_q5, r13_at_q5, x_at_q2, sin_q2, r13_at_q2, x_at_q3, x_at_q4, x_at_q5, r11_at_q5, x_at_q6,
       x, error_1, r21_at_q23, r23_at_q23, r23_at_q4, r23_at_q5, y_at_q2, r23_at_q2, y_at_q3, y_at_q4,
@@ -444,19 +1107,17 @@ static softkin_status find_finish_root(const void *machine, const double *given,
       r32_at_q6, error_4, r12_at_q4, r11_at_q6, r12_at_q6, error_5, error_6, agreement, error, rate_1_1,
       rate_2_1, z_minus_d1, cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3,
       z_minus_z_at_q4, y_minus_y_at_q4, rate_1_4, z_minus_z_at_q5, y_minus_y_at_q5, rate_1_5,
-      z_minus_z_at_q6, y_minus_y_at_q6, rate_1_6, product_1_1, sin_q1_times_one_by_machine_scale, rate_2_2,
-      rate_2_3, x_minus_x_at_q4, rate_2_4, x_minus_x_at_q5, rate_2_5, x_minus_x_at_q6, rate_2_6, product_1_2,
-      rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6, product_1_3, rate_1_2_plus_rate_1_3, product_1_4,
-      product_1_5, product_1_6, product_2_2, product_2_3, rate_2_2_plus_rate_2_3, product_2_4, product_2_5,
-      product_2_6, product_3_3, rate_3_2_plus_rate_3_3, product_3_4, product_3_5, product_3_6, product_4_4,
-      product_4_5, product_4_6, product_5_5, product_5_6, product_6_6, multiplier_1, multiplier_2,
-      multiplier_3, multiplier_4, multiplier_5, multiplier_6, step_q1, sum_in_step_q2, step_q2, step_q3,
-      step_q4, step_q5, step_q6, size;
-  bool taken;
-  for (int pass = 0;; pass += 1) {
-    if (pass == 7) {
-      return softkin_refuse(why, SOFTKIN_UNREACHABLE, "", "", 0.0, 0);
-    }
+      z_minus_z_at_q6, y_minus_y_at_q6, rate_1_6, product_in_damping, damping, product_1_1,
+      sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, x_minus_x_at_q4, rate_2_4, x_minus_x_at_q5,
+      rate_2_5, x_minus_x_at_q6, rate_2_6, product_1_2, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6,
+      product_1_3, rate_1_2_plus_rate_1_3, product_1_4, product_1_5, product_1_6, product_2_2, product_2_3,
+      rate_2_2_plus_rate_2_3, product_2_4, product_2_5, product_2_6, product_3_3, rate_3_2_plus_rate_3_3,
+      product_3_4, product_3_5, product_3_6, product_4_4, product_4_5, product_4_6, product_5_5, product_5_6,
+      product_6_6, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6,
+      step_q1, sum_in_step_q2, step_q2, step_q3, step_q4, step_q5, step_q6, step_length, shrinking;
+  int cost;
+  bool meets_pose;
+  for (int pass = 0; pass < 65; pass += 1) {
     cos_q1 = cos(q1);
     q2_plus_q3 = q2 + q3;
     cos_q23 = cos(q2_plus_q3);
@@ -543,7 +1204,9 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     z_minus_z_at_q6 = z - z_at_q6;
     y_minus_y_at_q6 = y - y_at_q6;
     rate_1_6 = k->one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6);
-    product_1_1 = 1e-12 + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4
+    product_in_damping = 0.001*error;
+    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
+    product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4
         + rate_1_5*rate_1_5 + rate_1_6*rate_1_6;
     sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
     rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale;
@@ -569,7 +1232,7 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     product_1_5 = rate_1_2_plus_rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5
         + r23_at_q5*rate_1_6;
     product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 - rate_1_4*sin_q23;
-    product_2_2 = 1e-12 + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4
+    product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4
         + rate_2_5*rate_2_5 + rate_2_6*rate_2_6;
     product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5
         + rate_2_6*rate_3_6;
@@ -579,7 +1242,7 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     product_2_5 = rate_2_2_plus_rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5
         + r23_at_q5*rate_2_6;
     product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 - rate_2_4*sin_q23;
-    product_3_3 = 1e-12 + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5
+    product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5
         + rate_3_6*rate_3_6;
     rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3;
     product_3_4 = r11_at_q23*rate_3_4 + r12_at_q4*rate_3_5 + r13_at_q5*rate_3_6
@@ -587,14 +1250,14 @@ static softkin_status find_finish_root(const void *machine, const double *given,
     product_3_5 = rate_3_2_plus_rate_3_3*cos_q1 + r21_at_q23*rate_3_4 + r22_at_q4*rate_3_5
         + r23_at_q5*rate_3_6;
     product_3_6 = r32_at_q4*rate_3_5 + r33_at_q5*rate_3_6 - rate_3_4*sin_q23;
-    product_4_4 = 1e-12 + r11_at_q23*r11_at_q23 + r12_at_q4*r12_at_q4 + r13_at_q5*r13_at_q5
+    product_4_4 = damping + r11_at_q23*r11_at_q23 + r12_at_q4*r12_at_q4 + r13_at_q5*r13_at_q5
         + 2.0*sin_q1*sin_q1;
     product_4_5 = r11_at_q23*r21_at_q23 + r12_at_q4*r22_at_q4 + r13_at_q5*r23_at_q5 - 2.0*cos_q1*sin_q1;
     product_4_6 = r12_at_q4*r32_at_q4 + r13_at_q5*r33_at_q5 - r11_at_q23*sin_q23;
-    product_5_5 = 1e-12 + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r22_at_q4*r22_at_q4
+    product_5_5 = damping + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r22_at_q4*r22_at_q4
         + r23_at_q5*r23_at_q5;
     product_5_6 = r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5 - r21_at_q23*sin_q23;
-    product_6_6 = 1.000000000001 + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + sin_q23*sin_q23;
+    product_6_6 = 1.0 + damping + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + sin_q23*sin_q23;
     /* damped least squares: the shortest step that cancels the error */
     double system[6][7] = {{product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6,
         error_1}, {product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6, error_2},
@@ -619,19 +1282,23 @@ static softkin_status find_finish_root(const void *machine, const double *given,
         + multiplier_5*r22_at_q4 + multiplier_6*r32_at_q4;
     step_q6 = multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6 + multiplier_4*r13_at_q5
         + multiplier_5*r23_at_q5 + multiplier_6*r33_at_q5;
-    size = step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4 + step_q5*step_q5
-        + step_q6*step_q6;
-    taken = size <= error; /* whether the error becomes smaller */
-    if ((!taken) || (error <= 1e-14) || (passes >= 6)) {
+    step_length = sqrt(step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4
+        + step_q5*step_q5 + step_q6*step_q6);
+    shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
+    cost = error > 0.999*error_before ? 8 : 1;
+    meets_pose = error <= 1e-11;
+    if ((error <= 1e-14) || (passes_left <= 0)
+        || (meets_pose && ((passes_left <= 0) || (2.0*error > error_before)))) {
       break;
     }
-    q1 = q1 + (taken ? step_q1 : 0.0);
-    q2 = q2 + (taken ? step_q2 : 0.0);
-    q3 = q3 + (taken ? step_q3 : 0.0);
-    q4 = q4 + (taken ? step_q4 : 0.0);
-    q5 = q5 + (taken ? step_q5 : 0.0);
-    q6 = q6 + (taken ? step_q6 : 0.0);
-    passes = 1 + passes;
+    q1 = q1 + shrinking*step_q1;
+    q2 = q2 + shrinking*step_q2;
+    q3 = q3 + shrinking*step_q3;
+    q4 = q4 + shrinking*step_q4;
+    q5 = q5 + shrinking*step_q5;
+    q6 = q6 + shrinking*step_q6;
+    error_before = error;
+    passes_left = passes_left - cost;
   }
   /* determinant of the Jacobian, positions in characteristic lengths */
   double system_of_2[6][6] = {{rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6},
@@ -641,68 +1308,208 @@ static softkin_status find_finish_root(const void *machine, const double *given,
       {0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5},
       {1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5}};
   const double determinant = softkin_solve(&system_of_2[0][0], 6, 0);
-  const bool fits = (error <= 1e-10) && ((k->searched ? sin_q4 : cos_q5)*wanted_wrist >= -1e-6)
+  const bool fits = meets_pose && ((k->searched ? sin_q4 : cos_q5)*wanted_wrist >= -1e-6)
       && (-(wanted_crossing*wanted_elbow*wanted_shoulder)*determinant*k->quotient_in_fits >= -1e-6)
       && (wanted_elbow*(k->a3*sin(q3) + cos(q3)*k->d4)*k->one_by_machine_scale >= -1e-6)
-      && ((k->a1 + k->a2*sin_q2 + k->a3*sin_q23 + k->d4*cos_q23)*k->one_by_machine_scale
-      *sign_shoulder_tried >= -1e-6);
+      && (wanted_shoulder*(k->a1 + k->a2*sin_q2 + k->a3*sin_q23 + k->d4*cos_q23)
+      *k->one_by_machine_scale >= -1e-6);
   found[0] = fits;
-  found[1] = q1;
-  found[2] = q2;
-  found[3] = q3;
-  found[4] = q4;
-  found[5] = q5;
-  found[6] = q6;
+  found[1] = meets_pose;
+  found[2] = q1;
+  found[3] = q2;
+  found[4] = q3;
+  found[5] = q4;
+  found[6] = q5;
+  found[7] = q6;
   return SOFTKIN_OK;
 }
 
-static softkin_status find_try_joint_at(const void *machine, const double *arguments,
-    const softkin_place *place, double *results) {
-  const double given[] = {place->freed, place->freed_angle, arguments[3], arguments[4], arguments[5],
-      arguments[6], arguments[7], arguments[8], arguments[9], arguments[10], arguments[11], arguments[0],
-      arguments[1], arguments[2], arguments[16], arguments[17], place->side, place->tried, arguments[13],
-      arguments[12]};
-  return find_try_joint(machine, given, results, NULL);
-}
-
-static softkin_status find_finish_root_at(const void *machine, const double *arguments,
-    const softkin_place *place, double *results) {
-  const double given[] = {place->freed, place->freed_angle, arguments[3], arguments[4], arguments[5],
-      arguments[6], arguments[7], arguments[8], arguments[9], arguments[10], arguments[11], arguments[0],
-      arguments[1], arguments[2], arguments[16], arguments[17], place->side, place->tried, arguments[15],
-      arguments[13], arguments[12], arguments[14]};
-  return find_finish_root(machine, given, results, NULL);
-}
-
-/* The joints at the root that is nearest to the start; zeros where the machine needs no scan. */
+/* The joints at the root nearest to the start, or next ahead of it; zeros where there is none. */
 static softkin_status find_root(const void *machine, const double *given, double *found,
     softkin_refusal *why) {
-  (void)why;
   const ac6_rzryryrxryrz_j6offset_machine *k = machine;
   const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
       goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
       goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11],
-      reference_a1 = given[13], reference_a2 = given[14], start_ = given[15];
-  const int wanted_crossing = (int)given[16], wanted_elbow = (int)given[17],
-      wanted_shoulder = (int)given[18], wanted_wrist = (int)given[19];
-  const bool looked_for = given[12] != 0.0;
-  /* root scan along A6 */
-  const double arguments[] = {goal_x, goal_y, goal_z, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22,
-      goal_r23, goal_r31, goal_r32, goal_r33, wanted_shoulder, wanted_elbow, wanted_wrist, wanted_crossing,
-      reference_a1, reference_a2};
-  const softkin_search search = {k, arguments, find_try_joint_at, find_finish_root_at, 2, 7, NULL, 0};
-  double root[7];
-  softkin_nearest_root(&search, start_, looked_for, root);
-  const double found_q1 = root[1], found_q2 = root[2], found_q3 = root[3], found_q4 = root[4],
-      found_q5 = root[5], found_q6 = root[6];
-  const bool found_ = root[0] != 0.0;
-  found[0] = found_;
-  found[1] = found_q1;
-  found[2] = found_q2;
-  found[3] = found_q3;
-  found[4] = found_q4;
-  found[5] = found_q5;
-  found[6] = found_q6;
+      reference_a1 = given[14], reference_a2 = given[15], start_ = given[16];
+  const int wanted_crossing = (int)given[17], wanted_elbow = (int)given[18],
+      wanted_shoulder = (int)given[19], wanted_wrist = (int)given[20];
+  const bool looked_for = given[12] != 0.0, onward = given[13] != 0.0;
+  double results[18] = {0.0};
+  if (looked_for) {
+    const double arguments[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+        goal_r32, goal_r33, goal_x, goal_y, goal_z};
+    const softkin_status status = find_compute_wave(k, arguments, results, why);
+    if (status != SOFTKIN_OK) {
+      return status;
+    }
+  }
+  const double wave_cos_0 = results[0], wave_cos_1 = results[1], wave_cos_2 = results[2],
+      wave_cos_3 = results[3], wave_cos_4 = results[4], wave_cos_5 = results[5], wave_cos_6 = results[6],
+      wave_cos_7 = results[7], wave_cos_8 = results[8], wave_sin_1 = results[9], wave_sin_2 = results[10],
+      wave_sin_3 = results[11], wave_sin_4 = results[12], wave_sin_5 = results[13], wave_sin_6 = results[14],
+      wave_sin_7 = results[15], wave_sin_8 = results[16], noise = results[17];
+  const double begin = onward ? 1e-7 + start_ : 0.1;
+  const double end_of_circle = begin + (onward ? 360.0*SOFTKIN_DEGREE - 2e-7 : 360.0*SOFTKIN_DEGREE);
+  /* the parts of the circle, and their starts */
+  double place_ = begin;
+  double low_before = begin;
+  double high_before = begin;
+  int start_before = 0;
+  int side_before = 1;
+  int steps_before = 1000;
+  int starts_left = 320;
+  double nearest = 9.0;
+  int mirrored = 0;
+  double kept_q1 = 0.0;
+  double kept_q2 = 0.0;
+  double kept_q3 = 0.0;
+  double kept_q4 = 0.0;
+  double kept_q5 = 0.0;
+  double kept_q6 = 0.0;
+  double mirror_q1 = 0.0;
+  double mirror_q2 = 0.0;
+  double mirror_q3 = 0.0;
+  double mirror_q4 = 0.0;
+  double mirror_q5 = 0.0;
+  double mirror_q6 = 0.0;
+  double low, high, low_now, high_now, settled, begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6,
+      start_q1, start_q2, start_q3, start_q4, start_q5, start_q6, joint_q1, joint_q2, joint_q3, joint_q4,
+      joint_q5, joint_q6, high_now_minus_low_now, start_minus_joint_q6, distance, mirror_now_q1,
+      mirror_now_q2, mirror_now_q3, mirror_now_q4, mirror_now_q5, mirror_now_q6;
+  int steps_still_left, number_now, number_now_plus_one, value_in_next_start, next_start, next_side,
+      steps_now;
+  bool is_between, is_part, has_part, is_new, fits, meets_pose, mirrors, goes_on, is_better;
+  for (int pass = 0; pass < 640; pass += 1) {
+    is_between = start_before == 0;
+    double results_of_2[4] = {0.0};
+    if (is_between) {
+      const double arguments_of_2[] = {place_, end_of_circle, noise, steps_before, wave_cos_0, wave_cos_1,
+          wave_cos_2, wave_cos_3, wave_cos_4, wave_cos_5, wave_cos_6, wave_cos_7, wave_cos_8, wave_sin_1,
+          wave_sin_2, wave_sin_3, wave_sin_4, wave_sin_5, wave_sin_6, wave_sin_7, wave_sin_8};
+      const softkin_status status_of_2 = find_part(k, arguments_of_2, results_of_2, why);
+      if (status_of_2 != SOFTKIN_OK) {
+        return status_of_2;
+      }
+    }
+    low = results_of_2[0];
+    high = results_of_2[1];
+    is_part = results_of_2[2] != 0.0;
+    steps_still_left = (int)results_of_2[3];
+    low_now = is_between ? low : low_before;
+    high_now = is_between ? high : high_before;
+    number_now = is_between ? 1 : start_before;
+    has_part = is_part || (!is_between);
+    is_new = has_part && (mirrored == 0);
+    double results_of_3[1] = {0.0};
+    if (is_new) {
+      const double arguments_of_3[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+          goal_r32, goal_r33, goal_x, goal_y, goal_z, high_now, low_now, reference_a1, reference_a2,
+          side_before, number_now, wanted_elbow, wanted_shoulder};
+      const softkin_status status_of_3 = find_settle_joint(k, arguments_of_3, results_of_3, why);
+      if (status_of_3 != SOFTKIN_OK) {
+        return status_of_3;
+      }
+    }
+    settled = results_of_3[0];
+    double results_of_4[6] = {0.0};
+    if (is_new) {
+      const double arguments_of_4[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+          goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side_before, settled,
+          wanted_elbow, wanted_shoulder};
+      const softkin_status status_of_4 = find_joints_at(k, arguments_of_4, results_of_4, why);
+      if (status_of_4 != SOFTKIN_OK) {
+        return status_of_4;
+      }
+    }
+    begun_q1 = results_of_4[0];
+    begun_q2 = results_of_4[1];
+    begun_q3 = results_of_4[2];
+    begun_q4 = results_of_4[3];
+    begun_q5 = results_of_4[4];
+    begun_q6 = results_of_4[5];
+    start_q1 = is_new ? begun_q1 : mirror_q1;
+    start_q2 = is_new ? begun_q2 : mirror_q2;
+    start_q3 = is_new ? begun_q3 : mirror_q3;
+    start_q4 = is_new ? begun_q4 : mirror_q4;
+    start_q5 = is_new ? begun_q5 : mirror_q5;
+    start_q6 = is_new ? begun_q6 : mirror_q6;
+    double results_of_5[8] = {0.0};
+    if (has_part) {
+      const double arguments_of_5[] = {start_q1, start_q2, start_q3, start_q4, start_q5, start_q6, goal_r11,
+          goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32, goal_r33, goal_x, goal_y,
+          goal_z, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist};
+      const softkin_status status_of_5 = find_finish_root(k, arguments_of_5, results_of_5, why);
+      if (status_of_5 != SOFTKIN_OK) {
+        return status_of_5;
+      }
+    }
+    fits = results_of_5[0] != 0.0;
+    meets_pose = results_of_5[1] != 0.0;
+    joint_q1 = results_of_5[2];
+    joint_q2 = results_of_5[3];
+    joint_q3 = results_of_5[4];
+    joint_q4 = results_of_5[5];
+    joint_q5 = results_of_5[6];
+    joint_q6 = results_of_5[7];
+    mirrors = is_new && meets_pose && (!fits);
+    high_now_minus_low_now = high_now - low_now;
+    number_now_plus_one = 1 + number_now;
+    value_in_next_start = number_now < (high_now_minus_low_now <= 1e-9 ? 1
+        : (high_now_minus_low_now <= 0.0001 ? 3 : (high_now_minus_low_now <= 0.01 ? 5 : 9)))
+        ? number_now_plus_one : (number_now <= 9 ? (high_now_minus_low_now > 1e-6 ? 10 : 0)
+        : (number_now < 15 ? number_now_plus_one : 0));
+    next_start = mirrors || (side_before >= 0) ? number_now : value_in_next_start;
+    goes_on = has_part && (next_start > 0);
+    next_side = mirrors ? side_before : -side_before;
+    steps_now = is_between ? steps_still_left : steps_before;
+    start_minus_joint_q6 = start_ - joint_q6;
+    distance = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
+        + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_joint_q6),
+        cos(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_joint_q6))
+        : fabs(softkin_angle_of(-sin(1e-7 + start_minus_joint_q6), cos(1e-7 + start_minus_joint_q6)));
+    is_better = fits && has_part && (distance < nearest)
+        && ((!onward) || ((distance > 1e-7) && (distance < 360.0*SOFTKIN_DEGREE - 1e-7)));
+    mirror_now_q1 = 2.0*start_q1 - joint_q1;
+    mirror_now_q2 = 2.0*start_q2 - joint_q2;
+    mirror_now_q3 = 2.0*start_q3 - joint_q3;
+    mirror_now_q4 = 2.0*start_q4 - joint_q4;
+    mirror_now_q5 = 2.0*start_q5 - joint_q5;
+    mirror_now_q6 = 2.0*start_q6 - joint_q6;
+    if ((!looked_for) || (place_ >= end_of_circle) || (starts_left <= 0)
+        || (is_between && onward && (nearest < 9.0))) {
+      break;
+    }
+    place_ = (goes_on ? place_ : high_now);
+    low_before = low_now;
+    high_before = high_now;
+    start_before = (goes_on ? next_start : 0);
+    side_before = (goes_on ? next_side : 1);
+    steps_before = steps_now;
+    starts_left = starts_left + (has_part ? -1 : 0);
+    nearest = (is_better ? distance : nearest);
+    mirrored = (mirrors ? 1 : 0);
+    kept_q1 = (is_better ? joint_q1 : kept_q1);
+    kept_q2 = (is_better ? joint_q2 : kept_q2);
+    kept_q3 = (is_better ? joint_q3 : kept_q3);
+    kept_q4 = (is_better ? joint_q4 : kept_q4);
+    kept_q5 = (is_better ? joint_q5 : kept_q5);
+    kept_q6 = (is_better ? joint_q6 : kept_q6);
+    mirror_q1 = mirror_now_q1;
+    mirror_q2 = mirror_now_q2;
+    mirror_q3 = mirror_now_q3;
+    mirror_q4 = mirror_now_q4;
+    mirror_q5 = mirror_now_q5;
+    mirror_q6 = mirror_now_q6;
+  }
+  found[0] = nearest < 9.0;
+  found[1] = (nearest < 9.0 ? nearest : 0.0);
+  found[2] = kept_q1;
+  found[3] = kept_q2;
+  found[4] = kept_q3;
+  found[5] = kept_q4;
+  found[6] = kept_q5;
+  found[7] = kept_q6;
   return SOFTKIN_OK;
 }
 
@@ -815,7 +1622,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double wrist_y_closed = y - d6_times_r23_at_q5;
   const double sin_q3_closed = sin(q3);
   const double cos_q3_closed = cos(q3);
-  const double margin_elbow_closed = (k->a3*sin_q3_closed + k->d4*cos_q3_closed)*k->one_by_effective_q3_tried;
+  const double margin_elbow_closed = (k->a3*sin_q3_closed + k->d4*cos_q3_closed)*k->one_by_length_25;
   double branch_shoulder, branch_wrist, branch_crossing;
   if (k->searched) {
     /* wrist centre: the last joints do not move this point */
@@ -882,11 +1689,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double reach_closed = sqrt(wrist_x_from_q1_closed*wrist_x_from_q1_closed
       + wrist_z_from_q1_closed*wrist_z_from_q1_closed);
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_closed = (k->a2_plus_effective_q3_tried + reach_closed)
-      *(k->a2_plus_effective_q3_tried - reach_closed);
+  const double one_less_cos_q3_closed = (k->a2_plus_length_25 + reach_closed)
+      *(k->a2_plus_length_25 - reach_closed);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_closed = (reach_closed - k->a2_minus_effective_q3_tried)
-      *(k->a2_minus_effective_q3_tried + reach_closed);
+  const double one_plus_cos_q3_closed = (reach_closed - k->a2_minus_length_25)
+      *(k->a2_minus_length_25 + reach_closed);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed;
   const double divisor_of_cos_q3_closed = sum_q3_closed > 0.0 ? sum_q3_closed : 1.0;
@@ -895,9 +1702,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* q3: out of reach */
   if (!(k->searched || (fabs(cos_swing_q3_closed) <= 1.0000000000005))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        (reach_closed - k->a2_plus_effective_q3_tried > fabs(k->a2_minus_effective_q3_tried) - reach_closed
-        ? reach_closed - k->a2_plus_effective_q3_tried : fabs(k->a2_minus_effective_q3_tried)
-        - reach_closed), 0);
+        (reach_closed - k->a2_plus_length_25 > fabs(k->a2_minus_length_25) - reach_closed ? reach_closed
+        - k->a2_plus_length_25 : fabs(k->a2_minus_length_25) - reach_closed), 0);
   }
   /* without an offset, only the first branch of the crossing has a solution */
   if (!(k->searched || (sigma_crossing > 0))) {
@@ -908,15 +1714,15 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
   const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
   /* root scan along A6 */
-  double results[7];
-  const double arguments[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k->searched,
+  double results[8];
+  const double arguments[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k->searched, false,
       reference_a1, reference_a2, reference_a6, sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist};
   const softkin_status status = find_root(k, arguments, results, why);
   if (status != SOFTKIN_OK) {
     return status;
   }
-  const double found_q1 = results[1], found_q2 = results[2], found_q3 = results[3], found_q4 = results[4],
-      found_q5 = results[5], found_q6 = results[6];
+  const double found_q1 = results[2], found_q2 = results[3], found_q3 = results[4], found_q4 = results[5],
+      found_q5 = results[6], found_q6 = results[7];
   const bool found_ = results[0] != 0.0;
   /* q6: the search along it finds no root of this branch */
   if (!(found_ || (!k->searched))) {
@@ -952,8 +1758,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         /divisor_of_cos_q3_closed;
     double cos_q2_closed, sin_q2_closed;
     if (reach_closed > k->machine_scale_times_free_angle) {
-      const double arm_along_q2_closed = k->effective_q3_tried*sin_swing_q3_closed;
-      const double arm_across_q2_closed = k->a2 + k->effective_q3_tried*cos_swing_q3_closed;
+      const double arm_along_q2_closed = k->length_25*sin_swing_q3_closed;
+      const double arm_across_q2_closed = k->a2 + k->length_25*cos_swing_q3_closed;
       /* rotation by q2 that takes the arm to its target point */
       const double along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed
           + arm_along_q2_closed*wrist_x_from_q1_closed;
@@ -971,10 +1777,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     }
     q2 = softkin_angle_of(sin_q2_closed, cos_q2_closed);
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_closed = k->a3_by_effective_q3_tried*cos_swing_q3_closed
-        + k->d4_by_effective_q3_tried*sin_swing_q3_closed;
-    const double sin_q3_closed = k->a3_by_effective_q3_tried*sin_swing_q3_closed
-        - k->d4_by_effective_q3_tried*cos_swing_q3_closed;
+    const double cos_q3_closed = k->a3_by_length_25*cos_swing_q3_closed
+        + k->d4_by_length_25*sin_swing_q3_closed;
+    const double sin_q3_closed = k->a3_by_length_25*sin_swing_q3_closed
+        - k->d4_by_length_25*cos_swing_q3_closed;
     q3 = softkin_angle_of(sin_q3_closed, cos_q3_closed);
     const double r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed;
     const double sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed;
@@ -1440,13 +2246,14 @@ static softkin_status find_search_given(const void *machine, const softkin_frame
   given[10] = y;
   given[11] = z;
   given[12] = k->searched;
-  given[13] = reference_a1;
-  given[14] = reference_a2;
-  given[15] = reference_a6;
-  given[16] = sigma_crossing;
-  given[17] = sigma_elbow;
-  given[18] = sigma_shoulder;
-  given[19] = sigma_wrist;
+  given[13] = false;
+  given[14] = reference_a1;
+  given[15] = reference_a2;
+  given[16] = reference_a6;
+  given[17] = sigma_crossing;
+  given[18] = sigma_elbow;
+  given[19] = sigma_shoulder;
+  given[20] = sigma_wrist;
   return SOFTKIN_OK;
 }
 
@@ -1499,21 +2306,15 @@ static softkin_status find_from_joints(const void *machine, const double *joints
   return SOFTKIN_OK;
 }
 
+static softkin_status find_root_of(const void *machine, const double *given, double *results,
+    softkin_refusal *why) {
+  return find_root(machine, given, results, why);
+}
+
 /* The joints at every root of the search, the nearest to the reference first. */
 static void find_every_root(const void *machine, const double *given, softkin_take take, void *context) {
-  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
-  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
-      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
-      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11],
-      reference_a1 = given[13], reference_a2 = given[14], start_ = given[15];
-  const int wanted_crossing = (int)given[16], wanted_elbow = (int)given[17],
-      wanted_shoulder = (int)given[18], wanted_wrist = (int)given[19];
-  const bool looked_for = given[12] != 0.0;
-  const double arguments[] = {goal_x, goal_y, goal_z, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22,
-      goal_r23, goal_r31, goal_r32, goal_r33, wanted_shoulder, wanted_elbow, wanted_wrist, wanted_crossing,
-      reference_a1, reference_a2};
-  const softkin_search search = {k, arguments, find_try_joint_at, find_finish_root_at, 2, 7, NULL, 0};
-  softkin_every_root(&search, start_, looked_for, take, context);
+  const softkin_roots of = {find_root_of, machine, given, 21, 16, 13, 6};
+  softkin_every_root(&of, take, context);
 }
 
 /* The values that depend on the parameters alone, or why the parameters are refused. */
@@ -1551,17 +2352,20 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
     return SOFTKIN_NOT_INITIALIZED;
   }
   const double machine_scale = p->a1 + p->a2 + p->d4; /* characteristic length of the machine */
-  /* effective length of the arm that q3 turns */
-  const double effective_q3_tried = sqrt(p->a3*p->a3 + p->d4*p->d4);
+  const double length_25 = sqrt(p->a3*p->a3 + p->d4*p->d4);
   const bool searched = fabs(p->j6_offset_x) > 0.0; /* whether to scan A6 for a root */
+  const double a1_squared = p->a1*p->a1;
+  const double a2_plus_length_25 = p->a2 + length_25;
+  const double a2_plus_length_25_squared = a2_plus_length_25*a2_plus_length_25;
+  const double a2_minus_length_25 = p->a2 - length_25;
+  const double a2_minus_length_25_squared = a2_minus_length_25*a2_minus_length_25;
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
-  const double a2_minus_effective_q3_tried = p->a2 - effective_q3_tried;
-  const double a2_plus_effective_q3_tried = p->a2 + effective_q3_tried;
-  const double d4_by_effective_q3_tried = p->d4/effective_q3_tried;
-  const double a3_by_effective_q3_tried = p->a3/effective_q3_tried;
+  const double twice_a1 = 2.0*p->a1;
+  const double one_by_length_25 = 1.0/length_25;
+  const double d4_by_length_25 = p->d4/length_25;
+  const double a3_by_length_25 = p->a3/length_25;
   const double one_by_machine_scale = 1.0/machine_scale;
-  const double quotient_in_fits = 0.5*machine_scale*machine_scale/(p->a2*effective_q3_tried);
-  const double one_by_effective_q3_tried = 1.0/effective_q3_tried;
+  const double quotient_in_fits = 0.5*machine_scale*machine_scale/(p->a2*length_25);
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1599,16 +2403,20 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a4 = p->offset_a4;
   made.offset_a5 = p->offset_a5;
   made.offset_a6 = p->offset_a6;
-  made.effective_q3_tried = effective_q3_tried;
+  made.length_25 = length_25;
   made.searched = searched;
+  made.a1_squared = a1_squared;
+  made.a2_plus_length_25 = a2_plus_length_25;
+  made.a2_plus_length_25_squared = a2_plus_length_25_squared;
+  made.a2_minus_length_25 = a2_minus_length_25;
+  made.a2_minus_length_25_squared = a2_minus_length_25_squared;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
-  made.a2_minus_effective_q3_tried = a2_minus_effective_q3_tried;
-  made.a2_plus_effective_q3_tried = a2_plus_effective_q3_tried;
-  made.d4_by_effective_q3_tried = d4_by_effective_q3_tried;
-  made.a3_by_effective_q3_tried = a3_by_effective_q3_tried;
+  made.twice_a1 = twice_a1;
+  made.one_by_length_25 = one_by_length_25;
+  made.d4_by_length_25 = d4_by_length_25;
+  made.a3_by_length_25 = a3_by_length_25;
   made.one_by_machine_scale = one_by_machine_scale;
   made.quotient_in_fits = quotient_in_fits;
-  made.one_by_effective_q3_tried = one_by_effective_q3_tried;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, searched, p->warning_distance, 1e-6};
   *(ac6_rzryryrxryrz_j6offset_machine *)machine = made;
   return SOFTKIN_OK;

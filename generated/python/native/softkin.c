@@ -75,7 +75,7 @@ double softkin_solve(double *system, int rows, int columns) {
     for (int i = k + 1; i < rows; i += 1) {
       best = fabs(system[i*width + k]) > fabs(system[best*width + k]) ? i : best;
     }
-    if (!(fabs(system[best*width + k]) > SOFTKIN_PIVOT*largest)) {
+    if (!(fabs(system[best*width + k]) > PIVOT*largest)) {
       is_solvable = false;
       break;
     }
@@ -690,517 +690,60 @@ softkin_status softkin_inverse_all(const softkin_mechanism *kind, const void *ma
   return SOFTKIN_OK;
 }
 
-/* ---- roots of a trial along one joint, by the rules of the Python package ----
- *
- * A trial has a value, which is zero at a root, with its slope; a guard, which is negative where there is no
- * solution, with its slope; then cosine and sine of every direction. The circle is cut into cells until each
- * holds at most one root. A cell is its map (joint = base + scale s, or base + scale s² with the other side
- * at s < 0), its number of cuts, and both ends: s, and the trial there. Every constant is explained in the
- * sources of the compiler. */
+/* ---- all roots of a search along one joint: the next one ahead, again and again around the circle ---- */
 
-#define MOST_RESULTS (4 + 2*SOFTKIN_MOST_DIRECTIONS)
-#define MOST_CELLS 64
-#define MOST_PLACES 128
-
-static const double SHIFTS[] = SOFTKIN_SHIFTS;
+#define MOST_ROOTS 48
 
 typedef struct {
-  double base, scale;
-  bool is_curved;
-} path;
+  double away, joints[SOFTKIN_MOST_AXES];
+} root;
 
-typedef struct {
-  path map;
-  int cuts;
-  double low, high, first[MOST_RESULTS], last[MOST_RESULTS];
-} cell;
-
-/* The cells that are still to be looked at, and the places found so far. */
-typedef struct {
-  const softkin_search *search;
-  int trials, waiting, found;
-  cell cells[MOST_CELLS];
-  softkin_place places[MOST_PLACES];
-} scan;
-
-static softkin_place place_of(const path *map, double s) {
-  const double way = map->is_curved ? s*s : s;
-  return (softkin_place){map->base + map->scale*way, 0.0, map->is_curved && s < 0.0 ? -1 : 1, -1};
+/* How far a joint is from the start: a root as far to the other side is behind one ahead. */
+static double distance_to(double difference) {
+  const double away = difference - SOFTKIN_AHEAD;
+  return fabs(away - 2.0*PI*round(away/(2.0*PI)));
 }
 
-/* The distance that the joint travels from one end of a cell to the other. */
-static double extent_of(const path *map, double low, double high) {
-  return fabs(map->scale)*(high - low)*(map->is_curved ? fabs(low) + fabs(high) : 1.0);
+/* Put a root among others, the nearest first. */
+static void put(root *found, int count, const root *one) {
+  int k = count;
+  while (k > 0 && found[k - 1].away > one->away) {
+    found[k] = found[k - 1];
+    k -= 1;
+  }
+  found[k] = *one;
 }
 
-static void try_at(const scan *on, const softkin_place *place, double *results) {
-  if (on->search->trial(on->search->machine, on->search->arguments, place, results) != SOFTKIN_OK) {
-    for (int i = 0; i < MOST_RESULTS; i += 1) {
-      results[i] = NAN;
+/* All roots, found onward from an angle. */
+static int roots_from(const softkin_roots *of, double begin, root *found) {
+  double given[2*SOFTKIN_MOST_AXES], results[SOFTKIN_MOST_AXES + 2], left = 2.0*PI - SOFTKIN_AHEAD;
+  int count = 0;
+  for (int i = 0; i < of->count; i += 1) {
+    given[i] = of->given[i];
+  }
+  given[of->onward] = 1.0;
+  given[of->start] = begin;
+  while (count < MOST_ROOTS && of->find(of->machine, given, results, NULL) == SOFTKIN_OK && results[0] != 0.0) {
+    left -= count > 0 ? results[1] : 0.0;
+    if (left <= 0.0) {
+      return count;
     }
-  }
-}
-
-/* The results of the trial at s, with slopes by s. */
-static void evaluate(scan *on, const path *map, double s, double *results) {
-  const softkin_place place = place_of(map, s);
-  const double rate = map->is_curved ? 2.0*map->scale*s : map->scale;
-  on->trials += 1;
-  try_at(on, &place, results);
-  results[1] *= rate;
-  results[3] *= rate;
-}
-
-static void copy(double *target, const double *results) {
-  for (int i = 0; i < MOST_RESULTS; i += 1) {
-    target[i] = results[i];
-  }
-}
-
-static void push(scan *on, const cell *one) {
-  if (on->waiting < MOST_CELLS) {
-    on->cells[on->waiting] = *one;
-    on->waiting += 1;
-  }
-}
-
-static void add(scan *on, softkin_place place) {
-  if (on->found < MOST_PLACES) {
-    on->places[on->found] = place;
-    on->found += 1;
-  }
-}
-
-/* Store the place of a trial if it is a root. Where the guard vanishes, the value has half of its digits. */
-static void offer(scan *on, const path *map, double s, const double *results) {
-  const double value = fabs(results[0]), guard = results[2];
-  if (!((value <= SOFTKIN_VANISHING && guard >= 0.0)
-      || (value <= SOFTKIN_NEXT && fabs(guard) <= SOFTKIN_VANISHING))) {
-    return;
-  }
-  const softkin_place place = place_of(map, s);
-  for (int i = 0; i < on->found; i += 1) {
-    const softkin_place *other = &on->places[i];
-    if (other->side == place.side && other->freed == -1 && fabs(place.tried - other->tried) < SOFTKIN_FLAT) {
-      return;
+    given[of->start] += results[1];
+    root one = {.away = distance_to(given[of->start] - of->given[of->start])};
+    for (int i = 0; i < of->joints; i += 1) {
+      one.joints[i] = results[i + 2];
     }
+    put(found, count, &one);
+    count += 1;
   }
-  add(on, place);
+  return count;
 }
 
-/* The two parts of a cell that is cut at s. */
-static void halves(scan *on, const cell *whole, double s) {
-  cell part = *whole;
-  evaluate(on, &whole->map, s, part.last);
-  offer(on, &whole->map, s, part.last);
-  part.cuts += 1;
-  part.high = s;
-  push(on, &part);
-  copy(part.first, part.last);
-  copy(part.last, whole->last);
-  part.low = s;
-  part.high = whole->high;
-  push(on, &part);
-}
-
-/* The cosine of the angle by which a direction turns. */
-static double turn_between(const double *first, const double *last, int k) {
-  return first[4 + 2*k]*last[4 + 2*k] + first[5 + 2*k]*last[5 + 2*k];
-}
-
-/* The same of the direction that turns most. */
-static double turned_most(const scan *on, const double *first, const double *last) {
-  double least = on->search->directions > 0 ? INFINITY : 1.0;
-  for (int k = 0; k < on->search->directions; k += 1) {
-    least = fmin(least, turn_between(first, last, k));
-  }
-  return least;
-}
-
-/* The distance from the first end at which the tangents of both ends meet; about half the cell if they do
- * not. */
-static double between(double f, double df, double f1, double df1, double width) {
-  if (df == df1) {
-    return SOFTKIN_ASIDE*width;
-  }
-  const double met = (f1 - f - df1*width)/(df - df1);
-  return met > 0.0 && met < width ? met : SOFTKIN_ASIDE*width;
-}
-
-/* The place of the cut: where tangents meet, and near the middle in every third step. */
-static double where_to_cut(int cuts, double f, double df, double f1, double df1, double width) {
-  if (cuts % 3 == 2) {
-    return SOFTKIN_ASIDE*width;
-  }
-  return fmin(fmax(between(f, df, f1, df1, width), 0.02*width), 0.98*width);
-}
-
-/* Whether a value with one sign at both ends falls towards zero from both, and its tangents nearly meet
- * beyond it. Where they do not meet in between, the value has an inflection and may reach zero, too. Tangents
- * are no bound on a value with kinks. */
-static bool comes_back(double f, double df, double f1, double df1, double width) {
-  const double sign = f < 0.0 ? -1.0 : 1.0;
-  if (!(f*f1 > 0.0 && sign*df < 0.0 && sign*df1 > 0.0)) {
-    return false;
-  }
-  const double rest = f1 - f - df1*width;
-  if (!(rest*(df - df1) > 0.0 && fabs(rest) < fabs(df - df1)*width)) {
-    return true;
-  }
-  const double margin = SOFTKIN_TOUCHED + SOFTKIN_NEAR_ZERO*fmin(fabs(f), fabs(f1))
-      + SOFTKIN_BENT*fabs(df1 - df)*width;
-  return sign*(f + df*between(f, df, f1, df1, width)) <= margin;
-}
-
-/* Whether the cubic with these values and slopes has an extremum in the cell that may hide two roots. */
-static bool is_doubtful(double f, double a, double f1, double b) {
-  const double rise = f1 - f;
-  const double sign = (f*f1 < 0.0 ? rise : f) < 0.0 ? -1.0 : 1.0;
-  const double cube = a + b - 2.0*rise, square = 3.0*rise - 2.0*a - b;
-  const double radicand = square*square - 3.0*cube*a;
-  if (radicand <= 0.0 || cube == 0.0) {
-    return false;
-  }
-  const double root = sqrt(radicand);
-  double lowest = INFINITY;
-  bool is_inside = false;
-  for (int side = -1; side <= 1; side += 2) {
-    const double divisor = 3.0*cube;
-    const double u = divisor != 0.0 ? (side*root - square)/divisor : INFINITY;
-    if (u > 0.0 && u < 1.0) {
-      is_inside = true;
-      lowest = fmin(lowest, sign*(f + u*(a + u*(square + u*cube))));
-    }
-  }
-  if (!is_inside) {
-    return false;
-  }
-  if (f*f1 < 0.0) {
-    return sign*a >= 0.0 && sign*b >= 0.0;
-  }
-  return f*f1 > 0.0 && lowest <= SOFTKIN_NEAR_ZERO*fmin(fabs(f), fabs(f1));
-}
-
-/* Whether there may be more roots within a cell than the signs at its ends show. */
-static bool hides_roots(double f, double df, double f1, double df1, double width) {
-  const double sign = f < 0.0 ? -1.0 : 1.0;
-  const bool crosses = sign*(f + df*width) < 0.0 || sign*(f1 - df1*width) < 0.0;
-  if (f*f1 > 0.0 && df*df1 > 0.0 && crosses) {
-    return true; /* a tangent reaches zero, extrema on both sides */
-  }
-  return comes_back(f, df, f1, df1, width) || is_doubtful(f, df*width, f1, df1*width);
-}
-
-/* Where a column equals a level: both ends, the better one, and the value there. Newton's method from the end
- * nearer to zero; bisection outside the cell, and in every third step. */
-typedef struct {
-  double low, high, best, value;
-} closed;
-
-static closed closing(scan *on, const cell *one, int column, double level) {
-  double low = one->low, high = one->high, first[MOST_RESULTS], last[MOST_RESULTS], results[MOST_RESULTS];
-  copy(first, one->first);
-  copy(last, one->last);
-  double a = first[column] - level, b = last[column] - level;
-  for (int number = 0; number < SOFTKIN_CLOSING && a != 0.0 && b != 0.0; number += 1) {
-    const bool is_better = fabs(a) <= fabs(b);
-    const double slope = (is_better ? first : last)[column + 1];
-    double s = (is_better ? low : high) - (slope != 0.0 ? (is_better ? a : b)/slope : 0.0);
-    if (!(low < s && s < high) || slope == 0.0 || number % 3 == 2) {
-      s = low + SOFTKIN_ASIDE*(high - low);
-    }
-    evaluate(on, &one->map, s, results);
-    const double value = results[column] - level;
-    if ((value < 0.0) == (a < 0.0)) {
-      low = s;
-      copy(first, results);
-      a = value;
-    } else {
-      high = s;
-      copy(last, results);
-      b = value;
-    }
-    if (fabs(value) <= SOFTKIN_FINEST*fabs(results[column + 1])
-        || extent_of(&one->map, low, high) <= SOFTKIN_FINEST) {
-      break;
-    }
-  }
-  const bool is_low = fabs(a) <= fabs(b);
-  return (closed){low, high, is_low ? low : high, (is_low ? first : last)[0]};
-}
-
-/* The cells around a zero of the guard, from the end with solutions to the other side. The sides join where
- * the guard is slightly above zero; on the strip from there to zero they are one curve. */
-static void over_the_end(scan *on, const cell *one) {
-  const double level = fmax(one->first[2], one->last[2]) > SOFTKIN_TOUCHED ? SOFTKIN_TOUCHED : 0.0;
-  const double meet = closing(on, one, 2, level).best;
-  const double rim = closing(on, one, 2, 0.0).best;
-  const double end = one->map.base + one->map.scale*meet;
-  const double within = one->map.base + one->map.scale*(one->first[2] >= 0.0 ? one->low : one->high);
-  const path curve = {end, within - end, true}, strip = {end, one->map.scale*(rim - meet), false};
-  const double ends[3][2] = {{-0.5, 0.5}, {0.5, 1.0}, {0.0, SOFTKIN_RIM}};
-  for (int i = 0; i < 3; i += 1) {
-    cell part = {.map = i < 2 ? curve : strip, .cuts = one->cuts, .low = ends[i][0], .high = ends[i][1]};
-    evaluate(on, &part.map, part.low, part.first);
-    evaluate(on, &part.map, part.high, part.last);
-    push(on, &part);
-  }
-  for (int i = 0; i < 3 && on->waiting >= 3; i += 1) {
-    const cell *part = &on->cells[on->waiting - 3 + i];
-    offer(on, &part->map, part->low, part->first);
-  }
-}
-
-/* Store the roots at a constant joint, where the angle that turns most is free: the angles of value 0. */
-static void jump(scan *on, const path *map, double low, const double *first, double high,
-    const double *last) {
-  if (on->search->directions == 0) {
-    return;
-  }
-  const softkin_place middle = place_of(map, 0.5*(low + high));
-  int freed = 0;
-  for (int k = 1; k < on->search->directions; k += 1) {
-    freed = turn_between(first, last, k) < turn_between(first, last, freed) ? k : freed;
-  }
-  on->trials += 3;
-  double values[3], results[MOST_RESULTS];
-  softkin_place place = {middle.tried, 0.0, middle.side, freed};
-  for (int k = 0; k < 3; k += 1) {
-    place.freed_angle = k*(2.0*PI/3.0);
-    try_at(on, &place, results);
-    values[k] = results[0];
-  }
-  const double level = (values[0] + values[1] + values[2])/3.0;
-  const double along = values[0] - level, across = (values[1] - values[2])/sqrt(3.0);
-  const double swing = sqrt(along*along + across*across), centre = atan2(across, along);
-  const double half = swing > 0.0 ? acos(fmin(fmax(-level/swing, -1.0), 1.0)) : 0.5*PI;
-  const double angles[] = {centre - half, centre + half, centre - half + PI, centre + half + PI};
-  const int count = fabs(level) + swing <= SOFTKIN_NEXT ? 4 : 2;
-  for (int i = 0; i < count; i += 1) {
-    place.freed_angle = angles[i];
-    add(on, place);
-  }
-}
-
-/* Store the root of a cell that holds one and, where the value jumps, the roots with a free angle. */
-static void close_in(scan *on, const cell *one) {
-  const closed at = closing(on, one, 0, 0.0);
-  add(on, place_of(&one->map, at.best));
-  if (fabs(at.value) > SOFTKIN_TOUCHED) {
-    double first[MOST_RESULTS], last[MOST_RESULTS];
-    evaluate(on, &one->map, at.low, first);
-    evaluate(on, &one->map, at.high, last);
-    jump(on, &one->map, at.low, first, at.high, last);
-  }
-}
-
-/* Store the end that is nearer to zero. Where the two sides join, both roots of the parabola with the slopes
- * of
- * both ends, or its extremum where it has none. */
-static void touch(scan *on, const cell *one, bool is_seam) {
-  const double width = one->high - one->low, f = one->first[0];
-  const double a = one->first[1]*width, b = one->last[1]*width, bend = b - a;
-  if (!is_seam || !(a*b < 0.0)) {
-    add(on, place_of(&one->map, fabs(f) <= fabs(one->last[0]) ? one->low : one->high));
-    return;
-  }
-  const double half = sqrt(fmax(a*a - 2.0*bend*f, 0.0))/fabs(bend);
-  for (int side = half > 0.0 ? -1 : 1; side <= 1; side += 2) {
-    add(on, place_of(&one->map, one->low + width*fmin(fmax(side*half - a/bend, 0.0), 1.0)));
-  }
-}
-
-/* Cut a cell, or find its root, or see that it has none. */
-static void cut(scan *on, const cell *one) {
-  const bool is_curved = one->map.is_curved;
-  const double low = one->low, high = one->high, width = high - low;
-  const double extent = extent_of(&one->map, low, high);
-  const double f = one->first[0], df = one->first[1], g = one->first[2], dg = one->first[3];
-  const double f1 = one->last[0], df1 = one->last[1], g1 = one->last[2], dg1 = one->last[3];
-  const bool is_seam = is_curved && -2.0*SOFTKIN_SEAM <= low && high <= 2.0*SOFTKIN_SEAM;
-  if (on->trials > SOFTKIN_TRIALS - SOFTKIN_RESERVE) {
-    return;
-  }
-  if (turned_most(on, one->first, one->last) < SOFTKIN_TURNED) {
-    if (extent > SOFTKIN_NARROW && !is_seam) {
-      halves(on, one, low + SOFTKIN_ASIDE*width);
-    } else if (g >= -SOFTKIN_GAP || g1 >= -SOFTKIN_GAP) {
-      jump(on, &one->map, low, one->first, high, one->last);
-      if (is_seam) {
-        touch(on, one, is_seam);
-      }
-    }
-    return;
-  }
-  if (!is_curved && extent > SOFTKIN_NARROW && hides_roots(g, dg, g1, dg1, width)) {
-    halves(on, one, low + where_to_cut(one->cuts, g, dg, g1, dg1, width));
-    return;
-  }
-  if (!is_curved && (g < 0.0) != (g1 < 0.0)) {
-    over_the_end(on, one);
-    return;
-  }
-  if (!is_curved && g < 0.0) {
-    return;
-  }
-  const bool changes = f*f1 <= 0.0, doubtful = hides_roots(f, df, f1, df1, width);
-  const bool small = fmin(fabs(f), fabs(f1)) <= SOFTKIN_TOUCHED;
-  if (doubtful && extent > SOFTKIN_FINEST && !small && !is_seam) {
-    const double s = low + where_to_cut(one->cuts, f, df, f1, df1, width);
-    const double beside = high > 1.5*SOFTKIN_SEAM ? SOFTKIN_SEAM : -SOFTKIN_SEAM;
-    halves(on, one, is_curved && fabs(s) < SOFTKIN_SEAM ? beside : s);
-  } else if (changes) {
-    close_in(on, one);
-  } else if (doubtful && (small || is_seam)) {
-    touch(on, one, is_seam);
-  }
-}
-
-/* Candidates for roots, in no order; only the complete closure decides whether a candidate is a root. */
-static void find_roots(scan *on, double start, double shift) {
-  const double width = 2.0*PI/SOFTKIN_CELLS;
-  const path still = {start, 0.0, false};
-  double results[MOST_RESULTS], begin[MOST_RESULTS], next[MOST_RESULTS];
-  on->found = 0;
-  path map = {width*shift, width, false};
-  evaluate(on, &map, 0.0, begin);
-  /* Those at the ends of the other cells are made when they are needed. */
-  on->trials += SOFTKIN_CELLS - 1;
-  evaluate(on, &still, 0.0, results);
-  offer(on, &still, 0.0, results);
-  copy(results, begin);
-  for (int k = 0; k < SOFTKIN_CELLS; k += 1) {
-    cell one = {.map = {width*(k + shift), width, false}, .cuts = 0, .low = 0.0, .high = 1.0};
-    if (k + 1 < SOFTKIN_CELLS) {
-      map.base = width*(k + 1 + shift);
-      evaluate(on, &map, 0.0, next);
-      on->trials -= 1;
-    } else {
-      copy(next, begin);
-    }
-    copy(one.first, results);
-    copy(one.last, next);
-    on->waiting = 0;
-    push(on, &one);
-    while (on->waiting > 0) {
-      on->waiting -= 1;
-      one = on->cells[on->waiting];
-      cut(on, &one);
-    }
-    copy(results, next);
-  }
-}
-
-static double away_from(double start, const softkin_place *place) {
-  const double way = place->tried - start - SOFTKIN_AHEAD + PI;
-  return fabs(way - 2.0*PI*floor(way/(2.0*PI)) - PI);
-}
-
-/* Sort the places, the nearest to the start first; equal ones keep their order. */
-static void sort_places(scan *on, double start) {
-  for (int i = 1; i < on->found; i += 1) {
-    const softkin_place place = on->places[i];
-    int k = i;
-    while (k > 0 && away_from(start, &on->places[k - 1]) > away_from(start, &place)) {
-      on->places[k] = on->places[k - 1];
-      k -= 1;
-    }
-    on->places[k] = place;
-  }
-}
-
-/* The candidates that the trial lists. */
-static void list_roots(scan *on) {
-  const softkin_search *search = on->search;
-  const softkin_place nowhere = {0.0, 0.0, 1, -1};
-  double results[2*SOFTKIN_MOST_LISTED];
-  on->found = 0;
-  if (search->trial(search->machine, search->arguments, &nowhere, results) != SOFTKIN_OK) {
-    return;
-  }
-  for (int i = 0; i < search->listed; i += 1) {
-    if (results[2*i + 1] != 0.0) {
-      add(on, (softkin_place){results[2*i], 0.0, search->sides[i], -1});
-    }
-  }
-}
-
-/* Give the values of the roots that fit, the nearest to the start first, until they are not taken any more.
- * */
-static void finished(const softkin_search *search, double start, int most, softkin_take take, void *context) {
-  scan on;
-  int looked = 0;
-  on.search = search;
-  on.trials = 0;
-  on.waiting = 0;
-  for (int i = 0; i < (int)(sizeof SHIFTS/sizeof SHIFTS[0]); i += 1) {
-    if (i > 0 && on.trials + SOFTKIN_CELLS > SOFTKIN_TRIALS - SOFTKIN_RESERVE) {
-      return;
-    }
-    if (search->listed > 0) {
-      list_roots(&on);
-    } else {
-      find_roots(&on, start, SHIFTS[i]);
-    }
-    sort_places(&on, start);
-    bool is_there = false;
-    for (int k = 0; k < on.found && k < most - looked; k += 1) {
-      double values[SOFTKIN_MOST_AXES + 1];
-      if (search->finish(search->machine, search->arguments, &on.places[k], values) == SOFTKIN_OK
-          && values[0] != 0.0) {
-        is_there = true;
-        if (!take(context, values)) {
-          return;
-        }
-      }
-    }
-    if (is_there || search->listed > 0) {
-      return;
-    }
-    looked = most < looked + on.found ? most : looked + on.found;
-  }
-}
-
-typedef struct {
-  double *values;
-  int count;
-} kept;
-
-static bool take_one(void *context, const double *values) {
-  const kept *target = context;
-  for (int i = 0; i < target->count; i += 1) {
-    target->values[i] = values[i];
-  }
-  return false;
-}
-
-/* True and the results of `finish` at the root that fits and is nearest to the start; false and zeros where
- * there is none, or none is wanted. */
-void softkin_nearest_root(const softkin_search *search, double start, bool is_wanted, double *values) {
-  kept target = {values, search->count};
-  for (int i = 0; i < search->count; i += 1) {
-    values[i] = 0.0;
-  }
-  if (is_wanted) {
-    finished(search, start, SOFTKIN_FINISHED, take_one, &target);
-  }
-}
-
-typedef struct {
-  softkin_take take;
-  void *context;
-} handed;
-
-static bool hand_on(void *context, const double *values) {
-  const handed *to = context;
-  return to->take(to->context, values + 1);
-}
-
-/* The results of `finish` at all roots that fit, without the first. */
-void softkin_every_root(const softkin_search *search, double start, bool is_wanted, softkin_take take,
-    void *context) {
-  handed to = {take, context};
-  if (is_wanted) {
-    finished(search, start, SOFTKIN_TRIALS, hand_on, &to);
+void softkin_every_root(const softkin_roots *of, softkin_take take, void *context) {
+  root found[MOST_ROOTS];
+  const double begin = of->given[of->start] + SOFTKIN_ELSEWHERE;
+  int count = roots_from(of, begin, found);
+  count = count > 0 ? count : roots_from(of, begin + 1.0, found); /* a root may stand at the first, too */
+  for (int i = 0; i < count && take(context, found[i].joints); i += 1) {
   }
 }

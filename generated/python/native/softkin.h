@@ -296,29 +296,14 @@ typedef struct {
   double middle;
 } softkin_window;
 
-/** Place of a trial: the joint, the side of two roots, the free direction (-1: none), its angle. */
+/** The program that finds a root: whether there is one, how far it is from the start, and the joints; and its arguments,
+ * with the places of the start among them, and of the flag that asks for the next root. */
 typedef struct {
-  double tried, freed_angle;
-  int side, freed;
-} softkin_place;
-
-/** A scan for the roots of a trial: see the source. */
-typedef struct {
+  softkin_status (*find)(const void *machine, const double *given, double *results, softkin_refusal *why);
   const void *machine;
-  const double *arguments;
-  /* value, slope, guard, its slope, then cosine and sine of every direction */
-  softkin_status (*trial)(const void *machine, const double *arguments, const softkin_place *place,
-      double *results);
-  /* whether the root fits, then the values */
-  softkin_status (*finish)(const void *machine, const double *arguments, const softkin_place *place,
-      double *values);
-  int directions; /* at most SOFTKIN_MOST_DIRECTIONS */
-  int count;      /* of the values, at most SOFTKIN_MOST_AXES + 1 */
-  /* where the trial lists candidates, a joint value and whether it is one of each: their sides; else NULL, 0
-   * */
-  const int *sides;
-  int listed; /* at most SOFTKIN_MOST_LISTED */
-} softkin_search;
+  const double *given;
+  int count, start, onward, joints;
+} softkin_roots;
 
 /** Fill a refusal, if there is one to fill, and return the status. */
 softkin_status softkin_refuse(softkin_refusal *why, softkin_status status, const char *reason,
@@ -333,9 +318,8 @@ int softkin_turn_inside(double axis, double lowest, double highest);
 double softkin_solve(double *system, int rows, int columns);
 softkin_status softkin_window_of(const softkin_limit *limit, double lower, double upper, bool is_tested,
     const double *otherwise, double turns, softkin_window *window, softkin_ends *ends, softkin_refusal *why);
-void softkin_nearest_root(const softkin_search *search, double start, bool is_wanted, double *values);
-void softkin_every_root(const softkin_search *search, double start, bool is_wanted, softkin_take take,
-    void *context);
+/** Hand over the joints at all roots that fit, the nearest to the start first. */
+void softkin_every_root(const softkin_roots *of, softkin_take take, void *context);
 
 /** Whether all are numbers of reasonable size. */
 static inline bool softkin_are_reasonable(const double *numbers, int count) {

@@ -11,44 +11,24 @@
 /** The largest number of slots of a machine whose branches are computed together. */
 #define SOFTKIN_MOST_TOGETHER 16
 /* Of a root scan. */
-#define SOFTKIN_MOST_DIRECTIONS 6
-#define SOFTKIN_MOST_LISTED 10
 
 #define SOFTKIN_AHEAD 1e-7
-#define SOFTKIN_ASIDE 0.47
-#define SOFTKIN_BENT 0.125
-#define SOFTKIN_CELLS 72
-#define SOFTKIN_CLOSING 60
 #define SOFTKIN_COINCIDENT 1e-11
 #define SOFTKIN_EDGE 1e-9
+#define SOFTKIN_ELSEWHERE 2.5
 #define SOFTKIN_EXACT 1e-12
-#define SOFTKIN_FINEST 1e-15
-#define SOFTKIN_FINISHED 24
-#define SOFTKIN_FLAT 1e-7
-#define SOFTKIN_GAP 1e-6
 #define SOFTKIN_GEARED_TURN 350.001
 #define SOFTKIN_HELD 1e-9
 #define SOFTKIN_LARGEST 1e9
 #define SOFTKIN_LARGEST_ERROR 0.0001
 #define SOFTKIN_LEAST 1e-12
 #define SOFTKIN_LIMIT 1e-9
-#define SOFTKIN_NARROW 1e-10
-#define SOFTKIN_NEAR_ZERO 0.5
-#define SOFTKIN_NEXT 1e-6
 #define SOFTKIN_ONE_TURN 350.0
 #define SOFTKIN_PIVOT 1e-14
-#define SOFTKIN_RESERVE 126
-#define SOFTKIN_RIM 0.999
-#define SOFTKIN_SEAM 0.001
-#define SOFTKIN_SHIFTS {0.414, 0.192}
 #define SOFTKIN_SINGULAR 0.001
 #define SOFTKIN_SOLVABLE 1e30
 #define SOFTKIN_TIE 1e-6
-#define SOFTKIN_TOUCHED 1e-12
-#define SOFTKIN_TRIALS 760
-#define SOFTKIN_TURNED 0.7
 #define SOFTKIN_UNLIMITED 1e12
-#define SOFTKIN_VANISHING 1e-10
 
 /** The outcome of a call; numbers and names are those of the Python package. */
 typedef enum {

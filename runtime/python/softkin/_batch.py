@@ -25,7 +25,7 @@ from softkin._array import (
 from softkin._array_rotation import made_rotations
 from softkin._columns import Bytes, Configurations, Mask, Poses, Rows, Table, columns, configurations
 from softkin._configuration import COINCIDE, FIRST, SECOND
-from softkin._constants import COINCIDENT, EDGE, OF_A_SEARCH
+from softkin._constants import COINCIDENT, EDGE
 from softkin._table import configuration_rows, numbers, starts
 from softkin._types import ConfigurationLike, FrameLike, Status
 
@@ -36,7 +36,7 @@ CHUNK = 8192
 """The rows that are computed together: an array then has 64 KiB."""
 EVERY_SLOT = 3 * CHUNK
 """The largest number of rows times slots computed together where all slots are computed, since slots share values."""
-FEWEST, FEWEST_SEARCHED = 512, 96
+FEWEST = 512
 """The least number of rows computed together, unless there are fewer; the second of a root scan with many trials."""
 MANY = 100_000
 """From this size of a result on, intermediate values must take little memory, however few rows then go together."""
@@ -160,7 +160,7 @@ def _rows_together(values: int, rows: int, slots: int, width: int) -> int:
     values: the number of values of one row, some of them separate for every slot.
     """
     on_the_way = 8.0 * (slots * width + 1.35 * values + 16.0)
-    least = 1 if rows >= MANY else FEWEST if values < OF_A_SEARCH else FEWEST_SEARCHED
+    least = 1 if rows >= MANY else FEWEST
     wanted = int(SHARE * rows * slots * (8 * width + 1) / on_the_way)
     return max(1, min(CHUNK, EVERY_SLOT // slots, max(least, wanted)))
 

@@ -20,13 +20,13 @@ from softkin._array import (
     reasonable,
     require,
     root,
+    run_where,
     select,
     settled,
     sin,
     solve,
     sqrt,
 )
-from softkin._roots import nearest_root
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -38,13 +38,646 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 121168
+    VALUES = 3093
+
+    def compute_wave(self, given: Values, status: Codes) -> Values:
+        """The product of the residuals of all branches as a sum of waves, and its rounding."""
+        (
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+        ) = given
+        k = self.constants
+        # the residuals of all branches, multiplied, at equal distances around the circle
+        (
+            sample,
+            wave_cos_0,
+            wave_cos_1,
+            wave_cos_2,
+            wave_cos_3,
+            wave_cos_4,
+            wave_cos_5,
+            wave_cos_6,
+            wave_cos_7,
+            wave_cos_8,
+            wave_cos_9,
+            wave_cos_10,
+            wave_sin_1,
+            wave_sin_2,
+            wave_sin_3,
+            wave_sin_4,
+            wave_sin_5,
+            wave_sin_6,
+            wave_sin_7,
+            wave_sin_8,
+            wave_sin_9,
+            wave_sin_10,
+        ) = initial(
+            0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        )
+        for _ in range(22):
+            tried = 0.1 + 0.299199300341885 * sample
+            cos_q6_tried = cos(tried)
+            sin_q6_tried = sin(tried)
+            wrist_x_tried = (
+                goal_x + (goal_r12 * sin_q6_tried - goal_r11 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r13
+            )
+            wrist_y_tried = (
+                goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r23
+            )
+            factor_8_part = -wrist_x_tried * wrist_x_tried - wrist_y_tried * wrist_y_tried
+            wrist_z_tried = (
+                goal_z + (goal_r32 * sin_q6_tried - goal_r31 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r33
+            )
+            wrist_z_from_q1_tried = wrist_z_tried - k.d1
+            factor_9_root_1_part = -wrist_x_tried / factor_8_part
+            factor_13_root_1_part = factor_9_root_1_part * wrist_x_tried
+            factor_11_root_1_part = -wrist_y_tried / factor_8_part
+            factor_14_root_1_part = factor_11_root_1_part * wrist_y_tried
+            wrist_x_from_q1_root_1_part = factor_13_root_1_part + factor_14_root_1_part
+            product_in_factor_17_part = factor_8_part * wrist_x_from_q1_root_1_part
+            factor_17_part = -product_in_factor_17_part * wrist_x_from_q1_root_1_part
+            factor_18_part = k.a1_squared + factor_17_part
+            length_q2_part = factor_18_part + wrist_z_from_q1_tried * wrist_z_from_q1_tried
+            factor_18_root_1_part = -k.twice_a1 * wrist_x_from_q1_root_1_part
+            product_in_factor_105_part = factor_18_root_1_part * factor_8_part
+            factor_105_part = factor_18_root_1_part * product_in_factor_105_part
+            factor_106_part = factor_105_part + length_q2_part * length_q2_part
+            factor_27_part = k.a2_plus_length_25_squared - length_q2_part
+            factor_29_part = length_q2_part - k.a2_minus_length_25_squared
+            factor_34_part = factor_105_part + factor_27_part * factor_29_part
+            factor_27_part_minus_factor_29_part = factor_27_part - factor_29_part
+            factor_34_root_1_part = factor_18_root_1_part * factor_27_part_minus_factor_29_part
+            factor_123_root_1_part = factor_9_root_1_part * goal_r12
+            factor_124_root_1_part = factor_11_root_1_part * goal_r22
+            r12_from_q1_root_1_part = factor_123_root_1_part + factor_124_root_1_part
+            sum_q3_part = factor_27_part + factor_29_part
+            one_by_sum_q3_part = 1.0 / sum_q3_part
+            factor_31_part = -factor_27_part_minus_factor_29_part * one_by_sum_q3_part
+            factor_42_part = k.a3 * factor_31_part
+            factor_44_part = factor_42_part * k.one_by_length_25
+            factor_31_root_1_part = 2.0 * factor_18_root_1_part * one_by_sum_q3_part
+            factor_42_root_1_part = k.a3 * factor_31_root_1_part
+            factor_44_root_1_part = factor_42_root_1_part * k.one_by_length_25
+            factor_37_part = 2.0 * one_by_sum_q3_part
+            factor_46_root_3_part = k.d4 * factor_37_part
+            factor_47_root_3_part = factor_46_root_3_part * k.one_by_length_25
+            factor_61_part = k.a3 * factor_44_part
+            factor_50_part = -k.d4 * factor_31_part
+            factor_52_part = factor_50_part * k.one_by_length_25
+            factor_64_part = -k.d4 * factor_52_part
+            arm_across_q2_part = k.a2 + factor_61_part + factor_64_part
+            factor_69_part = arm_across_q2_part * wrist_z_from_q1_tried
+            factor_61_root_1_part = k.a3 * factor_44_root_1_part
+            factor_50_root_1_part = -k.d4 * factor_31_root_1_part
+            factor_52_root_1_part = factor_50_root_1_part * k.one_by_length_25
+            factor_64_root_1_part = -k.d4 * factor_52_root_1_part
+            arm_across_q2_root_1_part = factor_61_root_1_part + factor_64_root_1_part
+            factor_69_root_1_part = arm_across_q2_root_1_part * wrist_z_from_q1_tried
+            one_by_factor_106_part = 1.0 / factor_106_part
+            factor_109_root_1_part = (
+                factor_69_root_1_part * length_q2_part - factor_18_root_1_part * factor_69_part
+            ) * one_by_factor_106_part
+            factor_48_root_3_part = k.a3 * factor_37_part
+            factor_49_root_3_part = factor_48_root_3_part * k.one_by_length_25
+            factor_54_root_3_part = k.a3 * factor_49_root_3_part
+            factor_57_root_3_part = k.d4 * factor_47_root_3_part
+            arm_along_q2_root_3_part = factor_54_root_3_part + factor_57_root_3_part
+            factor_71_root_3_part = -k.a1 * arm_along_q2_root_3_part
+            factor_71_root_1_root_3_part = arm_along_q2_root_3_part * wrist_x_from_q1_root_1_part
+            product_in_factor_108_root_3_part = one_by_factor_106_part * product_in_factor_105_part
+            factor_108_root_3_part = factor_71_root_1_root_3_part * product_in_factor_108_root_3_part
+            product_in_factor_109_root_3_part = length_q2_part * one_by_factor_106_part
+            factor_109_root_3_part = factor_108_root_3_part + factor_71_root_3_part * product_in_factor_109_root_3_part
+            factor_109_root_1_root_3_part = (
+                factor_71_root_1_root_3_part * length_q2_part - factor_18_root_1_part * factor_71_root_3_part
+            ) * one_by_factor_106_part
+            factor_156_root_1_root_3_part = (
+                factor_109_root_1_part * factor_47_root_3_part
+                + factor_109_root_1_root_3_part * factor_44_part
+                + factor_109_root_3_part * factor_44_root_1_part
+            )
+            factor_73_part = -arm_across_q2_root_1_part * product_in_factor_17_part
+            factor_74_part = factor_73_part - k.a1 * arm_across_q2_part
+            factor_74_root_1_part = arm_across_q2_part * wrist_x_from_q1_root_1_part - k.a1 * arm_across_q2_root_1_part
+            factor_116_root_1_part = (
+                factor_74_root_1_part * length_q2_part - factor_18_root_1_part * factor_74_part
+            ) * one_by_factor_106_part
+            factor_76_root_3_part = -arm_along_q2_root_3_part * wrist_z_from_q1_tried
+            factor_116_root_3_part = factor_76_root_3_part * product_in_factor_109_root_3_part
+            factor_116_root_1_root_3_part = -factor_18_root_1_part * factor_76_root_3_part * one_by_factor_106_part
+            factor_166_root_1_root_3_part = (
+                -factor_116_root_1_part * factor_49_root_3_part
+                - factor_116_root_1_root_3_part * factor_52_part
+                - factor_116_root_3_part * factor_52_root_1_part
+            )
+            cos_q23_root_1_root_3_part = factor_156_root_1_root_3_part + factor_166_root_1_root_3_part
+            product_in_factor_187_root_3_part = factor_8_part * r12_from_q1_root_1_part
+            factor_187_root_3_part = -product_in_factor_187_root_3_part * cos_q23_root_1_root_3_part
+            factor_107_part = factor_69_root_1_part * product_in_factor_108_root_3_part
+            factor_109_part = factor_107_part + factor_69_part * product_in_factor_109_root_3_part
+            product_in_factor_131_root_3_part = factor_52_root_1_part * factor_8_part
+            factor_131_root_3_part = -factor_109_root_1_root_3_part * product_in_factor_131_root_3_part
+            factor_132_root_3_part = (
+                factor_131_root_3_part
+                + factor_109_part * factor_49_root_3_part
+                + factor_109_root_3_part * factor_52_part
+            )
+            factor_115_part = factor_74_root_1_part * product_in_factor_108_root_3_part
+            factor_116_part = factor_115_part + factor_74_part * product_in_factor_109_root_3_part
+            product_in_factor_137_root_3_part = factor_44_root_1_part * factor_8_part
+            factor_137_root_3_part = -factor_116_root_1_root_3_part * product_in_factor_137_root_3_part
+            factor_142_root_3_part = (
+                factor_137_root_3_part
+                + factor_116_part * factor_47_root_3_part
+                + factor_116_root_3_part * factor_44_part
+            )
+            sin_q23_root_3_part = factor_132_root_3_part + factor_142_root_3_part
+            factor_190_root_3_part = -goal_r32 * sin_q23_root_3_part
+            r12_from_q123_root_3_part = factor_187_root_3_part + factor_190_root_3_part
+            factor_198_root_3_part = r12_from_q123_root_3_part * cos_q6_tried
+            factor_120_root_1_part = factor_9_root_1_part * goal_r11
+            factor_121_root_1_part = factor_11_root_1_part * goal_r21
+            r11_from_q1_root_1_part = factor_120_root_1_part + factor_121_root_1_part
+            product_in_factor_175_root_3_part = factor_8_part * r11_from_q1_root_1_part
+            factor_175_root_3_part = -product_in_factor_175_root_3_part * cos_q23_root_1_root_3_part
+            factor_178_root_3_part = -goal_r31 * sin_q23_root_3_part
+            r11_from_q123_root_3_part = factor_175_root_3_part + factor_178_root_3_part
+            factor_202_root_3_part = r11_from_q123_root_3_part * sin_q6_tried
+            r12_from_q123_before_q6_root_3_part = factor_198_root_3_part + factor_202_root_3_part
+            factor_153_root_3_part = -factor_109_root_1_root_3_part * product_in_factor_137_root_3_part
+            factor_156_root_3_part = (
+                factor_153_root_3_part
+                + factor_109_part * factor_47_root_3_part
+                + factor_109_root_3_part * factor_44_part
+            )
+            factor_165_root_3_part = factor_116_root_1_root_3_part * product_in_factor_131_root_3_part
+            factor_166_root_3_part = (
+                factor_165_root_3_part
+                - factor_116_part * factor_49_root_3_part
+                - factor_116_root_3_part * factor_52_part
+            )
+            cos_q23_root_3_part = factor_156_root_3_part + factor_166_root_3_part
+            factor_188_root_1_root_3_part = r12_from_q1_root_1_part * cos_q23_root_3_part
+            factor_132_root_1_root_3_part = (
+                factor_109_root_1_part * factor_49_root_3_part
+                + factor_109_root_1_root_3_part * factor_52_part
+                + factor_109_root_3_part * factor_52_root_1_part
+            )
+            factor_142_root_1_root_3_part = (
+                factor_116_root_1_part * factor_47_root_3_part
+                + factor_116_root_1_root_3_part * factor_44_part
+                + factor_116_root_3_part * factor_44_root_1_part
+            )
+            sin_q23_root_1_root_3_part = factor_132_root_1_root_3_part + factor_142_root_1_root_3_part
+            factor_190_root_1_root_3_part = -goal_r32 * sin_q23_root_1_root_3_part
+            r12_from_q123_root_1_root_3_part = factor_188_root_1_root_3_part + factor_190_root_1_root_3_part
+            factor_198_root_1_root_3_part = r12_from_q123_root_1_root_3_part * cos_q6_tried
+            factor_176_root_1_root_3_part = r11_from_q1_root_1_part * cos_q23_root_3_part
+            factor_178_root_1_root_3_part = -goal_r31 * sin_q23_root_1_root_3_part
+            r11_from_q123_root_1_root_3_part = factor_176_root_1_root_3_part + factor_178_root_1_root_3_part
+            factor_202_root_1_root_3_part = r11_from_q123_root_1_root_3_part * sin_q6_tried
+            r12_from_q123_before_q6_root_1_root_3_part = factor_198_root_1_root_3_part + factor_202_root_1_root_3_part
+            factor_297_part = (
+                -factor_8_part * r12_from_q123_before_q6_root_1_root_3_part * r12_from_q123_before_q6_root_1_root_3_part
+            )
+            factor_298_part = (
+                factor_297_part + r12_from_q123_before_q6_root_3_part * r12_from_q123_before_q6_root_3_part
+            )
+            factor_298_root_1_part = (
+                2.0 * r12_from_q123_before_q6_root_1_root_3_part * r12_from_q123_before_q6_root_3_part
+            )
+            factor_301_root_1_part = factor_298_part * factor_34_root_1_part + factor_298_root_1_part * factor_34_part
+            factor_150_part = -factor_109_root_1_part * product_in_factor_137_root_3_part
+            product_in_factor_151_part = factor_34_part * factor_47_root_3_part
+            factor_151_part = factor_109_root_3_part * product_in_factor_151_part
+            product_in_factor_154_part = factor_34_root_1_part * factor_8_part
+            product_in_factor_154_part_2 = factor_47_root_3_part * product_in_factor_154_part
+            factor_154_part = -factor_109_root_1_root_3_part * product_in_factor_154_part_2
+            factor_156_part = factor_150_part + factor_151_part + factor_154_part + factor_109_part * factor_44_part
+            factor_160_part = factor_116_root_1_part * product_in_factor_131_root_3_part
+            product_in_factor_161_part = factor_34_part * factor_49_root_3_part
+            factor_161_part = -factor_116_root_3_part * product_in_factor_161_part
+            product_in_factor_163_part = factor_49_root_3_part * product_in_factor_154_part
+            factor_163_part = factor_116_root_1_root_3_part * product_in_factor_163_part
+            factor_166_part = factor_160_part + factor_161_part + factor_163_part - factor_116_part * factor_52_part
+            cos_q23_part = factor_156_part + factor_166_part
+            factor_188_root_1_part = r12_from_q1_root_1_part * cos_q23_part
+            product_in_factor_127_root_1_part = factor_109_root_3_part * factor_34_root_1_part
+            factor_127_root_1_part = factor_49_root_3_part * product_in_factor_127_root_1_part
+            factor_130_root_1_part = factor_109_root_1_root_3_part * product_in_factor_161_part
+            factor_132_root_1_part = (
+                factor_127_root_1_part
+                + factor_130_root_1_part
+                + factor_109_part * factor_52_root_1_part
+                + factor_109_root_1_part * factor_52_part
+            )
+            product_in_factor_138_root_1_part = factor_116_root_3_part * factor_34_root_1_part
+            factor_138_root_1_part = factor_47_root_3_part * product_in_factor_138_root_1_part
+            factor_141_root_1_part = factor_116_root_1_root_3_part * product_in_factor_151_part
+            factor_142_root_1_part = (
+                factor_138_root_1_part
+                + factor_141_root_1_part
+                + factor_116_part * factor_44_root_1_part
+                + factor_116_root_1_part * factor_44_part
+            )
+            sin_q23_root_1_part = factor_132_root_1_part + factor_142_root_1_part
+            factor_190_root_1_part = -goal_r32 * sin_q23_root_1_part
+            r12_from_q123_root_1_part = factor_188_root_1_part + factor_190_root_1_part
+            factor_198_root_1_part = r12_from_q123_root_1_part * cos_q6_tried
+            factor_176_root_1_part = r11_from_q1_root_1_part * cos_q23_part
+            factor_178_root_1_part = -goal_r31 * sin_q23_root_1_part
+            r11_from_q123_root_1_part = factor_176_root_1_part + factor_178_root_1_part
+            factor_202_root_1_part = r11_from_q123_root_1_part * sin_q6_tried
+            r12_from_q123_before_q6_root_1_part = factor_198_root_1_part + factor_202_root_1_part
+            factor_151_root_1_part = factor_47_root_3_part * product_in_factor_127_root_1_part
+            factor_155_root_1_part = factor_109_root_1_root_3_part * product_in_factor_151_part
+            factor_156_root_1_part = (
+                factor_151_root_1_part
+                + factor_155_root_1_part
+                + factor_109_part * factor_44_root_1_part
+                + factor_109_root_1_part * factor_44_part
+            )
+            factor_161_root_1_part = -factor_49_root_3_part * product_in_factor_138_root_1_part
+            factor_164_root_1_part = -factor_116_root_1_root_3_part * product_in_factor_161_part
+            factor_166_root_1_part = (
+                factor_161_root_1_part
+                + factor_164_root_1_part
+                - factor_116_part * factor_52_root_1_part
+                - factor_116_root_1_part * factor_52_part
+            )
+            cos_q23_root_1_part = factor_156_root_1_part + factor_166_root_1_part
+            factor_186_part = -product_in_factor_187_root_3_part * cos_q23_root_1_part
+            factor_126_part = -factor_109_root_1_part * product_in_factor_131_root_3_part
+            factor_127_part = factor_109_root_3_part * product_in_factor_161_part
+            factor_129_part = -factor_109_root_1_root_3_part * product_in_factor_163_part
+            factor_132_part = factor_126_part + factor_127_part + factor_129_part + factor_109_part * factor_52_part
+            factor_136_part = -factor_116_root_1_part * product_in_factor_137_root_3_part
+            factor_138_part = factor_116_root_3_part * product_in_factor_151_part
+            factor_140_part = -factor_116_root_1_root_3_part * product_in_factor_154_part_2
+            factor_142_part = factor_136_part + factor_138_part + factor_140_part + factor_116_part * factor_44_part
+            sin_q23_part = factor_132_part + factor_142_part
+            factor_190_part = -goal_r32 * sin_q23_part
+            r12_from_q123_part = factor_186_part + factor_190_part
+            factor_198_part = r12_from_q123_part * cos_q6_tried
+            factor_174_part = -product_in_factor_175_root_3_part * cos_q23_root_1_part
+            factor_178_part = -goal_r31 * sin_q23_part
+            r11_from_q123_part = factor_174_part + factor_178_part
+            factor_202_part = r11_from_q123_part * sin_q6_tried
+            r12_from_q123_before_q6_part = factor_198_part + factor_202_part
+            factor_304_root_1_part = 2.0 * r12_from_q123_before_q6_part * r12_from_q123_before_q6_root_1_part
+            product_306_root_1_part = factor_304_root_1_part - factor_301_root_1_part
+            factor_308_part = product_306_root_1_part * product_306_root_1_part
+            factor_309_part = -factor_308_part * factor_8_part
+            factor_300_part = -factor_298_root_1_part * product_in_factor_154_part
+            factor_301_part = factor_300_part + factor_298_part * factor_34_part
+            factor_303_part = -factor_8_part * r12_from_q123_before_q6_root_1_part * r12_from_q123_before_q6_root_1_part
+            factor_304_part = factor_303_part + r12_from_q123_before_q6_part * r12_from_q123_before_q6_part
+            product_306_part = factor_304_part - factor_301_part
+            factor_310_part = product_306_part * product_306_part
+            product_311_part = factor_310_part - factor_309_part
+            taken = 0.09523809523809523 * factor_106_part * factor_8_part * factor_8_part * product_311_part
+            level = 0.5 * taken
+            cos_2 = cos_q6_tried * cos_q6_tried - sin_q6_tried * sin_q6_tried
+            sin_2 = 2.0 * cos_q6_tried * sin_q6_tried
+            cos_3 = cos_2 * cos_q6_tried - sin_2 * sin_q6_tried
+            sin_3 = cos_2 * sin_q6_tried + cos_q6_tried * sin_2
+            cos_4 = cos_3 * cos_q6_tried - sin_3 * sin_q6_tried
+            sin_4 = cos_3 * sin_q6_tried + cos_q6_tried * sin_3
+            cos_5 = cos_4 * cos_q6_tried - sin_4 * sin_q6_tried
+            sin_5 = cos_4 * sin_q6_tried + cos_q6_tried * sin_4
+            cos_6 = cos_5 * cos_q6_tried - sin_5 * sin_q6_tried
+            sin_6 = cos_5 * sin_q6_tried + cos_q6_tried * sin_5
+            cos_7 = cos_6 * cos_q6_tried - sin_6 * sin_q6_tried
+            sin_7 = cos_6 * sin_q6_tried + cos_q6_tried * sin_6
+            cos_8 = cos_7 * cos_q6_tried - sin_7 * sin_q6_tried
+            sin_8 = cos_7 * sin_q6_tried + cos_q6_tried * sin_7
+            cos_9 = cos_8 * cos_q6_tried - sin_8 * sin_q6_tried
+            sin_9 = cos_8 * sin_q6_tried + cos_q6_tried * sin_8
+            cos_10 = cos_9 * cos_q6_tried - sin_9 * sin_q6_tried
+            sin_10 = cos_9 * sin_q6_tried + cos_q6_tried * sin_9
+            done = sample >= 21
+            if settled(done, status):
+                break
+            (
+                sample,
+                wave_cos_0,
+                wave_cos_1,
+                wave_cos_2,
+                wave_cos_3,
+                wave_cos_4,
+                wave_cos_5,
+                wave_cos_6,
+                wave_cos_7,
+                wave_cos_8,
+                wave_cos_9,
+                wave_cos_10,
+                wave_sin_1,
+                wave_sin_2,
+                wave_sin_3,
+                wave_sin_4,
+                wave_sin_5,
+                wave_sin_6,
+                wave_sin_7,
+                wave_sin_8,
+                wave_sin_9,
+                wave_sin_10,
+            ) = advanced(
+                done,
+                (
+                    sample,
+                    wave_cos_0,
+                    wave_cos_1,
+                    wave_cos_2,
+                    wave_cos_3,
+                    wave_cos_4,
+                    wave_cos_5,
+                    wave_cos_6,
+                    wave_cos_7,
+                    wave_cos_8,
+                    wave_cos_9,
+                    wave_cos_10,
+                    wave_sin_1,
+                    wave_sin_2,
+                    wave_sin_3,
+                    wave_sin_4,
+                    wave_sin_5,
+                    wave_sin_6,
+                    wave_sin_7,
+                    wave_sin_8,
+                    wave_sin_9,
+                    wave_sin_10,
+                ),
+                (
+                    1 + sample,
+                    level + wave_cos_0,
+                    wave_cos_1 + taken * cos_q6_tried,
+                    wave_cos_2 + taken * cos_2,
+                    wave_cos_3 + taken * cos_3,
+                    wave_cos_4 + taken * cos_4,
+                    wave_cos_5 + taken * cos_5,
+                    wave_cos_6 + taken * cos_6,
+                    wave_cos_7 + taken * cos_7,
+                    wave_cos_8 + taken * cos_8,
+                    wave_cos_9 + taken * cos_9,
+                    wave_cos_10 + taken * cos_10,
+                    wave_sin_1 + taken * sin_q6_tried,
+                    wave_sin_2 + taken * sin_2,
+                    wave_sin_3 + taken * sin_3,
+                    wave_sin_4 + taken * sin_4,
+                    wave_sin_5 + taken * sin_5,
+                    wave_sin_6 + taken * sin_6,
+                    wave_sin_7 + taken * sin_7,
+                    wave_sin_8 + taken * sin_8,
+                    wave_sin_9 + taken * sin_9,
+                    wave_sin_10 + taken * sin_10,
+                ),
+            )
+        rounding_0 = 1e-14 * (
+            absolute(wave_cos_0)
+            + absolute(wave_cos_1)
+            + absolute(wave_cos_2)
+            + absolute(wave_cos_3)
+            + absolute(wave_cos_4)
+            + absolute(wave_cos_5)
+            + absolute(wave_cos_6)
+            + absolute(wave_cos_7)
+            + absolute(wave_cos_8)
+            + absolute(wave_sin_1)
+            + absolute(wave_sin_2)
+            + absolute(wave_sin_3)
+            + absolute(wave_sin_4)
+            + absolute(wave_sin_5)
+            + absolute(wave_sin_6)
+            + absolute(wave_sin_7)
+            + absolute(wave_sin_8)
+        )
+        size_of_wave_cos_9_times_32 = 32.0 * absolute(wave_cos_9)
+        rounding_1 = select(size_of_wave_cos_9_times_32 > rounding_0, size_of_wave_cos_9_times_32, rounding_0)
+        size_of_wave_cos_10_times_32 = 32.0 * absolute(wave_cos_10)
+        rounding_2 = select(size_of_wave_cos_10_times_32 > rounding_1, size_of_wave_cos_10_times_32, rounding_1)
+        size_of_wave_sin_9_times_32 = 32.0 * absolute(wave_sin_9)
+        rounding_3 = select(size_of_wave_sin_9_times_32 > rounding_2, size_of_wave_sin_9_times_32, rounding_2)
+        size_of_wave_sin_10_times_32 = 32.0 * absolute(wave_sin_10)
+        rounding_4 = select(size_of_wave_sin_10_times_32 > rounding_3, size_of_wave_sin_10_times_32, rounding_3)
+        return (
+            wave_cos_0,
+            wave_cos_1,
+            wave_cos_2,
+            wave_cos_3,
+            wave_cos_4,
+            wave_cos_5,
+            wave_cos_6,
+            wave_cos_7,
+            wave_cos_8,
+            wave_sin_1,
+            wave_sin_2,
+            wave_sin_3,
+            wave_sin_4,
+            wave_sin_5,
+            wave_sin_6,
+            wave_sin_7,
+            wave_sin_8,
+            rounding_4,
+        )
+
+    def find_part(self, given: Values, status: Codes) -> Values:
+        """The next part of the circle in which the wave may be zero."""
+        (
+            at,
+            end,
+            noise,
+            steps_left,
+            wave_cos_0,
+            wave_cos_1,
+            wave_cos_2,
+            wave_cos_3,
+            wave_cos_4,
+            wave_cos_5,
+            wave_cos_6,
+            wave_cos_7,
+            wave_cos_8,
+            wave_sin_1,
+            wave_sin_2,
+            wave_sin_3,
+            wave_sin_4,
+            wave_sin_5,
+            wave_sin_6,
+            wave_sin_7,
+            wave_sin_8,
+        ) = given
+        sum_in_bound_of_fifth = (
+            0.008333333333333333 * (absolute(wave_cos_1) + absolute(wave_sin_1))
+            + 0.26666666666666666 * (absolute(wave_cos_2) + absolute(wave_sin_2))
+            + 2.025 * (absolute(wave_cos_3) + absolute(wave_sin_3))
+            + 8.533333333333333 * (absolute(wave_cos_4) + absolute(wave_sin_4))
+            + 26.041666666666668 * (absolute(wave_cos_5) + absolute(wave_sin_5))
+            + 64.8 * (absolute(wave_cos_6) + absolute(wave_sin_6))
+            + 273.06666666666666 * (absolute(wave_cos_8) + absolute(wave_sin_8))
+        )
+        bound_of_fifth = sum_in_bound_of_fifth + 140.05833333333334 * (absolute(wave_cos_7) + absolute(wave_sin_7))
+        # steps around the circle that pass no zero of the wave
+        place, width, steps_still_left = initial(at, 0.0, steps_left)
+        for _ in range(1002):
+            angle = place + width
+            cos_1 = cos(angle)
+            sin_1 = sin(angle)
+            even_1 = wave_cos_1 * cos_1 + wave_sin_1 * sin_1
+            cos_2 = cos_1 * cos_1 - sin_1 * sin_1
+            sin_2 = 2.0 * cos_1 * sin_1
+            even_2 = wave_cos_2 * cos_2 + wave_sin_2 * sin_2
+            cos_3 = cos_1 * cos_2 - sin_1 * sin_2
+            sin_3 = cos_1 * sin_2 + cos_2 * sin_1
+            even_3 = wave_cos_3 * cos_3 + wave_sin_3 * sin_3
+            cos_4 = cos_1 * cos_3 - sin_1 * sin_3
+            sin_4 = cos_1 * sin_3 + cos_3 * sin_1
+            even_4 = wave_cos_4 * cos_4 + wave_sin_4 * sin_4
+            cos_5 = cos_1 * cos_4 - sin_1 * sin_4
+            sin_5 = cos_1 * sin_4 + cos_4 * sin_1
+            even_5 = wave_cos_5 * cos_5 + wave_sin_5 * sin_5
+            cos_6 = cos_1 * cos_5 - sin_1 * sin_5
+            sin_6 = cos_1 * sin_5 + cos_5 * sin_1
+            even_6 = wave_cos_6 * cos_6 + wave_sin_6 * sin_6
+            cos_7 = cos_1 * cos_6 - sin_1 * sin_6
+            sin_7 = cos_1 * sin_6 + cos_6 * sin_1
+            even_7 = wave_cos_7 * cos_7 + wave_sin_7 * sin_7
+            cos_8 = cos_1 * cos_7 - sin_1 * sin_7
+            sin_8 = cos_1 * sin_7 + cos_7 * sin_1
+            even_8 = wave_cos_8 * cos_8 + wave_sin_8 * sin_8
+            wave = even_1 + even_2 + even_3 + even_4 + even_5 + even_6 + even_7 + even_8 + wave_cos_0
+            is_rounding = absolute(wave) <= noise
+            is_over = ((place >= end) & (width <= 0.0)) | ((width > 0.0) & ((opposite(is_rounding)) | (width >= 0.5)))
+            half_noise_minus_size_of_wave = 0.5 * noise - absolute(wave)
+            room = select(-half_noise_minus_size_of_wave > 0.0, -half_noise_minus_size_of_wave, 0.0)
+            odd_1 = wave_sin_1 * cos_1 - wave_cos_1 * sin_1
+            odd_2 = wave_sin_2 * cos_2 - wave_cos_2 * sin_2
+            odd_3 = wave_sin_3 * cos_3 - wave_cos_3 * sin_3
+            odd_4 = wave_sin_4 * cos_4 - wave_cos_4 * sin_4
+            odd_5 = wave_sin_5 * cos_5 - wave_cos_5 * sin_5
+            odd_6 = wave_sin_6 * cos_6 - wave_cos_6 * sin_6
+            odd_7 = wave_sin_7 * cos_7 - wave_cos_7 * sin_7
+            odd_8 = wave_sin_8 * cos_8 - wave_cos_8 * sin_8
+            slope = (
+                odd_1 + 2.0 * odd_2 + 3.0 * odd_3 + 4.0 * odd_4 + 5.0 * odd_5 + 6.0 * odd_6 + 7.0 * odd_7 + 8.0 * odd_8
+            )
+            sign_of_wave = select(wave < 0.0, -1.0, 1.0)
+            sign_of_wave_times_slope = sign_of_wave * slope
+            falls_slope = select(-sign_of_wave_times_slope > 0.0, -sign_of_wave_times_slope, 0.0)
+            bend = (
+                -0.5 * even_1
+                - 2.0 * even_2
+                - 4.5 * even_3
+                - 8.0 * even_4
+                - 12.5 * even_5
+                - 18.0 * even_6
+                - 24.5 * even_7
+                - 32.0 * even_8
+            )
+            bend_times_sign_of_wave = bend * sign_of_wave
+            falls_bend = select(-bend_times_sign_of_wave > 0.0, -bend_times_sign_of_wave, 0.0)
+            third = (
+                -odd_1 / 6.0
+                - 4.0 * odd_2 / 3.0
+                - 4.5 * odd_3
+                - 32.0 * odd_4 / 3.0
+                - 125.0 * odd_5 / 6.0
+                - 36.0 * odd_6
+                - 343.0 * odd_7 / 6.0
+                - 256.0 * odd_8 / 3.0
+            )
+            sign_of_wave_times_third = sign_of_wave * third
+            falls_third = select(-sign_of_wave_times_third > 0.0, -sign_of_wave_times_third, 0.0)
+            fourth = (
+                even_1 / 24.0
+                + 2.0 * even_2 / 3.0
+                + 3.375 * even_3
+                + 32.0 * even_4 / 3.0
+                + 625.0 * even_5 / 24.0
+                + 54.0 * even_6
+                + 2401.0 * even_7 / 24.0
+                + 512.0 * even_8 / 3.0
+            )
+            fourth_times_sign_of_wave = fourth * sign_of_wave
+            falls_fourth = select(-fourth_times_sign_of_wave > 0.0, -fourth_times_sign_of_wave, 0.0)
+            curve_1 = bound_of_fifth + falls_bend + falls_fourth + falls_third
+            falls_slope_squared = falls_slope * falls_slope
+            divisor_1 = falls_slope + root(falls_slope_squared + 4.0 * curve_1 * room)
+            twice_room = 2.0 * room
+            allowed_1 = select(divisor_1 > twice_room, 2.0 * room / select(divisor_1 > twice_room, divisor_1, 1.0), 1.0)
+            safe_1 = select(allowed_1 > 0.0, allowed_1, 0.0)
+            length_1 = root(safe_1)
+            curve_2 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_1) * length_1) * length_1
+            divisor_2 = falls_slope + root(falls_slope_squared + 4.0 * curve_2 * room)
+            allowed_2 = select(
+                divisor_2 * length_1 > twice_room,
+                2.0 * room / select(divisor_2 * length_1 > twice_room, divisor_2, 1.0),
+                length_1,
+            )
+            safe_2 = select(allowed_2 > safe_1, allowed_2, safe_1)
+            long_2 = select(divisor_2 * length_1 > twice_room, length_1, 1.0)
+            length_2 = root(long_2 * safe_2)
+            curve_3 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_2) * length_2) * length_2
+            divisor_3 = falls_slope + root(falls_slope_squared + 4.0 * curve_3 * room)
+            allowed_3 = select(
+                divisor_3 * length_2 > twice_room,
+                2.0 * room / select(divisor_3 * length_2 > twice_room, divisor_3, 1.0),
+                length_2,
+            )
+            safe_3 = select(allowed_3 > safe_2, allowed_3, safe_2)
+            long_3 = select(divisor_3 * length_2 > twice_room, length_2, long_2)
+            length_3 = root(long_3 * safe_3)
+            curve_4 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_3) * length_3) * length_3
+            divisor_4 = falls_slope + root(falls_slope_squared + 4.0 * curve_4 * room)
+            allowed_4 = select(
+                divisor_4 * length_3 > twice_room,
+                2.0 * room / select(divisor_4 * length_3 > twice_room, divisor_4, 1.0),
+                length_3,
+            )
+            safe_4 = select(allowed_4 > safe_3, allowed_4, safe_3)
+            long_4 = select(divisor_4 * length_3 > twice_room, length_3, long_3)
+            length_4 = root(long_4 * safe_4)
+            curve_5 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_4) * length_4) * length_4
+            divisor_5 = falls_slope + root(falls_slope_squared + 4.0 * curve_5 * room)
+            allowed_5 = select(
+                divisor_5 * length_4 > twice_room,
+                2.0 * room / select(divisor_5 * length_4 > twice_room, divisor_5, 1.0),
+                length_4,
+            )
+            safe_5 = select(allowed_5 > safe_4, allowed_5, safe_4)
+            long_5 = select(divisor_5 * length_4 > twice_room, length_4, long_4)
+            length_5 = root(long_5 * safe_5)
+            curve_6 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_5) * length_5) * length_5
+            divisor_6 = falls_slope + root(falls_slope_squared + 4.0 * curve_6 * room)
+            allowed_6 = select(
+                divisor_6 * length_5 > twice_room,
+                2.0 * room / select(divisor_6 * length_5 > twice_room, divisor_6, 1.0),
+                length_5,
+            )
+            safe_6 = select(allowed_6 > safe_5, allowed_6, safe_5)
+            way = select(is_rounding | (width > 0.0), 0.0, select(safe_6 > 1e-15, safe_6, 1e-15))
+            done = is_over | (steps_still_left <= 0)
+            if settled(done, status):
+                break
+            place, width, steps_still_left = advanced(
+                done,
+                (place, width, steps_still_left),
+                (place + way, select(width > 0.0, 2.0 * width, select(is_rounding, 1e-13, 0.0)), steps_still_left - 1),
+            )
+        is_part = is_over & (width > 0.0)
+        return (select(is_part, place, end), select(is_part, angle, end), is_part, steps_still_left)
 
     def try_joint(self, given: Values, status: Codes) -> Values:
-        """The residual of the closure at a trial, its slope, and the angles that may turn fast."""
+        """The residual of the closure at a trial, with its slope, and lengths that turn angles."""
         (
-            freed,
-            freed_angle,
             goal_r11,
             goal_r12,
             goal_r13,
@@ -74,37 +707,33 @@ class ArrayPrograms(Programs):
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
         slope_wrist_x_tried = k.j6_offset_x * (goal_r12 * cos_q6_tried + goal_r11 * sin_q6_tried)
         slope_wrist_y_tried = k.j6_offset_x * (goal_r22 * cos_q6_tried + goal_r21 * sin_q6_tried)
-
-        def elsewhere_cos_q1_tried(freed: Whole, freed_angle: Real, reference_a1: Real) -> Reals:
-            chosen_q1 = select(freed == 0, freed_angle, reference_a1)  # q1 where the pose leaves it free
-            cos_q1_tried = cos(chosen_q1)
-            sin_q1_tried = sin(chosen_q1)
-            return (cos_q1_tried, sin_q1_tried, 0.0, 0.0)
-
-        along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
-        slope_length_q1_tried = select(
+        slope_distance_q1_tried = select(
             distance_q1_tried > 0.0,
             (slope_wrist_x_tried * wrist_x_tried + slope_wrist_y_tried * wrist_y_tried)
             / select(distance_q1_tried > 0.0, distance_q1_tried, 1.0),
             0.0,
         )
-        holds = distance_q1_tried > k.machine_scale_times_free_angle
-        length_q1_tried = select(holds, distance_q1_tried, 1.0)
-        slope_length_q1_tried = select(holds, slope_length_q1_tried, 0.0)
-        one_by_distance_q1_tried = 1.0 / length_q1_tried
+
+        def elsewhere_cos_q1_tried(reference_a1: Real) -> Reals:
+            cos_q1_tried = cos(reference_a1)
+            sin_q1_tried = sin(reference_a1)
+            return (cos_q1_tried, sin_q1_tried, 0.0, 0.0)
+
+        along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
+        one_by_distance_q1_tried = 1.0 / distance_q1_tried
         cos_q1_tried = along_q1_tried * one_by_distance_q1_tried
         across_q1_tried = wanted_shoulder * wrist_y_tried
         sin_q1_tried = across_q1_tried * one_by_distance_q1_tried
         slope_along_q1_tried = wanted_shoulder * slope_wrist_x_tried
-        slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried * cos_q1_tried) * one_by_distance_q1_tried
+        slope_cos_q1_tried = (slope_along_q1_tried - slope_distance_q1_tried * cos_q1_tried) * one_by_distance_q1_tried
         slope_across_q1_tried = wanted_shoulder * slope_wrist_y_tried
-        slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried * sin_q1_tried) * one_by_distance_q1_tried
+        slope_sin_q1_tried = (slope_across_q1_tried - slope_distance_q1_tried * sin_q1_tried) * one_by_distance_q1_tried
         # at a singularity: the angle of the reference
         cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried = elsewhere(
-            (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
+            distance_q1_tried > k.machine_scale_times_free_angle,
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
             elsewhere_cos_q1_tried,
-            (freed, freed_angle, reference_a1),
+            (reference_a1,),
         )
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - k.a1
@@ -114,14 +743,15 @@ class ArrayPrograms(Programs):
         reach_tried = sqrt(
             wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
         )
-        sum_in_one_less_cos_q3_tried = k.a2_plus_effective_q3_tried - reach_tried
-        sum_in_one_less_cos_q3_tried_2 = k.a2_plus_effective_q3_tried + reach_tried
+        r11_from_q1_tried = goal_r11 * cos_q1_tried + goal_r21 * sin_q1_tried
+        a2_plus_length_25_minus_reach_tried = k.a2_plus_length_25 - reach_tried
+        a2_plus_length_25_plus_reach_tried = k.a2_plus_length_25 + reach_tried
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_tried = sum_in_one_less_cos_q3_tried * sum_in_one_less_cos_q3_tried_2
-        sum_in_one_plus_cos_q3_tried = k.a2_minus_effective_q3_tried - reach_tried
-        sum_in_one_plus_cos_q3_tried_2 = k.a2_minus_effective_q3_tried + reach_tried
+        one_less_cos_q3_tried = a2_plus_length_25_minus_reach_tried * a2_plus_length_25_plus_reach_tried
+        a2_minus_length_25_minus_reach_tried = k.a2_minus_length_25 - reach_tried
+        a2_minus_length_25_plus_reach_tried = k.a2_minus_length_25 + reach_tried
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = -sum_in_one_plus_cos_q3_tried * sum_in_one_plus_cos_q3_tried_2
+        one_plus_cos_q3_tried = -a2_minus_length_25_minus_reach_tried * a2_minus_length_25_plus_reach_tried
         # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = k.j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
@@ -137,11 +767,11 @@ class ArrayPrograms(Programs):
             / select(reach_tried > 0.0, reach_tried, 1.0),
             0.0,
         )
-        slope_one_less_cos_q3_tried = slope_reach_tried * (
-            sum_in_one_less_cos_q3_tried - sum_in_one_less_cos_q3_tried_2
-        )
+        slope_one_less_cos_q3_tried = (
+            a2_plus_length_25_minus_reach_tried - a2_plus_length_25_plus_reach_tried
+        ) * slope_reach_tried
         slope_one_plus_cos_q3_tried = (
-            sum_in_one_plus_cos_q3_tried_2 - sum_in_one_plus_cos_q3_tried
+            a2_minus_length_25_plus_reach_tried - a2_minus_length_25_minus_reach_tried
         ) * slope_reach_tried
         slope_divisor_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
         holds = sum_q3_tried > 0.0
@@ -155,8 +785,8 @@ class ArrayPrograms(Programs):
         root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
         sin_swing_q3_tried = 2.0 * one_by_sum_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
-        sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
+        cos_q3_tried = k.a3_by_length_25 * cos_swing_q3_tried + k.d4_by_length_25 * sin_swing_q3_tried
+        sin_q3_tried = k.a3_by_length_25 * sin_swing_q3_tried - k.d4_by_length_25 * cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
             slope_one_plus_cos_q3_tried
             - slope_one_less_cos_q3_tried
@@ -176,19 +806,12 @@ class ArrayPrograms(Programs):
             2.0 * sign_elbow_tried * slope_root_of_sin_swing_q3_tried
             - slope_divisor_of_cos_q3_tried * sin_swing_q3_tried
         ) * one_by_sum_q3_tried
-        slope_cos_q3_tried = (
-            k.a3_by_effective_q3_tried * slope_cos_swing_q3_tried
-            + k.d4_by_effective_q3_tried * slope_sin_swing_q3_tried
-        )
-        slope_sin_q3_tried = (
-            k.a3_by_effective_q3_tried * slope_sin_swing_q3_tried
-            - k.d4_by_effective_q3_tried * slope_cos_swing_q3_tried
-        )
+        slope_cos_q3_tried = k.a3_by_length_25 * slope_cos_swing_q3_tried + k.d4_by_length_25 * slope_sin_swing_q3_tried
+        slope_sin_q3_tried = k.a3_by_length_25 * slope_sin_swing_q3_tried - k.d4_by_length_25 * slope_cos_swing_q3_tried
 
-        def elsewhere_cos_q2_tried(freed: Whole, freed_angle: Real, reference_a2: Real) -> Reals:
-            chosen_q2 = select(freed == 1, freed_angle, reference_a2)  # q2 where the pose leaves it free
-            cos_q2_tried = cos(chosen_q2)
-            sin_q2_tried = sin(chosen_q2)
+        def elsewhere_cos_q2_tried(reference_a2: Real) -> Reals:
+            cos_q2_tried = cos(reference_a2)
+            sin_q2_tried = sin(reference_a2)
             return (cos_q2_tried, sin_q2_tried, 0.0, 0.0)
 
         arm_along_q2_tried = k.a3 * sin_q3_tried + k.d4 * cos_q3_tried
@@ -218,7 +841,7 @@ class ArrayPrograms(Programs):
             / select(length_q2_tried > 0.0, length_q2_tried, 1.0),
             0.0,
         )
-        holds = (reach_tried > k.machine_scale_times_free_angle) & (sum_in_length_q2_tried > 0.0)
+        holds = sum_in_length_q2_tried > 0.0
         length_q2_tried = select(holds, length_q2_tried, 1.0)
         slope_length_q2_tried = select(holds, slope_length_q2_tried, 0.0)
         one_by_root_of_length_q2_tried = 1.0 / length_q2_tried
@@ -232,12 +855,11 @@ class ArrayPrograms(Programs):
         ) * one_by_root_of_length_q2_tried
         # at a singularity: the angle of the reference
         cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried = elsewhere(
-            (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
+            reach_tried > k.machine_scale_times_free_angle,
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
             elsewhere_cos_q2_tried,
-            (freed, freed_angle, reference_a2),
+            (reference_a2,),
         )
-        r11_from_q1_tried = goal_r11 * cos_q1_tried + goal_r21 * sin_q1_tried
         sin_q23_tried = cos_q2_tried * sin_q3_tried + cos_q3_tried * sin_q2_tried
         cos_q23_tried = cos_q2_tried * cos_q3_tried - sin_q2_tried * sin_q3_tried
         r11_from_q123_tried = r11_from_q1_tried * cos_q23_tried - goal_r31 * sin_q23_tried
@@ -271,24 +893,256 @@ class ArrayPrograms(Programs):
         slope_r12_from_q123_before_q6_tried = (r11_from_q123_tried + slope_r12_from_q123_tried) * cos_q6_tried + (
             slope_r11_from_q123_tried - r12_from_q123_tried
         ) * sin_q6_tried
-        guard = 1.000000000001 - cos_swing_q3_tried * cos_swing_q3_tried
-        slope_guard = -2.0 * slope_cos_swing_q3_tried * cos_swing_q3_tried
         return (
             -r12_from_q123_before_q6_tried,
             -slope_r12_from_q123_before_q6_tried,
-            guard,
-            slope_guard,
-            cos_q1_tried,
-            sin_q1_tried,
-            cos_q2_tried,
-            sin_q2_tried,
+            distance_q1_tried,
+            distance_q1_tried * slope_distance_q1_tried,
+            reach_tried,
+            reach_tried * slope_reach_tried,
         )
 
-    def finish_root(self, given: Values, status: Codes) -> Values:
-        """The joints at a root, improved by Newton's method, and whether they are on the branch."""
+    def find_shortest(self, given: Values, status: Codes) -> Values:
+        """Where a length that turns an angle is shortest, and how far beside it turns by a sixth."""
         (
-            freed,
-            freed_angle,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            high,
+            low,
+            reference_a1,
+            reference_a2,
+            side,
+            wanted_elbow,
+            wanted_shoulder,
+            which_length,
+        ) = given
+        high_minus_low = high - low
+        high_minus_low_times_1_by_32 = high_minus_low / 32.0
+        # where the length is shortest
+        place, best_place, least, last_place, growth_before, bend, steps = initial(low, low, 1e30, low, 0.0, 0.0, 0)
+        for _ in range(22):
+            found = self.try_joint(
+                (
+                    goal_r11,
+                    goal_r12,
+                    goal_r13,
+                    goal_r21,
+                    goal_r22,
+                    goal_r23,
+                    goal_r31,
+                    goal_r32,
+                    goal_r33,
+                    goal_x,
+                    goal_y,
+                    goal_z,
+                    reference_a1,
+                    reference_a2,
+                    side,
+                    place,
+                    wanted_elbow,
+                    wanted_shoulder,
+                ),
+                status,
+            )
+            _, _, length_1, growth_1, length_2, growth_2 = found
+            growth = select(which_length == 2, growth_2, growth_1)
+            length = select(which_length == 2, length_2, length_1)
+            is_less = length < least
+            best_now = select(is_less, place, best_place)
+            gap = growth - growth_before
+            way = place - last_place
+            bend_now = select((steps > 9) & (gap * way > 0.0), gap / select(gap * way > 0.0, way, 1.0), bend)
+            bend_now_2 = select(bend_now > 0.0, bend_now, 1.0)
+            place_minus_growth_by_bend_now = place - growth / bend_now_2
+            sum_in_next_place = best_now + high_minus_low_times_1_by_32
+            next_place = select(
+                steps < 8,
+                low + 0.125 * (1.0 + steps) * high_minus_low,
+                select(
+                    steps < 9,
+                    best_now,
+                    select(
+                        steps == 9,
+                        select(sum_in_next_place > high, best_now - high_minus_low_times_1_by_32, sum_in_next_place),
+                        select(
+                            place_minus_growth_by_bend_now < low,
+                            low,
+                            select(place_minus_growth_by_bend_now > high, high, place_minus_growth_by_bend_now),
+                        ),
+                    ),
+                ),
+            )
+            shared_value = select(is_less, length, least)
+            done = steps >= 21
+            if settled(done, status):
+                break
+            place, best_place, least, last_place, growth_before, bend, steps = advanced(
+                done,
+                (place, best_place, least, last_place, growth_before, bend, steps),
+                (next_place, best_now, shared_value, last_place + way, growth, bend_now, 1 + steps),
+            )
+        return (best_now, select(bend_now > 0.0, 1.7 * shared_value / root(bend_now_2), 0.0))
+
+    def settle_joint(self, given: Values, status: Codes) -> Values:
+        """The joint value next to a start at which the residual is smallest."""
+        (
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            high,
+            low,
+            reference_a1,
+            reference_a2,
+            side,
+            start_number,
+            wanted_elbow,
+            wanted_shoulder,
+        ) = given
+        is_at_length = start_number > 9
+        found = run_where(
+            is_at_length,
+            self.find_shortest,
+            (
+                goal_r11,
+                goal_r12,
+                goal_r13,
+                goal_r21,
+                goal_r22,
+                goal_r23,
+                goal_r31,
+                goal_r32,
+                goal_r33,
+                goal_x,
+                goal_y,
+                goal_z,
+                high,
+                low,
+                reference_a1,
+                reference_a2,
+                side,
+                wanted_elbow,
+                wanted_shoulder,
+                select(start_number > 12, 2, 1),
+            ),
+            status,
+            (0.0, 0.0),
+        )
+        shortest_place, aside = found
+
+        def elsewhere_start_of_steps(high: Real, low: Real, start_number: Whole) -> Reals:
+            part_width = high - low
+            value_in_start_of_steps = select(
+                start_number == 9,
+                0.875,
+                select(
+                    start_number == 8,
+                    0.625,
+                    select(
+                        start_number == 7,
+                        0.375,
+                        select(
+                            start_number == 6,
+                            0.125,
+                            select(
+                                start_number == 5,
+                                0.75,
+                                select(
+                                    start_number == 4,
+                                    0.25,
+                                    select(start_number == 3, 1.0, select(start_number == 2, 0.0, 0.5)),
+                                ),
+                            ),
+                        ),
+                    ),
+                ),
+            )
+            start_of_steps = low + part_width * value_in_start_of_steps
+            return (start_of_steps,)
+
+        sum_in_start_of_steps = (
+            shortest_place
+            + (
+                select(start_number == 11, 1.0, select(start_number == 12, -1.0, 0.0))
+                + select(start_number == 14, 1.0, select(start_number == 15, -1.0, 0.0))
+            )
+            * aside
+        )
+        start_of_steps = select(
+            sum_in_start_of_steps < low, low, select(sum_in_start_of_steps > high, high, sum_in_start_of_steps)
+        )
+        (start_of_steps,) = elsewhere(
+            is_at_length, (start_of_steps,), elsewhere_start_of_steps, (high, low, start_number)
+        )
+        # Newton's method on the residual of the branch
+        place, best_place, least, way, share, steps = initial(start_of_steps, start_of_steps, 1e30, 0.0, 1.0, 0)
+        for _ in range(25):
+            found = self.try_joint(
+                (
+                    goal_r11,
+                    goal_r12,
+                    goal_r13,
+                    goal_r21,
+                    goal_r22,
+                    goal_r23,
+                    goal_r31,
+                    goal_r32,
+                    goal_r33,
+                    goal_x,
+                    goal_y,
+                    goal_z,
+                    reference_a1,
+                    reference_a2,
+                    side,
+                    place,
+                    wanted_elbow,
+                    wanted_shoulder,
+                ),
+                status,
+            )
+            remainder, slope, *_ = found
+            size = absolute(remainder)
+            is_less = size < least
+            best_now = select(is_less, place, best_place)
+            way_now = select(is_less, remainder / select(absolute(slope) > 0.0, slope, 1e30), way)
+            share_now = select(is_less, 1.0, 0.25 * share)
+            best_now_minus_share_now_times_way_now = best_now - share_now * way_now
+            next_place = select(
+                best_now_minus_share_now_times_way_now < low,
+                low,
+                select(best_now_minus_share_now_times_way_now > high, high, best_now_minus_share_now_times_way_now),
+            )
+            done = (steps >= 24) | (absolute(next_place - place) <= 0.0)
+            if settled(done, status):
+                break
+            place, best_place, least, way, share, steps = advanced(
+                done,
+                (place, best_place, least, way, share, steps),
+                (next_place, best_now, select(is_less, size, least), way_now, share_now, 1 + steps),
+            )
+        return (best_now,)
+
+    def joints_at(self, given: Values, status: Codes) -> Values:
+        """The joints with the searched one known."""
+        (
             goal_r11,
             goal_r12,
             goal_r13,
@@ -305,10 +1159,8 @@ class ArrayPrograms(Programs):
             reference_a2,
             side,
             tried,
-            wanted_crossing,
             wanted_elbow,
             wanted_shoulder,
-            wanted_wrist,
         ) = given
         k = self.constants
         cos_q6_tried = cos(tried)
@@ -319,23 +1171,21 @@ class ArrayPrograms(Programs):
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
 
-        def elsewhere_cos_q1_tried(freed: Whole, freed_angle: Real, reference_a1: Real) -> Reals:
-            chosen_q1 = select(freed == 0, freed_angle, reference_a1)  # q1 where the pose leaves it free
-            cos_q1_tried = cos(chosen_q1)
-            sin_q1_tried = sin(chosen_q1)
+        def elsewhere_cos_q1_tried(reference_a1: Real) -> Reals:
+            cos_q1_tried = cos(reference_a1)
+            sin_q1_tried = sin(reference_a1)
             return (cos_q1_tried, sin_q1_tried)
 
         along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
-        length_q1_tried = select(distance_q1_tried > k.machine_scale_times_free_angle, distance_q1_tried, 1.0)
-        cos_q1_tried = along_q1_tried / length_q1_tried
+        cos_q1_tried = along_q1_tried / distance_q1_tried
         across_q1_tried = wanted_shoulder * wrist_y_tried
-        sin_q1_tried = across_q1_tried / length_q1_tried
+        sin_q1_tried = across_q1_tried / distance_q1_tried
         # at a singularity: the angle of the reference
         cos_q1_tried, sin_q1_tried = elsewhere(
-            (distance_q1_tried > k.machine_scale_times_free_angle) & (freed != 0),
+            distance_q1_tried > k.machine_scale_times_free_angle,
             (cos_q1_tried, sin_q1_tried),
             elsewhere_cos_q1_tried,
-            (freed, freed_angle, reference_a1),
+            (reference_a1,),
         )
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - k.a1
@@ -346,13 +1196,9 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
         )
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_tried = (k.a2_plus_effective_q3_tried + reach_tried) * (
-            k.a2_plus_effective_q3_tried - reach_tried
-        )
+        one_less_cos_q3_tried = (k.a2_plus_length_25 + reach_tried) * (k.a2_plus_length_25 - reach_tried)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = (reach_tried - k.a2_minus_effective_q3_tried) * (
-            k.a2_minus_effective_q3_tried + reach_tried
-        )
+        one_plus_cos_q3_tried = (reach_tried - k.a2_minus_length_25) * (k.a2_minus_length_25 + reach_tried)
         # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         divisor_of_cos_q3_tried = select(sum_q3_tried > 0.0, sum_q3_tried, 1.0)
@@ -362,13 +1208,12 @@ class ArrayPrograms(Programs):
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         sin_swing_q3_tried = 2.0 * root(sine_square_q3_tried) * sign_elbow_tried / divisor_of_cos_q3_tried
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_tried = k.a3_by_effective_q3_tried * cos_swing_q3_tried + k.d4_by_effective_q3_tried * sin_swing_q3_tried
-        sin_q3_tried = k.a3_by_effective_q3_tried * sin_swing_q3_tried - k.d4_by_effective_q3_tried * cos_swing_q3_tried
+        cos_q3_tried = k.a3_by_length_25 * cos_swing_q3_tried + k.d4_by_length_25 * sin_swing_q3_tried
+        sin_q3_tried = k.a3_by_length_25 * sin_swing_q3_tried - k.d4_by_length_25 * cos_swing_q3_tried
 
-        def elsewhere_cos_q2_tried(freed: Whole, freed_angle: Real, reference_a2: Real) -> Reals:
-            chosen_q2 = select(freed == 1, freed_angle, reference_a2)  # q2 where the pose leaves it free
-            cos_q2_tried = cos(chosen_q2)
-            sin_q2_tried = sin(chosen_q2)
+        def elsewhere_cos_q2_tried(reference_a2: Real) -> Reals:
+            cos_q2_tried = cos(reference_a2)
+            sin_q2_tried = sin(reference_a2)
             return (cos_q2_tried, sin_q2_tried)
 
         arm_along_q2_tried = k.a3 * sin_q3_tried + k.d4 * cos_q3_tried
@@ -377,19 +1222,15 @@ class ArrayPrograms(Programs):
         along_q2_tried = arm_across_q2_tried * wrist_z_from_q1_tried + arm_along_q2_tried * wrist_x_from_q1_tried
         across_q2_tried = arm_across_q2_tried * wrist_x_from_q1_tried - arm_along_q2_tried * wrist_z_from_q1_tried
         sum_in_length_q2_tried = across_q2_tried * across_q2_tried + along_q2_tried * along_q2_tried
-        length_q2_tried = select(
-            (reach_tried > k.machine_scale_times_free_angle) & (sum_in_length_q2_tried > 0.0),
-            root(sum_in_length_q2_tried),
-            1.0,
-        )
+        length_q2_tried = select(sum_in_length_q2_tried > 0.0, root(sum_in_length_q2_tried), 1.0)
         cos_q2_tried = along_q2_tried / length_q2_tried
         sin_q2_tried = across_q2_tried / length_q2_tried
         # at a singularity: the angle of the reference
         cos_q2_tried, sin_q2_tried = elsewhere(
-            (reach_tried > k.machine_scale_times_free_angle) & (freed != 1),
+            reach_tried > k.machine_scale_times_free_angle,
             (cos_q2_tried, sin_q2_tried),
             elsewhere_cos_q2_tried,
-            (freed, freed_angle, reference_a2),
+            (reference_a2,),
         )
         r21_from_q1_tried = goal_r21 * cos_q1_tried - goal_r11 * sin_q1_tried
         r22_from_q1_tried = goal_r22 * cos_q1_tried - goal_r12 * sin_q1_tried
@@ -408,17 +1249,47 @@ class ArrayPrograms(Programs):
         r33_from_q1234_tried = (
             r22_from_q123_before_q6_tried * r33_from_q123_tried - r23_from_q1_tried * r32_from_q123_before_q6_tried
         )
-        # Newton's method on the closure
-        q1, q2, q3, q4, q5, q6, passes = initial(
+        return (
             atan2(sin_q1_tried, cos_q1_tried),
             atan2(sin_q2_tried, cos_q2_tried),
             atan2(sin_q3_tried, cos_q3_tried),
             atan2(r32_from_q123_before_q6_tried, r22_from_q123_before_q6_tried),
             atan2(r13_from_q123_tried, r33_from_q1234_tried),
             atan2(sin_q6_tried, cos_q6_tried),
-            0,
         )
-        for _ in range(7):
+
+    def finish_root(self, given: Values, status: Codes) -> Values:
+        """The joints that meet the pose, and whether they are on the branch."""
+        (
+            begun_q1,
+            begun_q2,
+            begun_q3,
+            begun_q4,
+            begun_q5,
+            begun_q6,
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            wanted_crossing,
+            wanted_elbow,
+            wanted_shoulder,
+            wanted_wrist,
+        ) = given
+        k = self.constants
+        # steps of damped least squares on the closure
+        q1, q2, q3, q4, q5, q6, error_before, passes_left = initial(
+            begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, 9.0, 64
+        )
+        for _ in range(65):
             cos_q1 = cos(q1)
             q2_plus_q3 = q2 + q3
             cos_q23 = cos(q2_plus_q3)
@@ -538,8 +1409,10 @@ class ArrayPrograms(Programs):
             z_minus_z_at_q6 = z - z_at_q6
             y_minus_y_at_q6 = y - y_at_q6
             rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
+            product_in_damping = 0.001 * error
+            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
             product_1_1 = (
-                1e-12
+                damping
                 + rate_1_1 * rate_1_1
                 + rate_1_2 * rate_1_2
                 + rate_1_3 * rate_1_3
@@ -585,7 +1458,7 @@ class ArrayPrograms(Programs):
             )
             product_1_6 = rate_1_1 + r32_at_q4 * rate_1_5 + r33_at_q5 * rate_1_6 - rate_1_4 * sin_q23
             product_2_2 = (
-                1e-12
+                damping
                 + rate_2_1 * rate_2_1
                 + rate_2_2 * rate_2_2
                 + rate_2_3 * rate_2_3
@@ -609,7 +1482,7 @@ class ArrayPrograms(Programs):
             )
             product_2_6 = rate_2_1 + r32_at_q4 * rate_2_5 + r33_at_q5 * rate_2_6 - rate_2_4 * sin_q23
             product_3_3 = (
-                1e-12
+                damping
                 + rate_3_2 * rate_3_2
                 + rate_3_3 * rate_3_3
                 + rate_3_4 * rate_3_4
@@ -625,17 +1498,25 @@ class ArrayPrograms(Programs):
             )
             product_3_6 = r32_at_q4 * rate_3_5 + r33_at_q5 * rate_3_6 - rate_3_4 * sin_q23
             product_4_4 = (
-                1e-12 + r11_at_q23 * r11_at_q23 + r12_at_q4 * r12_at_q4 + r13_at_q5 * r13_at_q5 + 2.0 * sin_q1 * sin_q1
+                damping
+                + r11_at_q23 * r11_at_q23
+                + r12_at_q4 * r12_at_q4
+                + r13_at_q5 * r13_at_q5
+                + 2.0 * sin_q1 * sin_q1
             )
             product_4_5 = (
                 r11_at_q23 * r21_at_q23 + r12_at_q4 * r22_at_q4 + r13_at_q5 * r23_at_q5 - 2.0 * cos_q1 * sin_q1
             )
             product_4_6 = r12_at_q4 * r32_at_q4 + r13_at_q5 * r33_at_q5 - r11_at_q23 * sin_q23
             product_5_5 = (
-                1e-12 + 2.0 * cos_q1 * cos_q1 + r21_at_q23 * r21_at_q23 + r22_at_q4 * r22_at_q4 + r23_at_q5 * r23_at_q5
+                damping
+                + 2.0 * cos_q1 * cos_q1
+                + r21_at_q23 * r21_at_q23
+                + r22_at_q4 * r22_at_q4
+                + r23_at_q5 * r23_at_q5
             )
             product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
-            product_6_6 = 1.000000000001 + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
+            product_6_6 = 1.0 + damping + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
             # damped least squares: the shortest step that cancels the error
             _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
                 (
@@ -676,7 +1557,7 @@ class ArrayPrograms(Programs):
                 + multiplier_5 * r23_at_q5
                 + multiplier_6 * r33_at_q5
             )
-            size = (
+            step_length = sqrt(
                 step_q1 * step_q1
                 + step_q2 * step_q2
                 + step_q3 * step_q3
@@ -684,24 +1565,30 @@ class ArrayPrograms(Programs):
                 + step_q5 * step_q5
                 + step_q6 * step_q6
             )
-            taken = size <= error  # whether the error becomes smaller
-            done = (opposite(taken)) | (error <= 1e-14) | (passes >= 6)
+            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+            cost = select(error > 0.999 * error_before, 8, 1)
+            meets_pose = error <= 1e-11
+            done = (
+                (error <= 1e-14)
+                | (passes_left <= 0)
+                | (meets_pose & ((passes_left <= 0) | (2.0 * error > error_before)))
+            )
             if settled(done, status):
                 break
-            q1, q2, q3, q4, q5, q6, passes = advanced(
+            q1, q2, q3, q4, q5, q6, error_before, passes_left = advanced(
                 done,
-                (q1, q2, q3, q4, q5, q6, passes),
+                (q1, q2, q3, q4, q5, q6, error_before, passes_left),
                 (
-                    q1 + select(taken, step_q1, 0.0),
-                    q2 + select(taken, step_q2, 0.0),
-                    q3 + select(taken, step_q3, 0.0),
-                    q4 + select(taken, step_q4, 0.0),
-                    q5 + select(taken, step_q5, 0.0),
-                    q6 + select(taken, step_q6, 0.0),
-                    1 + passes,
+                    q1 + shrinking * step_q1,
+                    q2 + shrinking * step_q2,
+                    q3 + shrinking * step_q3,
+                    q4 + shrinking * step_q4,
+                    q5 + shrinking * step_q5,
+                    q6 + shrinking * step_q6,
+                    error,
+                    passes_left - cost,
                 ),
             )
-        require(status, done, Status.UNREACHABLE)
         # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
@@ -715,7 +1602,7 @@ class ArrayPrograms(Programs):
             (),
         )
         fits = (
-            (error <= 1e-10)
+            meets_pose
             & (select(k.searched, sin_q4, cos_q5) * wanted_wrist >= -1e-6)
             & (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * k.quotient_in_fits >= -1e-6)
             & (wanted_elbow * (k.a3 * sin(q3) + cos(q3) * k.d4) * k.one_by_machine_scale >= -1e-6)
@@ -724,10 +1611,10 @@ class ArrayPrograms(Programs):
                 >= -1e-6
             )
         )
-        return (fits, q1, q2, q3, q4, q5, q6)
+        return (fits, meets_pose, q1, q2, q3, q4, q5, q6)
 
     def find_root(self, given: Values, status: Codes) -> Values:
-        """The joints at the root that is nearest to the start; zeros where the machine needs no scan."""
+        """The joints at the root nearest to the start, or next ahead of it; zeros where there is none."""
         (
             goal_r11,
             goal_r12,
@@ -742,6 +1629,7 @@ class ArrayPrograms(Programs):
             goal_y,
             goal_z,
             looked_for,
+            onward,
             reference_a1,
             reference_a2,
             start,
@@ -750,63 +1638,337 @@ class ArrayPrograms(Programs):
             wanted_shoulder,
             wanted_wrist,
         ) = given
-        # root scan along A6
-        found = nearest_root(
-            self.try_joint,
-            self.finish_root,
-            start,
+        found = run_where(
             looked_for,
+            self.compute_wave,
+            (
+                goal_r11,
+                goal_r12,
+                goal_r13,
+                goal_r21,
+                goal_r22,
+                goal_r23,
+                goal_r31,
+                goal_r32,
+                goal_r33,
+                goal_x,
+                goal_y,
+                goal_z,
+            ),
             status,
-            (
-                "freed",
-                "freed_angle",
-                goal_r11,
-                goal_r12,
-                goal_r13,
-                goal_r21,
-                goal_r22,
-                goal_r23,
-                goal_r31,
-                goal_r32,
-                goal_r33,
-                goal_x,
-                goal_y,
-                goal_z,
-                reference_a1,
-                reference_a2,
-                "side",
-                "tried",
-                wanted_elbow,
-                wanted_shoulder,
-            ),
-            (
-                "freed",
-                "freed_angle",
-                goal_r11,
-                goal_r12,
-                goal_r13,
-                goal_r21,
-                goal_r22,
-                goal_r23,
-                goal_r31,
-                goal_r32,
-                goal_r33,
-                goal_x,
-                goal_y,
-                goal_z,
-                reference_a1,
-                reference_a2,
-                "side",
-                "tried",
-                wanted_crossing,
-                wanted_elbow,
-                wanted_shoulder,
-                wanted_wrist,
-            ),
-            7,
+            (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         )
-        found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
-        return (found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6)
+        (
+            wave_cos_0,
+            wave_cos_1,
+            wave_cos_2,
+            wave_cos_3,
+            wave_cos_4,
+            wave_cos_5,
+            wave_cos_6,
+            wave_cos_7,
+            wave_cos_8,
+            wave_sin_1,
+            wave_sin_2,
+            wave_sin_3,
+            wave_sin_4,
+            wave_sin_5,
+            wave_sin_6,
+            wave_sin_7,
+            wave_sin_8,
+            noise,
+        ) = found
+        begin = select(onward, 1e-7 + start, 0.1)
+        end_of_circle = begin + select(onward, 360.0 * DEGREE - 2e-7, 360.0 * DEGREE)
+        # the parts of the circle, and their starts
+        (
+            place,
+            low_before,
+            high_before,
+            start_before,
+            side_before,
+            steps_before,
+            starts_left,
+            nearest,
+            mirrored,
+            kept_q1,
+            kept_q2,
+            kept_q3,
+            kept_q4,
+            kept_q5,
+            kept_q6,
+            mirror_q1,
+            mirror_q2,
+            mirror_q3,
+            mirror_q4,
+            mirror_q5,
+            mirror_q6,
+        ) = initial(
+            begin, begin, begin, 0, 1, 1000, 320, 9.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        )
+        for _ in range(640):
+            is_between = start_before == 0
+            found = run_where(
+                is_between,
+                self.find_part,
+                (
+                    place,
+                    end_of_circle,
+                    noise,
+                    steps_before,
+                    wave_cos_0,
+                    wave_cos_1,
+                    wave_cos_2,
+                    wave_cos_3,
+                    wave_cos_4,
+                    wave_cos_5,
+                    wave_cos_6,
+                    wave_cos_7,
+                    wave_cos_8,
+                    wave_sin_1,
+                    wave_sin_2,
+                    wave_sin_3,
+                    wave_sin_4,
+                    wave_sin_5,
+                    wave_sin_6,
+                    wave_sin_7,
+                    wave_sin_8,
+                ),
+                status,
+                (0.0, 0.0, False, 0.0),
+            )
+            low, high, is_part, steps_still_left = found
+            low_now = select(is_between, low, low_before)
+            high_now = select(is_between, high, high_before)
+            number_now = select(is_between, 1, start_before)
+            has_part = is_part | (opposite(is_between))
+            is_new = has_part & (mirrored == 0)
+            found = run_where(
+                is_new,
+                self.settle_joint,
+                (
+                    goal_r11,
+                    goal_r12,
+                    goal_r13,
+                    goal_r21,
+                    goal_r22,
+                    goal_r23,
+                    goal_r31,
+                    goal_r32,
+                    goal_r33,
+                    goal_x,
+                    goal_y,
+                    goal_z,
+                    high_now,
+                    low_now,
+                    reference_a1,
+                    reference_a2,
+                    side_before,
+                    number_now,
+                    wanted_elbow,
+                    wanted_shoulder,
+                ),
+                status,
+                (0.0,),
+            )
+            (settled_,) = found
+            found = run_where(
+                is_new,
+                self.joints_at,
+                (
+                    goal_r11,
+                    goal_r12,
+                    goal_r13,
+                    goal_r21,
+                    goal_r22,
+                    goal_r23,
+                    goal_r31,
+                    goal_r32,
+                    goal_r33,
+                    goal_x,
+                    goal_y,
+                    goal_z,
+                    reference_a1,
+                    reference_a2,
+                    side_before,
+                    settled_,
+                    wanted_elbow,
+                    wanted_shoulder,
+                ),
+                status,
+                (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+            )
+            begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6 = found
+            start_q1 = select(is_new, begun_q1, mirror_q1)
+            start_q2 = select(is_new, begun_q2, mirror_q2)
+            start_q3 = select(is_new, begun_q3, mirror_q3)
+            start_q4 = select(is_new, begun_q4, mirror_q4)
+            start_q5 = select(is_new, begun_q5, mirror_q5)
+            start_q6 = select(is_new, begun_q6, mirror_q6)
+            found = run_where(
+                has_part,
+                self.finish_root,
+                (
+                    start_q1,
+                    start_q2,
+                    start_q3,
+                    start_q4,
+                    start_q5,
+                    start_q6,
+                    goal_r11,
+                    goal_r12,
+                    goal_r13,
+                    goal_r21,
+                    goal_r22,
+                    goal_r23,
+                    goal_r31,
+                    goal_r32,
+                    goal_r33,
+                    goal_x,
+                    goal_y,
+                    goal_z,
+                    wanted_crossing,
+                    wanted_elbow,
+                    wanted_shoulder,
+                    wanted_wrist,
+                ),
+                status,
+                (False, False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+            )
+            fits, meets_pose, joint_q1, joint_q2, joint_q3, joint_q4, joint_q5, joint_q6 = found
+            mirrors = is_new & meets_pose & (opposite(fits))
+            high_now_minus_low_now = high_now - low_now
+            number_now_plus_one = 1 + number_now
+            value_in_next_start = select(
+                number_now
+                < select(
+                    high_now_minus_low_now <= 1e-9,
+                    1,
+                    select(high_now_minus_low_now <= 0.0001, 3, select(high_now_minus_low_now <= 0.01, 5, 9)),
+                ),
+                number_now_plus_one,
+                select(
+                    number_now <= 9,
+                    select(high_now_minus_low_now > 1e-6, 10, 0),
+                    select(number_now < 15, number_now_plus_one, 0),
+                ),
+            )
+            next_start = select(mirrors | (side_before >= 0), number_now, value_in_next_start)
+            goes_on = has_part & (next_start > 0)
+            next_side = select(mirrors, side_before, -side_before)
+            steps_now = select(is_between, steps_still_left, steps_before)
+            start_minus_joint_q6 = start - joint_q6
+            distance = select(
+                onward,
+                1e-7
+                + 180.0 * DEGREE
+                + atan2(
+                    -sin(1e-7 + 180.0 * DEGREE + start_minus_joint_q6),
+                    cos(1e-7 + 180.0 * DEGREE + start_minus_joint_q6),
+                ),
+                absolute(atan2(-sin(1e-7 + start_minus_joint_q6), cos(1e-7 + start_minus_joint_q6))),
+            )
+            is_better = (
+                fits
+                & has_part
+                & (distance < nearest)
+                & ((opposite(onward)) | ((distance > 1e-7) & (distance < 360.0 * DEGREE - 1e-7)))
+            )
+            mirror_now_q1 = 2.0 * start_q1 - joint_q1
+            mirror_now_q2 = 2.0 * start_q2 - joint_q2
+            mirror_now_q3 = 2.0 * start_q3 - joint_q3
+            mirror_now_q4 = 2.0 * start_q4 - joint_q4
+            mirror_now_q5 = 2.0 * start_q5 - joint_q5
+            mirror_now_q6 = 2.0 * start_q6 - joint_q6
+            done = (
+                (opposite(looked_for))
+                | (place >= end_of_circle)
+                | (starts_left <= 0)
+                | (is_between & onward & (nearest < 9.0))
+            )
+            if settled(done, status):
+                break
+            (
+                place,
+                low_before,
+                high_before,
+                start_before,
+                side_before,
+                steps_before,
+                starts_left,
+                nearest,
+                mirrored,
+                kept_q1,
+                kept_q2,
+                kept_q3,
+                kept_q4,
+                kept_q5,
+                kept_q6,
+                mirror_q1,
+                mirror_q2,
+                mirror_q3,
+                mirror_q4,
+                mirror_q5,
+                mirror_q6,
+            ) = advanced(
+                done,
+                (
+                    place,
+                    low_before,
+                    high_before,
+                    start_before,
+                    side_before,
+                    steps_before,
+                    starts_left,
+                    nearest,
+                    mirrored,
+                    kept_q1,
+                    kept_q2,
+                    kept_q3,
+                    kept_q4,
+                    kept_q5,
+                    kept_q6,
+                    mirror_q1,
+                    mirror_q2,
+                    mirror_q3,
+                    mirror_q4,
+                    mirror_q5,
+                    mirror_q6,
+                ),
+                (
+                    select(goes_on, place, high_now),
+                    low_now,
+                    high_now,
+                    select(goes_on, next_start, 0),
+                    select(goes_on, next_side, 1),
+                    steps_now,
+                    starts_left + select(has_part, -1, 0),
+                    select(is_better, distance, nearest),
+                    select(mirrors, 1, 0),
+                    select(is_better, joint_q1, kept_q1),
+                    select(is_better, joint_q2, kept_q2),
+                    select(is_better, joint_q3, kept_q3),
+                    select(is_better, joint_q4, kept_q4),
+                    select(is_better, joint_q5, kept_q5),
+                    select(is_better, joint_q6, kept_q6),
+                    mirror_now_q1,
+                    mirror_now_q2,
+                    mirror_now_q3,
+                    mirror_now_q4,
+                    mirror_now_q5,
+                    mirror_now_q6,
+                ),
+            )
+        return (
+            nearest < 9.0,
+            select(nearest < 9.0, nearest, 0.0),
+            kept_q1,
+            kept_q2,
+            kept_q3,
+            kept_q4,
+            kept_q5,
+            kept_q6,
+        )
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -927,7 +2089,7 @@ class ArrayPrograms(Programs):
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
-        margin_elbow_closed = (k.a3 * sin_q3_closed + k.d4 * cos_q3_closed) * k.one_by_effective_q3_tried
+        margin_elbow_closed = (k.a3 * sin_q3_closed + k.d4 * cos_q3_closed) * k.one_by_length_25
         branch_shoulder: Real
         branch_wrist: Real
         branch_crossing: Real
@@ -982,13 +2144,9 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_closed * wrist_x_from_q1_closed + wrist_z_from_q1_closed * wrist_z_from_q1_closed
         )
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_closed = (k.a2_plus_effective_q3_tried + reach_closed) * (
-            k.a2_plus_effective_q3_tried - reach_closed
-        )
+        one_less_cos_q3_closed = (k.a2_plus_length_25 + reach_closed) * (k.a2_plus_length_25 - reach_closed)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_closed = (reach_closed - k.a2_minus_effective_q3_tried) * (
-            k.a2_minus_effective_q3_tried + reach_closed
-        )
+        one_plus_cos_q3_closed = (reach_closed - k.a2_minus_length_25) * (k.a2_minus_length_25 + reach_closed)
         # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
         divisor_of_cos_q3_closed = select(sum_q3_closed > 0.0, sum_q3_closed, 1.0)
@@ -1016,6 +2174,7 @@ class ArrayPrograms(Programs):
                 y,
                 z,
                 k.searched,
+                False,
                 reference_a1,
                 reference_a2,
                 reference_a6,
@@ -1026,7 +2185,7 @@ class ArrayPrograms(Programs):
             ),
             status,
         )
-        found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
+        found_, _, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
         q1: Real
         q2: Real
         q3: Real
@@ -1068,8 +2227,8 @@ class ArrayPrograms(Programs):
                 sin_q2_closed = sin(reference_a2)
                 return (cos_q2_closed, sin_q2_closed)
 
-            arm_along_q2_closed = k.effective_q3_tried * sin_swing_q3_closed
-            arm_across_q2_closed = k.a2 + k.effective_q3_tried * cos_swing_q3_closed
+            arm_along_q2_closed = k.length_25 * sin_swing_q3_closed
+            arm_across_q2_closed = k.a2 + k.length_25 * cos_swing_q3_closed
             # rotation by q2 that takes the arm to its target point
             along_q2_closed = (
                 arm_across_q2_closed * wrist_z_from_q1_closed + arm_along_q2_closed * wrist_x_from_q1_closed
@@ -1090,12 +2249,8 @@ class ArrayPrograms(Programs):
             )
             q2 = atan2(sin_q2_closed, cos_q2_closed)
             # addition theorem: plus the angle of the direction from which the cosine is measured
-            cos_q3_closed = (
-                k.a3_by_effective_q3_tried * cos_swing_q3_closed + k.d4_by_effective_q3_tried * sin_swing_q3_closed
-            )
-            sin_q3_closed = (
-                k.a3_by_effective_q3_tried * sin_swing_q3_closed - k.d4_by_effective_q3_tried * cos_swing_q3_closed
-            )
+            cos_q3_closed = k.a3_by_length_25 * cos_swing_q3_closed + k.d4_by_length_25 * sin_swing_q3_closed
+            sin_q3_closed = k.a3_by_length_25 * sin_swing_q3_closed - k.d4_by_length_25 * cos_swing_q3_closed
             q3 = atan2(sin_q3_closed, cos_q3_closed)
             r13_from_q1_closed = r13 * cos_q1_closed + r23 * sin_q1_closed
             sin_q23_closed = cos_q2_closed * sin_q3_closed + cos_q3_closed * sin_q2_closed
