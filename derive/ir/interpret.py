@@ -34,7 +34,18 @@ class Repeats:
     finished: int = 0
     """Roots that the finishing program examined."""
     passes: int = 0
-    """Passes of iterations."""
+    """Passes of iterations that no other iteration runs."""
+    inner: int = 0
+    """Passes of iterations that others run."""
+    depth: int = 0
+    """How many iterations are running, each but the first inside another one."""
+
+    def count(self, passes: int) -> None:
+        """Count passes of the innermost iteration that is running."""
+        if self.depth > 1:
+            self.inner += passes
+        else:
+            self.passes += passes
 
 
 _REPEATS: ContextVar[Repeats | None] = ContextVar("repeats", default=None)
@@ -244,15 +255,17 @@ def _loop(loop: Iterate) -> _Step:
         known.update(zip(names, start, strict=True))
         done = np.zeros(status.shape, dtype=bool)
         counted = _REPEATS.get() or Repeats()
+        counted.depth += 1
         for _ in range(loop.limit):
             going = ~done & (status == Status.OK)
-            counted.passes += int(np.sum(going))
+            counted.count(int(np.sum(going)))
             step(known, status, going)
             done = _broadcast(is_done(known), status.shape)
             if np.all(done | (status != Status.OK)):
                 break
             following: list[Array] = [np.asarray(value(known), declared) for value, declared in followings]
             known.update({n: np.where(done, known[n], v) for n, v in zip(names, following, strict=True)})
+        counted.depth -= 1
         _require(done, loop.otherwise, status)
 
     return iterate

@@ -214,7 +214,7 @@ def _statement(statement: Statement, repeats: Repeats | None = None) -> Cost:
         entries = _total(map(expression_cost, (*statement.matrix, *statement.right)))
         return entries + solve_cost(statement.size, statement.columns)
     if isinstance(statement, Call):
-        return _given(statement) + _runs(statement, 1, repeats)
+        return _given(statement) + cost_of(statement.program, repeats=repeats)
     if isinstance(statement, FindRoot):
         tried, looked = _most_of(statement) if repeats is None else (repeats.trials, repeats.finished)
         return (cost_of(statement.trial) + _OF_A_TRIAL) * tried + cost_of(statement.finish) * looked
@@ -231,17 +231,16 @@ def _given(call: Call) -> Cost:
 
 
 def _runs(call: Call, times: int, repeats: Repeats | None) -> Cost:
-    """The cost of all runs of a shared program. Passes that are counted, or bounded by `passes`, are those of all runs
-    together.
+    """The cost of all runs of a program in a loop. Repeats that are counted, or bounded by `passes`, are those of all
+    runs together.
     """
-    if repeats is None and call.passes is None:
-        return cost_of(call.program) * times
-    once = cost_of(call.program, repeats=Repeats())
-    if repeats is None:
-        in_loops = (cost_of(call.program, repeats=Repeats(passes=1)) + once * -1) * (call.passes or 0)
+    if repeats is not None:
+        of_all = replace(repeats, passes=repeats.inner)
+    elif call.passes is not None:
+        of_all = Repeats(passes=call.passes, inner=call.passes)
     else:
-        in_loops = cost_of(call.program, repeats=repeats) + once * -1
-    return once * times + in_loops
+        return cost_of(call.program) * times
+    return cost_of(call.program, repeats=Repeats()) * (times - 1) + cost_of(call.program, repeats=of_all)
 
 
 def _most_of(search: FindRoot) -> tuple[int, int]:

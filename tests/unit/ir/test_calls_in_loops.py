@@ -14,7 +14,7 @@ from derive.emit.page.lines import Lines
 from derive.emit.page.names import Spelling
 from derive.ir.interpret import Repeats, repeats_counted, run
 from derive.ir.passes import normalise
-from derive.ir.program import Call, Iterate, Let, Output, Program, shared
+from derive.ir.program import Call, FindRoot, Iterate, Let, Output, Program, shared
 from derive.ir.symbols import real
 from derive.ir.verify import BrokenProgram, verify
 from derive.lowering.passes import ANY_TURN, DERIVED, NOTHING, UNCONVERTED, WITHOUT_SQUARES, applied
@@ -38,6 +38,7 @@ from tests.unit.ir.nested_loops import (
     TINY,
     answers,
     find_mean,
+    find_root,
     interpreted,
     settle,
 )  # fmt: skip
@@ -115,7 +116,10 @@ def test_the_verifier_refuses() -> None:
     assert isinstance(loop, Iterate)
     call, half = loop.step
     assert isinstance(call, Call)
+    scan = FindRoot(find_root(), find_root(), RADICAND, sp.true, (), ())
+    scanning = Program("scan", (RADICAND,), (scan,), (Output("root", RADICAND),))
     for broken, inputs, word in (
+        (replace(call, program=scanning, passes=9), (FIRST, SECOND, TINY), "scan scans for roots"),
         (call, (FIRST, SECOND), "reads 'tiny', which is neither given nor an input"),
         (replace(call, names=(OTHER,)), (FIRST, SECOND, TINY), "'other' is bound twice"),
         (replace(call, names=(CHANGE,)), (FIRST, SECOND, TINY), "no output 'change'"),
@@ -132,10 +136,16 @@ def test_the_passes_of_rows_that_go_on_are_counted() -> None:
     for row in rows:
         with repeats_counted() as counted:
             interpreted("settle", [row])
-        alone.append(counted.passes)
+        alone.append((counted.passes, counted.inner))
+        if row != rows[-1]:
+            assert sum(cost_of(settle(), repeats=counted).counts) < sum(cost_of(settle()).counts)
     with repeats_counted() as counted:
         interpreted("settle", rows)
-    assert counted.passes == sum(alone) and len({*alone}) == 4
+    assert [counted.passes, counted.inner] == [sum(column) for column in zip(*alone, strict=True)]
+    assert len({*alone}) == 4 and alone[2] == (1, 1) and all(inner > outer for outer, inner in alone[:2])
+    with repeats_counted() as counted:
+        interpreted("find_mean", rows[:3])
+    assert counted.passes == sum(map(passes, rows[:3]))
 
 
 def test_cost() -> None:
@@ -155,7 +165,8 @@ def test_cost() -> None:
     own = Cost(0, 1, 1)
     assert cost_of(looped(None)) == own * 5 + cost_of(called) * 5
     assert cost_of(looped(20)) == own * 5 + once * 5 + one_pass * 20
-    assert cost_of(looped(20), repeats=Repeats(passes=7)) == own * 7 + once * 7 + one_pass * 7
+    assert cost_of(looped(20), repeats=Repeats(passes=4, inner=7)) == own * 4 + once * 4 + one_pass * 7
+    assert cost_of(looped(None), repeats=Repeats()) == Cost()
 
 
 def test_the_page() -> None:
