@@ -31,6 +31,7 @@ from tests.unit.ir.nested_loops import (
     LEVEL,
     MEAN,
     OTHER,
+    PROGRAMS,
     RADICAND,
     ROWS,
     SECOND,
@@ -108,6 +109,9 @@ def test_shared_programs_of_loops() -> None:
     assert [p.name for p in shared([settle()])] == ["find_root", "find_mean"]
     assert TINY in settle().reads() and settle().refuses
     assert [call.program.name for call in settle().calls()] == ["find_mean"]
+    for caller, called in (("find_mean", "find_root"), ("settle", "find_mean")):
+        (call,) = PROGRAMS[caller].calls()
+        assert call.program is PROGRAMS[called]  # as it is behind all passes
 
 
 def test_the_verifier_refuses() -> None:
