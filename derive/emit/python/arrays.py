@@ -88,7 +88,7 @@ def values_of_a_row(kin: Kinematics) -> int:
     """The number of values of one row in the inverse: inputs, intermediate values, results. A program that every pose
     calls has its own values for every slot.
     """
-    called = {call.program.name for call in kin.branch.calls() if not call.is_rare}
+    called = {c.program.name for c in kin.branch.calls() if not (c.is_rare and c in kin.branch.body)}
     programs = [(kin.branch, 1), *((p, 2 ** len(kin.branches) if p.name in called else 1) for p in kin.shared)]
     own = sum(slots * (len(p.inputs) + len(p.bound())) for p, slots in programs)
     return own

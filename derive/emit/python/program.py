@@ -197,17 +197,17 @@ def solve_lines(system: Solve, printer: ScalarPrinter) -> list[str]:
 
 def scalar_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     """The lines that set the start, and open the loop."""
-    return _head(loop, ", ".join(_values(loop, loop.start, printer)))
+    return _head(loop, [f"{', '.join(_names(loop.state))} = {', '.join(_values(loop, loop.start, printer))}"])
 
 
 def array_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     """The lines that set the start, which may be one for all rows, and open the loop."""
-    return _head(loop, f"initial({', '.join(_values(loop, loop.start, printer))})")
+    start = f"initial({', '.join(_values(loop, loop.start, printer))})"
+    return _head(loop, taken_apart(_names(loop.state), start))
 
 
-def _head(loop: Iterate, start: str) -> list[str]:
-    note = note_lines(loop.note)
-    return [*note, f"{', '.join(_names(loop.state))} = {start}", f"for _ in range({loop.limit}):"]
+def _head(loop: Iterate, start: Sequence[str]) -> list[str]:
+    return [*note_lines(loop.note), *start, f"for _ in range({loop.limit}):"]
 
 
 def scalar_end(loop: Iterate, done: str, refusal: str, printer: ScalarPrinter) -> list[str]:
@@ -218,12 +218,15 @@ def scalar_end(loop: Iterate, done: str, refusal: str, printer: ScalarPrinter) -
 
 def array_end(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     """The lines that leave the loop when every row is done; rows that are done keep their state while others go on."""
-    state = ", ".join(_names(loop.state))
     following = [f"{value}," for value in _values(loop, loop.following, printer)]
     return [
         *_indented([f"done = {printer.print(loop.done)}", "if settled(done, status):", "    break"]),
         *_indented(
-            [f"{state} = advanced(", "    done,", f"    ({state}),", "    (", *_indented(following, 2), "    ),", ")"]
+            [
+                *taken_apart(_names(loop.state), "advanced("),
+                *_indented(["done,", f"{tuple_of(_names(loop.state))},", "(", *_indented(following), "),"]),
+                ")",
+            ]
         ),
         *([] if loop.otherwise is None else [f"require(status, done, Status.{loop.otherwise.name})"]),
     ]

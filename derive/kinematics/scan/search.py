@@ -19,7 +19,7 @@ from derive.ir.program import Call, Iterate, Let, Output, Program
 from derive.ir.symbols import SIDE, TRIED, called, count, flag, real
 from derive.kinematics.scan.parts import AT, END, HIGH, IS_PART, LOW, MOST_STEPS, STEPS
 from derive.kinematics.scan.programs import FITS, FOUND, IS_MET, LOOKED_FOR, START, begun
-from derive.kinematics.scan.settle import NUMBER, SETTLED, next_number
+from derive.kinematics.scan.settle import NUMBER, REMAINS, SETTLED, next_number
 from derive.kinematics.scan.wave import BEGIN
 
 FIND_ROOT = "find_root"
@@ -37,6 +37,8 @@ The next root ahead is further away than this.
 """
 ELSEWHERE = sp.Float("2.5")
 """All roots are found onward from so far ahead of the reference, which may be a root."""
+_NEAR = sp.Float("1e-3")
+"""The closure is met only from where the residual of the branch is at most this."""
 _TURN = 2 * sp.pi
 _ZERO, _ONE, _FAR = sp.Integer(0), sp.Integer(1), sp.Integer(9)
 
@@ -146,7 +148,7 @@ def _place(part: Program, waves: Sequence[sp.Symbol], end: sp.Symbol) -> Iterato
     yield Let(is_between, sp.Eq(NUMBER_NOW, 0))
     given: dict[sp.Symbol, sp.Expr] = {w: w for w in waves} | {AT: PLACE, END: end, STEPS: STEPS_LEFT}
     call = _call(part, (), {s: given[s] for s in part.inputs if s in given})
-    yield replace(call, wanted=is_between)
+    yield replace(call, wanted=sp.And(is_between, sp.Lt(PLACE, end)))
     yield Let(real("low_now"), Select(is_between, LOW, PART_LOW))
     yield Let(real("high_now"), Select(is_between, HIGH, PART_HIGH))
     yield Let(count("steps_now"), Select(is_between, count("steps_still_left"), STEPS_LEFT))
@@ -164,7 +166,9 @@ def _start(
     given = {s: places[s] for s in settle.inputs if s in places}
     yield replace(_call(settle, arguments, given), wanted=is_new)
     given = {s: v for s, v in ((TRIED, SETTLED), (SIDE, SIDE_NOW)) if s in joints_at.inputs}
-    yield replace(_call(joints_at, arguments, given), wanted=is_new)
+    yield Let(flag("is_near"), sp.And(is_new, sp.Le(REMAINS, _NEAR)))
+    yield replace(_call(joints_at, arguments, given), wanted=flag("is_near"))
+    yield Let(flag("is_tried"), sp.And(flag("has_part"), sp.Or(flag("is_near"), sp.Not(is_new))))
     for j in solved:
         yield Let(real(f"start_{j.name}"), Select(is_new, begun(j), _mirror(j)))
 
@@ -180,13 +184,13 @@ def _answer(
     """Whether it fits, and is better than what was found; and what follows."""
     given = {begun(j): real(f"start_{j.name}") for j in solved}
     has_part, fits, mirrors = flag("has_part"), flag(FITS), flag("mirrors")
-    yield replace(_call(finish, arguments, given), wanted=has_part)
+    yield replace(_call(finish, arguments, given), wanted=flag("is_tried"))
     ahead = real(f"joint_{searched.name}") - START - AHEAD
     distance = Select(ONWARD, Wrap(ahead - sp.pi) + sp.pi + AHEAD, sp.Abs(Wrap(ahead)))
     yield Let(real("distance"), distance)
     within = sp.Or(sp.Not(ONWARD), sp.And(sp.Gt(real("distance"), AHEAD), sp.Lt(real("distance"), _TURN - AHEAD)))
-    yield Let(flag("is_better"), sp.And(has_part, fits, within, sp.Lt(real("distance"), NEAREST)))
-    yield Let(mirrors, sp.And(flag("is_new"), IS_MET, sp.Not(fits)))
+    yield Let(flag("is_better"), sp.And(fits, within, sp.Lt(real("distance"), NEAREST)))
+    yield Let(mirrors, sp.And(flag("is_near"), IS_MET, sp.Not(fits)))
     for j in solved:
         yield Let(real(f"mirror_now_{j.name}"), 2 * real(f"start_{j.name}") - real(f"joint_{j.name}"))
     is_second = sp.Lt(SIDE_NOW, 0)

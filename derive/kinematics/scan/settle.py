@@ -34,8 +34,8 @@ _ASIDE = sp.Float("1.7")
 _NARROW = sp.Float("1e-6")
 """In a part up to this width no length is looked for."""
 GRID, SECANTS, NEWTONS = 9, 12, 24
-SETTLED = real("settled")
-"""The joint value that is found."""
+SETTLED, REMAINS = real("settled"), real("remains")
+"""The joint value that is found, and the size of the residual there."""
 _WHICH = count("which_length")
 _ZERO, _ONE = sp.Integer(0), sp.Integer(1)
 
@@ -102,7 +102,7 @@ def settle_program(trial: Program, arguments: Sequence[sp.Symbol]) -> Program:
         at = Select(which, _inside(place + turn * aside), at)
     start = real("start_of_steps")
     body += [Let(start, at), _steps(trial, arguments, start)]
-    program = normalise("settle_joint", body, [Output(SETTLED.name, real("best_now"))])
+    program = normalise("settle_joint", body, [Output(SETTLED.name, real("best_now")), Output(REMAINS.name, real("least_now"))])
     return replace(program, summary="The joint value next to a start at which the residual is smallest")
 
 
@@ -133,6 +133,7 @@ def _steps(trial: Program, arguments: Sequence[sp.Symbol], start: sp.Symbol) -> 
         Let(size, sp.Abs(real("remainder"))),
         Let(is_less, sp.Lt(size, least)),
         Let(best_now, Select(is_less, place, best)),
+        Let(real("least_now"), Select(is_less, size, least)),
         Let(way_now, Select(is_less, real("remainder") / divisor, way)),
         Let(share_now, Select(is_less, _ONE, share / 4)),
         Let(following, _inside(best_now - share_now * way_now)),
@@ -141,8 +142,8 @@ def _steps(trial: Program, arguments: Sequence[sp.Symbol], start: sp.Symbol) -> 
         state=(place, best, least, way, share, number),
         start=(start, start, sp.Float("1e30"), _ZERO, _ONE, _ZERO),
         step=step,
-        following=(following, best_now, Select(is_less, size, least), way_now, share_now, number + 1),
-        done=sp.Or(sp.Ge(number, NEWTONS), sp.Le(sp.Abs(following - place), 0)),
+        following=(following, best_now, real("least_now"), way_now, share_now, number + 1),
+        done=sp.Or(sp.Ge(number, NEWTONS), sp.Le(sp.Abs(following - place), 0), sp.Le(HIGH - LOW, sp.Float(_WIDTHS[0][0]))),
         limit=NEWTONS + 1,
         otherwise=None,
         note="Newton's method on the residual of the branch",
