@@ -916,6 +916,7 @@ static softkin_status find_settle_joint(const void *machine, const double *given
     }
   }
   const double shortest_place = results[0], aside = results[1];
+  const double part_width = high - low;
   double start_of_steps;
   if (is_at_length) {
     const double sum_in_start_of_steps = shortest_place
@@ -924,7 +925,6 @@ static softkin_status find_settle_joint(const void *machine, const double *given
     start_of_steps = sum_in_start_of_steps < low ? low
         : (sum_in_start_of_steps > high ? high : sum_in_start_of_steps);
   } else {
-    const double part_width = high - low;
     const double value_in_start_of_steps = start_number == 9 ? 0.875
         : (start_number == 8 ? 0.625
         : (start_number == 7 ? 0.375
@@ -941,7 +941,7 @@ static softkin_status find_settle_joint(const void *machine, const double *given
   double share = 1.0;
   int steps = 0;
   double remainder, slope, size, best_now, way_now, share_now, best_now_minus_share_now_times_way_now,
-      next_place;
+      next_place, least_now;
   bool is_less;
   for (int pass = 0; pass < 25; pass += 1) {
     double results_of_2[6];
@@ -962,17 +962,19 @@ static softkin_status find_settle_joint(const void *machine, const double *given
     best_now_minus_share_now_times_way_now = best_now - share_now*way_now;
     next_place = best_now_minus_share_now_times_way_now < low ? low
         : (best_now_minus_share_now_times_way_now > high ? high : best_now_minus_share_now_times_way_now);
-    if ((steps >= 24) || (fabs(next_place - place_) <= 0.0)) {
+    least_now = is_less ? size : least;
+    if ((part_width <= 1e-9) || (steps >= 24) || (fabs(next_place - place_) <= 0.0)) {
       break;
     }
     place_ = next_place;
     best_place = best_now;
-    least = (is_less ? size : least);
+    least = least_now;
     way = way_now;
     share = share_now;
     steps = 1 + steps;
   }
   found[0] = best_now;
+  found[1] = least_now;
   return SOFTKIN_OK;
 }
 
@@ -1373,17 +1375,18 @@ static softkin_status find_root(const void *machine, const double *given, double
   double mirror_q4 = 0.0;
   double mirror_q5 = 0.0;
   double mirror_q6 = 0.0;
-  double low, high, low_now, high_now, settled, begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6,
-      start_q1, start_q2, start_q3, start_q4, start_q5, start_q6, joint_q1, joint_q2, joint_q3, joint_q4,
-      joint_q5, joint_q6, high_now_minus_low_now, start_minus_joint_q6, distance, mirror_now_q1,
+  double low, high, low_now, high_now, settled, remains, begun_q1, begun_q2, begun_q3, begun_q4, begun_q5,
+      begun_q6, start_q1, start_q2, start_q3, start_q4, start_q5, start_q6, joint_q1, joint_q2, joint_q3,
+      joint_q4, joint_q5, joint_q6, high_now_minus_low_now, start_minus_joint_q6, distance, mirror_now_q1,
       mirror_now_q2, mirror_now_q3, mirror_now_q4, mirror_now_q5, mirror_now_q6;
   int steps_still_left, number_now, number_now_plus_one, value_in_next_start, next_start, next_side,
       steps_now;
-  bool is_between, is_part, has_part, is_new, fits, meets_pose, mirrors, goes_on, is_better;
+  bool is_between, is_part, has_part, is_new, is_near, is_tried, fits, meets_pose, mirrors, goes_on,
+      is_better;
   for (int pass = 0; pass < 640; pass += 1) {
     is_between = start_before == 0;
     double results_of_2[4] = {0.0};
-    if (is_between) {
+    if (is_between && place_ < end_of_circle) {
       const double arguments_of_2[] = {place_, end_of_circle, noise, steps_before, wave_cos_0, wave_cos_1,
           wave_cos_2, wave_cos_3, wave_cos_4, wave_cos_5, wave_cos_6, wave_cos_7, wave_cos_8, wave_sin_1,
           wave_sin_2, wave_sin_3, wave_sin_4, wave_sin_5, wave_sin_6, wave_sin_7, wave_sin_8};
@@ -1401,7 +1404,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     number_now = is_between ? 1 : start_before;
     has_part = is_part || (!is_between);
     is_new = has_part && (mirrored == 0);
-    double results_of_3[1] = {0.0};
+    double results_of_3[2] = {0.0};
     if (is_new) {
       const double arguments_of_3[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
           goal_r32, goal_r33, goal_x, goal_y, goal_z, high_now, low_now, reference_a1, reference_a2,
@@ -1412,8 +1415,10 @@ static softkin_status find_root(const void *machine, const double *given, double
       }
     }
     settled = results_of_3[0];
+    remains = results_of_3[1];
+    is_near = is_new && (remains <= 0.001);
     double results_of_4[6] = {0.0};
-    if (is_new) {
+    if (is_near) {
       const double arguments_of_4[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
           goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side_before, settled,
           wanted_elbow, wanted_shoulder};
@@ -1428,6 +1433,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     begun_q4 = results_of_4[3];
     begun_q5 = results_of_4[4];
     begun_q6 = results_of_4[5];
+    is_tried = has_part && (is_near || (!is_new));
     start_q1 = is_new ? begun_q1 : mirror_q1;
     start_q2 = is_new ? begun_q2 : mirror_q2;
     start_q3 = is_new ? begun_q3 : mirror_q3;
@@ -1435,7 +1441,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     start_q5 = is_new ? begun_q5 : mirror_q5;
     start_q6 = is_new ? begun_q6 : mirror_q6;
     double results_of_5[8] = {0.0};
-    if (has_part) {
+    if (is_tried) {
       const double arguments_of_5[] = {start_q1, start_q2, start_q3, start_q4, start_q5, start_q6, goal_r11,
           goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32, goal_r33, goal_x, goal_y,
           goal_z, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist};
@@ -1452,7 +1458,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     joint_q4 = results_of_5[5];
     joint_q5 = results_of_5[6];
     joint_q6 = results_of_5[7];
-    mirrors = is_new && meets_pose && (!fits);
+    mirrors = is_near && meets_pose && (!fits);
     high_now_minus_low_now = high_now - low_now;
     number_now_plus_one = 1 + number_now;
     value_in_next_start = number_now < (high_now_minus_low_now <= 1e-9 ? 1
@@ -1468,7 +1474,7 @@ static softkin_status find_root(const void *machine, const double *given, double
         + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_joint_q6),
         cos(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_joint_q6))
         : fabs(softkin_angle_of(-sin(1e-7 + start_minus_joint_q6), cos(1e-7 + start_minus_joint_q6)));
-    is_better = fits && has_part && (distance < nearest)
+    is_better = fits && (distance < nearest)
         && ((!onward) || ((distance > 1e-7) && (distance < 360.0*SOFTKIN_DEGREE - 1e-7)));
     mirror_now_q1 = 2.0*start_q1 - joint_q1;
     mirror_now_q2 = 2.0*start_q2 - joint_q2;

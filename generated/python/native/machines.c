@@ -134,7 +134,7 @@ softkin_regular wrist3_regular;
 softkin_regular_all wrist3_regular_all;
 
 const softkin_native softkin_machines[] = {
-    {"ac6_rzryryrxryrz_j6offset 4bbc93e3ac17248c", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
+    {"ac6_rzryryrxryrz_j6offset 2ed70b9c493da7b6", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
     {"ac6_threeparallel 59e418ca5544d8f1", &ac6_threeparallel_mechanism,
         {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
     {"ac6_txtytzryrxrz 7390998e7fbd1633", &ac6_txtytzryrxrz_mechanism,

@@ -32,9 +32,9 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 78184294 additions, 115413544 multiplications, 12101849 divisions, 7260802 square roots, 1971244
+    inverse: 78184934 additions, 115413544 multiplications, 12101849 divisions, 7260802 square roots, 1971244
     sines
-    inverse, all 16 branches: 1250948977 additions, 1846616800 multiplications, 193629584 divisions, 116172832
+    inverse, all 16 branches: 1250959217 additions, 1846616800 multiplications, 193629584 divisions, 116172832
     square roots, 31539904 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
@@ -59,7 +59,7 @@ Verified at 144 poses, before this file was written, by a witness that knows the
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 8, each of which the inverse finds, too.
     The equations were not checked in a finite field: its roots are searched along a joint.
-    A root scan is no proof: of 406 solutions, most of them close to poses where branches meet, it missed 0.
+    A root scan is no proof: of 406 solutions, most of them close to poses where branches meet, it missed 1.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 4bbc93e3ac17248c"
+    KEY = "ac6_rzryryrxryrz_j6offset 2ed70b9c493da7b6"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1240,6 +1240,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             shortest_place, aside = found
         else:
             shortest_place, aside = (0.0, 0.0)
+        part_width = high - low
         if is_at_length:
             sum_in_start_of_steps = (
                 shortest_place
@@ -1255,7 +1256,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 else (high if sum_in_start_of_steps > high else sum_in_start_of_steps)
             )
         else:
-            part_width = high - low
             value_in_start_of_steps = (
                 0.875
                 if start_number == 9
@@ -1321,15 +1321,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 if best_now_minus_share_now_times_way_now < low
                 else (high if best_now_minus_share_now_times_way_now > high else best_now_minus_share_now_times_way_now)
             )
-            if (steps >= 24) or (abs(next_place - place) <= 0.0):
+            least_now = size if is_less else least
+            if (part_width <= 1e-9) or (steps >= 24) or (abs(next_place - place) <= 0.0):
                 break
             place = next_place
             best_place = best_now
-            least = size if is_less else least
+            least = least_now
             way = way_now
             share = share_now
             steps = 1 + steps
-        return (best_now,)
+        return (best_now, least_now)
 
     def _joints_at(self, given: Values) -> Values | Status:
         """The joints with the searched one known."""
@@ -1908,7 +1909,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         ) = begin, begin, begin, 0, 1, 1000, 320, 9.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for _ in range(640):
             is_between = start_before == 0
-            if is_between:
+            if is_between and (place < end_of_circle):
                 found = self._find_part(
                     (
                         place,
@@ -1971,10 +1972,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 )
                 if isinstance(found, Status):
                     return found
-                (settled_,) = found
+                settled_, remains = found
             else:
-                (settled_,) = (0.0,)
-            if is_new:
+                settled_, remains = (0.0, 0.0)
+            is_near = is_new and (remains <= 0.001)
+            if is_near:
                 found = self._joints_at(
                     (
                         goal_r11,
@@ -2002,13 +2004,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6 = found
             else:
                 begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            is_tried = has_part and (is_near or (not is_new))
             start_q1 = begun_q1 if is_new else mirror_q1
             start_q2 = begun_q2 if is_new else mirror_q2
             start_q3 = begun_q3 if is_new else mirror_q3
             start_q4 = begun_q4 if is_new else mirror_q4
             start_q5 = begun_q5 if is_new else mirror_q5
             start_q6 = begun_q6 if is_new else mirror_q6
-            if has_part:
+            if is_tried:
                 found = self._finish_root(
                     (
                         start_q1,
@@ -2049,7 +2052,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     0.0,
                     0.0,
                 )
-            mirrors = is_new and meets_pose and (not fits)
+            mirrors = is_near and meets_pose and (not fits)
             high_now_minus_low_now = high_now - low_now
             number_now_plus_one = 1 + number_now
             value_in_next_start = (
@@ -2083,7 +2086,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
             is_better = (
                 fits
-                and has_part
                 and (distance < nearest)
                 and ((not onward) or ((distance > 1e-7) and (distance < 360.0 * DEGREE - 1e-7)))
             )

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 3093
+    VALUES = 3142
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -1047,9 +1047,9 @@ class ArrayPrograms(Programs):
             (0.0, 0.0),
         )
         shortest_place, aside = found
+        part_width = high - low
 
-        def elsewhere_start_of_steps(high: Real, low: Real, start_number: Whole) -> Reals:
-            part_width = high - low
+        def elsewhere_start_of_steps(low: Real, part_width: Real, start_number: Whole) -> Reals:
             value_in_start_of_steps = select(
                 start_number == 9,
                 0.875,
@@ -1090,7 +1090,7 @@ class ArrayPrograms(Programs):
             sum_in_start_of_steps < low, low, select(sum_in_start_of_steps > high, high, sum_in_start_of_steps)
         )
         (start_of_steps,) = elsewhere(
-            is_at_length, (start_of_steps,), elsewhere_start_of_steps, (high, low, start_number)
+            is_at_length, (start_of_steps,), elsewhere_start_of_steps, (low, part_width, start_number)
         )
         # Newton's method on the residual of the branch
         place, best_place, least, way, share, steps = initial(start_of_steps, start_of_steps, 1e30, 0.0, 1.0, 0)
@@ -1130,15 +1130,16 @@ class ArrayPrograms(Programs):
                 low,
                 select(best_now_minus_share_now_times_way_now > high, high, best_now_minus_share_now_times_way_now),
             )
-            done = (steps >= 24) | (absolute(next_place - place) <= 0.0)
+            least_now = select(is_less, size, least)
+            done = (part_width <= 1e-9) | (steps >= 24) | (absolute(next_place - place) <= 0.0)
             if settled(done, status):
                 break
             place, best_place, least, way, share, steps = advanced(
                 done,
                 (place, best_place, least, way, share, steps),
-                (next_place, best_now, select(is_less, size, least), way_now, share_now, 1 + steps),
+                (next_place, best_now, least_now, way_now, share_now, 1 + steps),
             )
-        return (best_now,)
+        return (best_now, least_now)
 
     def joints_at(self, given: Values, status: Codes) -> Values:
         """The joints with the searched one known."""
@@ -1709,7 +1710,7 @@ class ArrayPrograms(Programs):
         for _ in range(640):
             is_between = start_before == 0
             found = run_where(
-                is_between,
+                is_between & (place < end_of_circle),
                 self.find_part,
                 (
                     place,
@@ -1769,11 +1770,12 @@ class ArrayPrograms(Programs):
                     wanted_shoulder,
                 ),
                 status,
-                (0.0,),
+                (0.0, 0.0),
             )
-            (settled_,) = found
+            settled_, remains = found
+            is_near = is_new & (remains <= 0.001)
             found = run_where(
-                is_new,
+                is_near,
                 self.joints_at,
                 (
                     goal_r11,
@@ -1799,6 +1801,7 @@ class ArrayPrograms(Programs):
                 (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             )
             begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6 = found
+            is_tried = has_part & (is_near | (opposite(is_new)))
             start_q1 = select(is_new, begun_q1, mirror_q1)
             start_q2 = select(is_new, begun_q2, mirror_q2)
             start_q3 = select(is_new, begun_q3, mirror_q3)
@@ -1806,7 +1809,7 @@ class ArrayPrograms(Programs):
             start_q5 = select(is_new, begun_q5, mirror_q5)
             start_q6 = select(is_new, begun_q6, mirror_q6)
             found = run_where(
-                has_part,
+                is_tried,
                 self.finish_root,
                 (
                     start_q1,
@@ -1836,7 +1839,7 @@ class ArrayPrograms(Programs):
                 (False, False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             )
             fits, meets_pose, joint_q1, joint_q2, joint_q3, joint_q4, joint_q5, joint_q6 = found
-            mirrors = is_new & meets_pose & (opposite(fits))
+            mirrors = is_near & meets_pose & (opposite(fits))
             high_now_minus_low_now = high_now - low_now
             number_now_plus_one = 1 + number_now
             value_in_next_start = select(
@@ -1870,7 +1873,6 @@ class ArrayPrograms(Programs):
             )
             is_better = (
                 fits
-                & has_part
                 & (distance < nearest)
                 & ((opposite(onward)) | ((distance > 1e-7) & (distance < 360.0 * DEGREE - 1e-7)))
             )
