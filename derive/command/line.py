@@ -100,9 +100,7 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     explained.set_defaults(run=explain.explain)
     _view_command(commands)
     text = "write a commented description to start from"
-    fresh = commands.add_parser("new", help=text, description=text)
-    fresh.add_argument("file", type=Path, nargs="?", default=Path("my_machine.py"), metavar="FILE")
-    fresh.set_defaults(run=new.new)
+    new.arguments(commands.add_parser("new", help=text, description=text))
     text = "write a description of a robot file (URDF, MJCF, a DH table), to be read, edited and derived"
     imported = commands.add_parser("import", help=text, description=text)
     importing.add_arguments(imported)

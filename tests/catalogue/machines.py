@@ -86,6 +86,12 @@ class Machine:
         return self.robot.BRANCHES > 0 and int((~self.closure.angles & self.solved).sum()) < len(self.closure.task)
 
     @property
+    def lowest_direction(self) -> float:
+        """The least z of a direction of the tool: of an axis that is inclined to the pole, twice its angle away."""
+        nutation = self.robot.parameters.get("nutation")
+        return -1.0 if nutation is None else float(np.cos(2 * np.radians(nutation)))
+
+    @property
     def solved(self) -> NDArray[np.bool_]:
         """Which joints the inverse solves for: not those that are held."""
         held = self.mechanism.held_joints
@@ -206,7 +212,7 @@ def machines_of(mechanism: Mechanism) -> tuple[Machine, ...]:
     nominal = {p.name: p.nominal for p in mechanism.parameters}
     lengths = [p.name for p in mechanism.parameters if p.role in LENGTHS]
     found = {
-        "plain": {name: nominal[name] for name in lengths},
+        "plain": {p.name: p.nominal for p in mechanism.parameters if p.role in LENGTHS or p.default is None},
         "nominal": nominal,
         "equal": nominal | {name: np.copysign(250.0, nominal[name]) for name in lengths},
         "unequal": nominal | {name: np.copysign(v, nominal[name]) for name, v in zip(lengths, UNEQUAL, strict=False)},
@@ -218,7 +224,8 @@ def machines_of(mechanism: Mechanism) -> tuple[Machine, ...]:
 @cache
 def bare_machine(mechanism: Mechanism) -> Machine:
     """Equal links and nothing else: folded, its reach is zero, and every angle that can be free is."""
-    return machine(mechanism, "bare", {p.name: 250.0 for p in mechanism.parameters if p.role in LENGTHS})
+    angles = {p.name: p.nominal for p in mechanism.parameters if p.role is Role.ANGLE}
+    return machine(mechanism, "bare", angles | {p.name: 250.0 for p in mechanism.parameters if p.role in LENGTHS})
 
 
 def machine(mechanism: Mechanism, label: str, given: Mapping[str, float]) -> Machine:
@@ -246,7 +253,7 @@ def _draw(parameter: Parameter, rng: Generator) -> float:
     sizes = {Role.PITCH: 100.0, Role.GEAR: 0.3, Role.COUPLING: 1.5}
     if parameter.role is Role.SIGNED_LENGTH:
         return float(parameter.nominal * rng.uniform(0.4, 1.6) * rng.choice((-1, 1)))
-    if parameter.role in (Role.LENGTH, Role.DISTANCE):
+    if parameter.role in (Role.LENGTH, Role.DISTANCE, Role.ANGLE):
         return float(parameter.nominal * rng.uniform(0.4, 1.6))
     if parameter.role is Role.FLAG:
         return float(rng.integers(2))

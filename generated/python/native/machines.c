@@ -18,7 +18,9 @@
 #include "gantry3.h"
 #include "gantrycutter2.h"
 #include "gantrycutter3.h"
+#include "headhead_ca.h"
 #include "headhead_cb.h"
+#include "headtable_ac.h"
 #include "headtable_bc.h"
 #include "hexaglide.h"
 #include "hexapod.h"
@@ -26,6 +28,8 @@
 #include "hgantry3.h"
 #include "kin_5axes.h"
 #include "mc_kin_type_12_xy.h"
+#include "nutatinghead_cb.h"
+#include "nutatingtable_bc.h"
 #include "p2c_type1.h"
 #include "p2c_type2.h"
 #include "p2x_type1.h"
@@ -47,6 +51,7 @@
 #include "scaraonrail.h"
 #include "sccc.h"
 #include "tabletable_ac.h"
+#include "tabletable_bc.h"
 #include "tgantry2.h"
 #include "tgantry3.h"
 #include "tool.h"
@@ -76,8 +81,12 @@ softkin_regular gantry2_regular;
 softkin_regular gantry3_regular;
 softkin_regular gantrycutter2_regular;
 softkin_regular gantrycutter3_regular;
+softkin_regular headhead_ca_regular;
+softkin_regular_all headhead_ca_regular_all;
 softkin_regular headhead_cb_regular;
 softkin_regular_all headhead_cb_regular_all;
+softkin_regular headtable_ac_regular;
+softkin_regular_all headtable_ac_regular_all;
 softkin_regular headtable_bc_regular;
 softkin_regular_all headtable_bc_regular_all;
 softkin_regular hgantry2_regular;
@@ -86,6 +95,10 @@ softkin_regular kin_5axes_regular;
 softkin_regular_all kin_5axes_regular_all;
 softkin_regular mc_kin_type_12_xy_regular;
 softkin_regular_all mc_kin_type_12_xy_regular_all;
+softkin_regular nutatinghead_cb_regular;
+softkin_regular_all nutatinghead_cb_regular_all;
+softkin_regular nutatingtable_bc_regular;
+softkin_regular_all nutatingtable_bc_regular_all;
 softkin_regular p2c_type1_regular;
 softkin_regular_all p2c_type1_regular_all;
 softkin_regular p2c_type2_regular;
@@ -120,6 +133,8 @@ softkin_regular scaraonrail_regular;
 softkin_regular_all scaraonrail_regular_all;
 softkin_regular tabletable_ac_regular;
 softkin_regular_all tabletable_ac_regular_all;
+softkin_regular tabletable_bc_regular;
+softkin_regular_all tabletable_bc_regular_all;
 softkin_regular tgantry2_regular;
 softkin_regular tgantry3_regular;
 softkin_regular tripod_linear_regular;
@@ -154,7 +169,10 @@ const softkin_native softkin_machines[] = {
     {"gantry3 9b8635e5f566e3b6", &gantry3_mechanism, {gantry3_regular, NULL}},
     {"gantrycutter2 5043f79761288349", &gantrycutter2_mechanism, {gantrycutter2_regular, NULL}},
     {"gantrycutter3 91ad0640bfc2fd45", &gantrycutter3_mechanism, {gantrycutter3_regular, NULL}},
+    {"headhead_ca a36b01f90c6fff29", &headhead_ca_mechanism, {headhead_ca_regular, headhead_ca_regular_all}},
     {"headhead_cb 945aa2d28ffeb377", &headhead_cb_mechanism, {headhead_cb_regular, headhead_cb_regular_all}},
+    {"headtable_ac f34ea27e13557012", &headtable_ac_mechanism,
+        {headtable_ac_regular, headtable_ac_regular_all}},
     {"headtable_bc c3aa06731787cf95", &headtable_bc_mechanism,
         {headtable_bc_regular, headtable_bc_regular_all}},
     {"hexaglide 03c9f746a143d056", &hexaglide_mechanism, {NULL, NULL}},
@@ -164,6 +182,10 @@ const softkin_native softkin_machines[] = {
     {"kin_5axes 6ed7d0e58bbb1a05", &kin_5axes_mechanism, {kin_5axes_regular, kin_5axes_regular_all}},
     {"mc_kin_type_12_xy d20273cef76cc241", &mc_kin_type_12_xy_mechanism,
         {mc_kin_type_12_xy_regular, mc_kin_type_12_xy_regular_all}},
+    {"nutatinghead_cb 681f70785b60cbd4", &nutatinghead_cb_mechanism,
+        {nutatinghead_cb_regular, nutatinghead_cb_regular_all}},
+    {"nutatingtable_bc 9e5a88cef1e91590", &nutatingtable_bc_mechanism,
+        {nutatingtable_bc_regular, nutatingtable_bc_regular_all}},
     {"p2c_type1 b933ceccadc315dd", &p2c_type1_mechanism, {p2c_type1_regular, p2c_type1_regular_all}},
     {"p2c_type2 942b57fba31e0bcb", &p2c_type2_mechanism, {p2c_type2_regular, p2c_type2_regular_all}},
     {"p2x_type1 94c7c821c18ef4c4", &p2x_type1_mechanism, {p2x_type1_regular, p2x_type1_regular_all}},
@@ -188,6 +210,8 @@ const softkin_native softkin_machines[] = {
     {"sccc 44de60f530721870", &sccc_mechanism, {NULL, NULL}},
     {"tabletable_ac 6909ab958c9b1d87", &tabletable_ac_mechanism,
         {tabletable_ac_regular, tabletable_ac_regular_all}},
+    {"tabletable_bc 9e35af7c68b68092", &tabletable_bc_mechanism,
+        {tabletable_bc_regular, tabletable_bc_regular_all}},
     {"tgantry2 83f275af2946655f", &tgantry2_mechanism, {tgantry2_regular, NULL}},
     {"tgantry3 ebec7448346ecd96", &tgantry3_mechanism, {tgantry3_regular, NULL}},
     {"tool dc1763445a1b1311", &tool_mechanism, {NULL, NULL}},
