@@ -1,6 +1,7 @@
 """`softkin`: describe a machine, derive it, look at its derivation; and `generate`, which writes the whole catalogue.
 
 softkin new my_machine.py                  write a commented description to start from
+softkin like linuxcnc xyzac                name the block for kinematics as a vendor calls them
 softkin explain my_machine.py              print each step of its derivation, and its branches to be named
 softkin explain --html my_machine.py       the same as a page, with pictures, its Jacobian and its singularities
 softkin check my_machine.py                derive and measure it, and write nothing
@@ -20,7 +21,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from derive.command import calibrate, catalogue, explain, live, new, own, report, view
+from derive.command import calibrate, catalogue, explain, like, live, new, own, report, view
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
 from derive.faults import GenerationError, error
@@ -101,6 +102,8 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     _view_command(commands)
     text = "write a commented description to start from"
     new.arguments(commands.add_parser("new", help=text, description=text))
+    text = "name the block for kinematics as a vendor calls them, and the meaning of the vendor's parameters"
+    like.arguments(commands.add_parser("like", help=text, description=text))
     text = "write a description of a robot file (URDF, MJCF, a DH table), to be read, edited and derived"
     imported = commands.add_parser("import", help=text, description=text)
     importing.add_arguments(imported)

@@ -259,6 +259,16 @@ def _nutating_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return *place, tuple(map(tuple, np.einsum("ij...,jk...->ik...", table, carrier)))
 
 
+def _face(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The part turns from X to Y: the tool, seen from it, the other way."""
+    return q[0] * np.cos(q[2]), -q[0] * np.sin(q[2]), q[1], -q[2]
+
+
+def _skew(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    angle = np.radians(p["skew"])
+    return q[0] + q[1] * np.cos(angle), q[1] * np.sin(angle), q[2], 0 * q[0]
+
+
 CARTESIAN = _carriage((1, 0), (0, 1))
 H_BOT = _carriage((0.5, -0.5), (0.5, 0.5))
 H_GANTRY = _carriage((0.5, -0.5), (-0.5, -0.5))
@@ -273,8 +283,10 @@ FORMULAS: dict[str, Formula] = {
     "Softkin_NutatingTable_BC": _nutating_table,
     "Softkin_Palletizer": _palletizer,
     "Softkin_ScaraOnRail": _scara_on_rail,
+    "Softkin_SkewGantry3": _skew,
     "Softkin_TableTable_AC": _table_table,
     "Softkin_TableTable_BC": _table_table_b,
+    "Softkin_Transmit": _face,
     "Kin_Ac6_TXTYTZRYRXRZ": _gantry_head,
     "Kin_Ac6_ThreeParallel": _three_parallel,
     "Kin_ArticulatedRobot_6DOF": _articulated,

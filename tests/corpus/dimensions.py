@@ -60,8 +60,10 @@ DIMENSIONS: dict[str, dict[str, float]] = {
         "wrist_offset_x": 60.0, "wrist_offset_z": -90.0,
     },
     "Softkin_ScaraOnRail": {"link_length_1": 325.0, "link_length_2": 225.0},
+    "Softkin_SkewGantry3": {"skew": 78.0},
     "Softkin_TableTable_AC": {"pivot_y": 40.0, "pivot_z": -60.0, "tool_length": 120.0},
     "Softkin_TableTable_BC": {"pivot_x": -35.0, "pivot_z": 50.0, "tool_length": 130.0},
+    "Softkin_Transmit": {},
     "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": {
         "d1": 615.0, "a1": 100.0, "a2": 705.0, "a3": 135.0, "d4": 755.0, "j6_offset_x": 60.0, "d6": 85.0,
     },

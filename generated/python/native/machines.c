@@ -50,11 +50,13 @@
 #include "scara4_zccoupled_type1.h"
 #include "scaraonrail.h"
 #include "sccc.h"
+#include "skewgantry3.h"
 #include "tabletable_ac.h"
 #include "tabletable_bc.h"
 #include "tgantry2.h"
 #include "tgantry3.h"
 #include "tool.h"
+#include "transmit.h"
 #include "tripod_linear.h"
 #include "tripod_p3z.h"
 #include "tripod_rotary.h"
@@ -131,12 +133,14 @@ softkin_regular scara4_zccoupled_type1_regular;
 softkin_regular_all scara4_zccoupled_type1_regular_all;
 softkin_regular scaraonrail_regular;
 softkin_regular_all scaraonrail_regular_all;
+softkin_regular skewgantry3_regular;
 softkin_regular tabletable_ac_regular;
 softkin_regular_all tabletable_ac_regular_all;
 softkin_regular tabletable_bc_regular;
 softkin_regular_all tabletable_bc_regular_all;
 softkin_regular tgantry2_regular;
 softkin_regular tgantry3_regular;
+softkin_regular transmit_regular;
 softkin_regular tripod_linear_regular;
 softkin_regular_all tripod_linear_regular_all;
 softkin_regular tripod_p3z_regular;
@@ -208,6 +212,7 @@ const softkin_native softkin_machines[] = {
         {scara4_zccoupled_type1_regular, scara4_zccoupled_type1_regular_all}},
     {"scaraonrail a59e29ec1fc13d4d", &scaraonrail_mechanism, {scaraonrail_regular, scaraonrail_regular_all}},
     {"sccc 44de60f530721870", &sccc_mechanism, {NULL, NULL}},
+    {"skewgantry3 2c8fd2425da162a5", &skewgantry3_mechanism, {skewgantry3_regular, NULL}},
     {"tabletable_ac 6909ab958c9b1d87", &tabletable_ac_mechanism,
         {tabletable_ac_regular, tabletable_ac_regular_all}},
     {"tabletable_bc 9e35af7c68b68092", &tabletable_bc_mechanism,
@@ -215,6 +220,7 @@ const softkin_native softkin_machines[] = {
     {"tgantry2 83f275af2946655f", &tgantry2_mechanism, {tgantry2_regular, NULL}},
     {"tgantry3 ebec7448346ecd96", &tgantry3_mechanism, {tgantry3_regular, NULL}},
     {"tool dc1763445a1b1311", &tool_mechanism, {NULL, NULL}},
+    {"transmit a571911b83232328", &transmit_mechanism, {transmit_regular, NULL}},
     {"tripod_linear dddf88ea5aa0e6dd", &tripod_linear_mechanism,
         {tripod_linear_regular, tripod_linear_regular_all}},
     {"tripod_p3z 16cef44b1a3e8642", &tripod_p3z_mechanism, {tripod_p3z_regular, tripod_p3z_regular_all}},

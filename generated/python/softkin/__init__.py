@@ -81,11 +81,13 @@ if TYPE_CHECKING:
     from softkin.scara4_zccoupled_type1 import Scara4ZCcoupledType1
     from softkin.scaraonrail import ScaraOnRail
     from softkin.sccc import SCCC
+    from softkin.skewgantry3 import SkewGantry3
     from softkin.tabletable_ac import TableTableAC
     from softkin.tabletable_bc import TableTableBC
     from softkin.tgantry2 import TGantry2
     from softkin.tgantry3 import TGantry3
     from softkin.tool import Tool
+    from softkin.transmit import Transmit
     from softkin.tripod_linear import TripodLinear
     from softkin.tripod_p3z import TripodP3Z
     from softkin.tripod_rotary import TripodRotary
@@ -156,6 +158,7 @@ __all__ = [
     "Scara4ZCcoupledType1",
     "ScaraOnRail",
     "Singularity",
+    "SkewGantry3",
     "Solution",
     "Status",
     "TGantry2",
@@ -163,6 +166,7 @@ __all__ = [
     "TableTableAC",
     "TableTableBC",
     "Tool",
+    "Transmit",
     "TripodLinear",
     "TripodP3Z",
     "TripodRotary",
@@ -227,11 +231,13 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Scara4_ZCcoupled_Type1": ("scara4_zccoupled_type1", "Scara4ZCcoupledType1"),
     "Softkin_ScaraOnRail": ("scaraonrail", "ScaraOnRail"),
     "Kin_SCCC": ("sccc", "SCCC"),
+    "Softkin_SkewGantry3": ("skewgantry3", "SkewGantry3"),
     "Softkin_TableTable_AC": ("tabletable_ac", "TableTableAC"),
     "Softkin_TableTable_BC": ("tabletable_bc", "TableTableBC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),
     "Kin_TGantry3": ("tgantry3", "TGantry3"),
     "Kin_Tool": ("tool", "Tool"),
+    "Softkin_Transmit": ("transmit", "Transmit"),
     "Kin_Tripod_Linear": ("tripod_linear", "TripodLinear"),
     "Kin_Tripod_P3Z": ("tripod_p3z", "TripodP3Z"),
     "Kin_Tripod_Rotary": ("tripod_rotary", "TripodRotary"),
