@@ -15,7 +15,7 @@ MECHANISMS = {m.name: m for _, m in catalogue()}
 def test_it_finds_by_vendor_and_name(folder: Folder) -> None:
     said = folder.run("like", "linuxcnc", "XYZAC-trt")
     assert said.status == 0 and said.out.startswith("LinuxCNC xyzac-trt-kins: Softkin_TableTable_AC\n")
-    assert "y-offset = -pivot_y" in said.out and "published in: 5-Axis Kinematics" in said.out
+    assert "y-offset = -pivot_y" in said.out and "published in: 5-Axis Kinematics, and the source" in said.out
     assert folder.run("like", "klipper").out.count("Klipper") == sum(k.vendor == "Klipper" for k in known())
     said = folder.run("like", "perpetuum", "mobile")
     assert (
