@@ -70,10 +70,7 @@ class Method:
 
 def inherited_texts(contract: Contract, templates: Environment) -> frozenset[str]:
     """The statements of the methods that a geometry need not override, if those of the base block are right for it."""
-    plain = (
-        _method(contract.overridable[name], name, contract, templates, is_guarded=False)
-        for name in ("FindImage", "FindMargins")
-    )
+    plain = (_method(contract.overridable[name], name, contract, templates) for name in ("FindImage", "FindMargins"))
     signature = contract.overridable["FindProjection"]
     projections = (
         templates.get_template("methods/FindProjection.st.j2").render(contract.spelling, program=program)
@@ -149,15 +146,11 @@ def _template(signature: Signature, contract: Contract) -> str:
     return "Supplied" if signature.name in contract.supplied else signature.name.removesuffix("From")
 
 
-def _method(
-    signature: Signature, template: str, contract: Contract, templates: Environment, *, is_guarded: bool = True
-) -> Method:
-    """A method of the base block. is_guarded: whether before Initialize it only returns an error."""
+def _method(signature: Signature, template: str, contract: Contract, templates: Environment) -> Method:
     text = templates.get_template(f"base/{template}.st.j2").render(
         contract.spelling,
         method=signature.name,
         returns=signature.returns,
-        is_guarded=is_guarded,
         projection=about_z(signature, contract) if signature.name == "FindProjection" else None,
     )
     return Method(signature.head(), with_gathered(tidy(text)))

@@ -88,7 +88,7 @@ class Contract:
     supplied_for: Mapping[str, frozenset[str]]
     """The supplied methods that only a block with one of certain public methods needs, each with these."""
     supplied_turning: frozenset[str]
-    """The supplied methods that only a block with a turning flange needs."""
+    """The supplied and overridable methods that only a block with a turning flange needs."""
     overridable: Mapping[str, Signature]
     """The protected methods of the base block that a geometry overrides where they are not right for it."""
     overridable_for: Mapping[str, frozenset[str]]
@@ -161,7 +161,7 @@ def _loaded(profile: str | None, text: str) -> Contract:
         _signatures(data.pop("own")),
         _signatures(supplied, "PROTECTED"),
         _needing(supplied),
-        frozenset(key for key, table in supplied.items() if "turning" in table),
+        frozenset(key for key, table in (supplied | overridable).items() if "turning" in table),
         _signatures(overridable, "PROTECTED"),
         _needing(overridable),
         _signatures(data.pop("offered"), "PROTECTED"),
