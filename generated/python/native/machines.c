@@ -135,11 +135,11 @@ softkin_regular_all wrist3_regular_all;
 
 const softkin_native softkin_machines[] = {
     {"ac6_rzryryrxryrz_j6offset d6b7a937dc986248", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
-    {"ac6_threeparallel 59e418ca5544d8f1", &ac6_threeparallel_mechanism,
+    {"ac6_threeparallel a721580085cf1d29", &ac6_threeparallel_mechanism,
         {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
     {"ac6_txtytzryrxrz 7390998e7fbd1633", &ac6_txtytzryrxrz_mechanism,
         {ac6_txtytzryrxrz_regular, ac6_txtytzryrxrz_regular_all}},
-    {"articulatedrobot_6dof bf408dbd843a3753", &articulatedrobot_6dof_mechanism,
+    {"articulatedrobot_6dof 4ae5258f61d7ca33", &articulatedrobot_6dof_mechanism,
         {articulatedrobot_6dof_regular, articulatedrobot_6dof_regular_all}},
     {"bipod_rotary b59b584466428d5c", &bipod_rotary_mechanism,
         {bipod_rotary_regular, bipod_rotary_regular_all}},
@@ -174,7 +174,7 @@ const softkin_native softkin_machines[] = {
     {"planar_3rrr e5024333caf97add", &planar_3rrr_mechanism, {NULL, NULL}},
     {"polar 7f22839a27cccfa9", &polar_mechanism, {polar_regular, NULL}},
     {"polar_z ac9610c84473bd12", &polar_z_mechanism, {polar_z_regular, NULL}},
-    {"pos_rrr 87af57219db5c9a0", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
+    {"pos_rrr 5601d9cd2720ec64", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
     {"scara2_z b37de2a39400f06c", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},
     {"scara3_ccz 33cf2d6b22d4e16b", &scara3_ccz_mechanism, {scara3_ccz_regular, scara3_ccz_regular_all}},
     {"scara3_z f177072bc3d7d9c6", &scara3_z_mechanism, {scara3_z_regular, scara3_z_regular_all}},
