@@ -175,11 +175,15 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
         f"residual {found.closure_residual:.0e}"
     )
     if (inverted := found.inverted) is not None:
+        found_by = "found by multi-start root finding, and"
         text += (
             f", inverse after forward {inverted.round_trip:.0e}, Jacobian against automatic differentiation "
-            f"{inverted.jacobian:.0e}; {inverted.solutions} solutions were found by multi-start root finding, and "
-            "each of them is a solution of these formulas"
+            f"{inverted.jacobian:.0e}; "
         )
+        if inverted.solutions == 1:
+            text += f"1 solution was {found_by} it is a solution of these formulas"
+        else:
+            text += f"{inverted.solutions} solutions were {found_by} each of them is a solution of these formulas"
     yield from _lines(f"{text}. {found.exact.sentence} The block was not run on a controller.")
     if inverted is not None and inverted.missed is not None:
         missed, total = inverted.missed

@@ -95,6 +95,8 @@ class Contract:
     """The overridable methods that only a block with one of certain public methods may override, each with these."""
     offered: Mapping[str, Signature]
     """The protected methods of the base block that those of a geometry call."""
+    private: Mapping[str, Signature]
+    """The private methods of the base block."""
     is_flat: bool
     """Whether every block has the variables and methods of the base block itself, and extends none."""
     omits: frozenset[str]
@@ -165,6 +167,7 @@ def _loaded(profile: str | None, text: str) -> Contract:
         _signatures(overridable, "PROTECTED"),
         _needing(overridable),
         _signatures(data.pop("offered"), "PROTECTED"),
+        _signatures(data.pop("private"), "PRIVATE"),
         any(one.get("flat", False) for one in chosen),
         omits,
         names,
@@ -192,7 +195,9 @@ def _constants(table: Mapping[str, Any]) -> dict[str, Constant]:
             entry["name"],
             kind,
             entry["value"] if kind == "BOOL" else f"{kind}.{entry['value']}",
-            entry["meaning"] + ("" if entry.get("documented", True) else "; not documented"),
+            entry["meaning"]
+            + ("" if entry.get("documented", True) else "; not documented")
+            + (f": if missing, {entry['instead']}" if "instead" in entry else ""),
         )
         for key, entry in entries.items()
     }
