@@ -154,14 +154,14 @@ def _parameter(parameter: Parameter) -> Iterator[str]:
         yield f"parameter {name!r}: {parameter.unit!r} is no unit: letters, digits, / and ^"
     stated = (
         parameter.nominal,
-        parameter.low,
-        parameter.high,
+        *_shown(parameter),
         *(() if parameter.default is None else (parameter.default,)),
     )
     if strange := [value for value in stated if not isinstance(value, int | float)]:
         yield f"parameter {name!r}: {strange[0]!r} is not a number"
         return
-    if not parameter.low < parameter.high:
+    low, high = _shown(parameter)
+    if not low < high:
         yield f"parameter {name!r}: its range {_interval(parameter)} is empty"
     for word, value in (("nominal value", parameter.nominal), ("default", parameter.default)):
         if value is not None and (wrong := number(f"its {word}", value)) is not None:
@@ -170,13 +170,18 @@ def _parameter(parameter: Parameter) -> Iterator[str]:
             yield f"parameter {name!r}: its {word} {value:g} is outside its range {_interval(parameter)}"
 
 
+def _shown(parameter: Parameter) -> Interval:
+    return parameter.usual or (parameter.low, parameter.high)
+
+
 def _contains(parameter: Parameter, value: float) -> bool:
-    above = value > parameter.low if parameter.low_open else value >= parameter.low
-    return above and value <= parameter.high
+    low, high = _shown(parameter)
+    return low <= value <= high and not (parameter.low_open and value == low)
 
 
 def _interval(parameter: Parameter) -> str:
-    return f"{']' if parameter.low_open else '['}{parameter.low:g} .. {parameter.high:g}]"
+    low, high = _shown(parameter)
+    return f"{']' if parameter.low_open else '['}{low:g} .. {high:g}]"
 
 
 def _joint(mechanism: Mechanism, joint: Joint) -> Iterator[str]:

@@ -69,7 +69,7 @@ def _closed_form(solved: Solved) -> Kinematics:
     margins = margin_lets(mechanism, assignments)
     jacobian = jacobian_program(mechanism, forward)
     machine = Machine(mechanism, inverse, assignments, at_axes)
-    statements = with_doubts(machine, with_branch_signs(inverse.derivation.statements, assignments))
+    statements, doubts = with_doubts(machine, with_branch_signs(inverse.derivation.statements, assignments))
     at_home = joints_at_home(mechanism, statements) if mechanism.is_platform else ()
     at_poses = _samples(mechanism, inverse, at_home, jacobian)
     singularity, kept = singularity_program(mechanism, at_axes, solved.factors, jacobian, at_poses)
@@ -79,7 +79,7 @@ def _closed_form(solved: Solved) -> Kinematics:
     programs = [
         forward_program(mechanism, forward_only, margins),
         orientation_program(forward),
-        meeting(machine, inverse_program("branch", mechanism, inverse, statements, last, again)),
+        meeting(machine, inverse_program("branch", mechanism, inverse, statements, last, again), doubts),
         limits_program(mechanism),
         singularity,
         jacobian,
@@ -171,10 +171,10 @@ def _offset_programs(mechanism: Mechanism, closed: Assembled, conditions: tuple[
         ) from None
     at_axes = derivation_at_axes(mechanism, inverse, at_point(forward))
     machine = Machine(mechanism, inverse, assignments, at_axes, is_point=True)
-    statements = with_doubts(machine, with_branch_signs(inverse.derivation.statements, assignments))
+    statements, doubts = with_doubts(machine, with_branch_signs(inverse.derivation.statements, assignments))
     last = _last(mechanism, closed, statements, offset=True)
     return [
-        meeting(machine, inverse_program("offset_branch", mechanism, inverse, statements, last)),
+        meeting(machine, inverse_program("offset_branch", mechanism, inverse, statements, last), doubts),
         _offset_configuration(mechanism, inverse, forward, assignments),
     ]
 

@@ -108,9 +108,9 @@ def _number(joint: Joint, word: str, meaning: str, interval: tuple[float, float]
 
 
 def _setting(name: str, meaning: str, unit: str, interval: tuple[float, float] | None) -> Parameter:
-    low, high = interval or (-1e9, 1e9)
+    ends = (-float(LARGEST), float(LARGEST))
     role = Role.ANGLE if unit == "deg" else Role.DISTANCE
-    return Parameter(real(name), name, role, meaning, unit, low, high, False, 0.0, 0.0)
+    return Parameter(real(name), name, role, meaning, unit, *ends, False, 0.0, 0.0, usual=interval)
 
 
 def setup_program(

@@ -19,12 +19,11 @@ from derive.ir.constants import (
     SCANNED,
     STALLED,
 )
+from derive.ir.passes import needed_for
 from derive.ir.primitives import Select, ToReal
 from derive.ir.program import Let, Program
 from derive.ir.symbols import POSITION, ROTATION_ENTRIES, called, count, flag, real
 
-LOST = "lost_digits_"
-"""How the names of flags begin that say that a value exceeds its bound, which lost digits may explain."""
 GOAL = {name: real(f"goal_{name.name}") for name in (*POSITION, *ROTATION_ENTRIES)}
 """The names of the commanded pose in this program."""
 LEFT, ATTEMPT, BEFORE = count("passes_left"), count("attempt"), real("error_before")
@@ -93,7 +92,7 @@ def refines(attempt: sp.Symbol) -> sp.Basic:
 
 def closed_form(mechanism: Mechanism, branch: Program) -> tuple[list[Let], dict[Joint, sp.Expr]]:
     """The closed form of a start under names of its own, and the axis values in it."""
-    lets = branch.lets()
+    lets = [s for s in needed_for(branch.lets(), [o.value for o in branch.outputs]) if isinstance(s, Let)]
     names = {let.name: called(f"closed_{let.name.name}", let.name) for let in lets} | GOAL
     names |= {FREE_ANGLE: FREE}
     turned = {
@@ -102,9 +101,7 @@ def closed_form(mechanism: Mechanism, branch: Program) -> tuple[list[Let], dict[
         if j.is_angle
     }
     found = [
-        Let(names[let.name], let.value.xreplace(turned.get(let.name, {})).xreplace(names), let.note)
-        for let in lets
-        if not let.name.name.startswith(LOST)
+        Let(names[let.name], let.value.xreplace(turned.get(let.name, {})).xreplace(names), let.note) for let in lets
     ]
     starts = {j: o.value.xreplace(names) for j, o in zip(mechanism.joints, branch.outputs, strict=True)}
     return found, starts
