@@ -60,6 +60,13 @@ class Parameter(Quantity):
     """The value of a number that stands in a chain. It has a name, but is no input of the machine."""
     given: str = ""
     """Its name in the description, where the derivation uses another name."""
+    deviation: float | None = None
+    """Its value in the machine that is tested, of a deviation: the machine that is drawn and shown has none."""
+
+    @property
+    def tested(self) -> float:
+        """The value in the machine that is tested."""
+        return self.nominal if self.deviation is None else self.deviation
 
     @property
     def given_name(self) -> str:

@@ -10,7 +10,7 @@ large beside them. Lengths that differ there are always lost digits: the steps o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import sympy as sp
@@ -22,7 +22,8 @@ from derive.ir.primitives import Select
 from derive.ir.program import Call, Let, Program, Require, Statement, Status
 from derive.ir.reason import Why, about_joint
 from derive.ir.symbols import BOUND_OF, Flag, cosine, flag, names_in, real, sine
-from derive.kinematics.lost_digits.closure_steps import MET, Machine, given_name, meet_program, started, varying
+from derive.kinematics.lost_digits.closure_steps import MET, given_name, meet_program, started, varying
+from derive.kinematics.lost_digits.machine import Machine
 from derive.kinematics.lost_digits.starts import GOAL, LOST
 from derive.work import stage
 
@@ -111,13 +112,16 @@ def _doubts(machine: Machine, statements: Sequence[Statement], place: int) -> li
     ]
 
 
-def meeting(machine: Machine, branch: Program) -> Program:
-    """The program of a branch, with steps on the closure before a doubtful refusal; as it is where it has none."""
-    flags = [s.name for s in branch.lets() if isinstance(s.name, Flag) and s.name.name.startswith(LOST)]
+def meeting(machine: Machine, branch: Program, before: Callable[[Program], Program] = lambda search: search) -> Program:
+    """The program of a branch, with steps on the closure before a doubtful refusal; as it is where it has none. On a
+    machine with deviations every refusal is doubtful. before: what is tried before these steps, as a program.
+    """
+    deviates = [] if machine.deviates is None else [machine.deviates]
+    flags = [s.name for s in branch.lets() if isinstance(s.name, Flag) and s.name.name.startswith(LOST)] + deviates
     if not flags:
         return branch
     joints = machine.mechanism.joints
-    meet = meet_program(machine, branch)
+    meet = before(meet_program(machine, branch))
     own = {started(j): o.value for j, o in zip(joints, branch.outputs, strict=True)}
     given = {goal: name for name, goal in GOAL.items()} | own
     given |= {given_name(name): name for name in varying(machine, branch)}
@@ -127,8 +131,8 @@ def meeting(machine: Machine, branch: Program) -> Program:
     call = Call(meet, arguments, names, note, sp.Or(*flags))
     refusals: list[Require] = []
     for s in branch.requires():
-        own_flags = [f for f in flags if f in names_in(s.condition)]
-        refusals += [replace(s, condition=s.condition.xreplace({f: MET})) for f in own_flags]
+        if own_flags := {f: MET for f in flags if f in names_in(s.condition)}:
+            refusals.append(replace(s, condition=s.condition.xreplace(own_flags)))
     refusals = _joined(refusals)
     outputs = [replace(o, value=Select(MET, name, o.value)) for o, name in zip(branch.outputs, names[1:], strict=True)]
     lengths = {f for f in flags if f.name.startswith(LENGTHS)}
@@ -144,12 +148,13 @@ def without_meeting(program: Program) -> Program:
     if call is None:
         return program
     flags = names_in(call.wanted)
-    body: list[Statement] = []
+    given = sorted(flags - set(program.bound()), key=lambda f: f.name)
+    body: list[Statement] = [Require(sp.Not(f), Status.OK, "the machine has deviations") for f in given]
     for s in program.body[: program.body.index(call)]:
         own = [f for f in flags if isinstance(s, Require) and f in names_in(s.condition)]
         if isinstance(s, Require) and own:
-            body.append(Require(sp.Not(own[0]), Status.OK, "digits may be lost"))
-            s = replace(s, condition=s.condition.xreplace({own[0]: sp.false}))
+            body += [Require(sp.Not(f), Status.OK, "digits may be lost") for f in own if f not in given]
+            s = replace(s, condition=s.condition.xreplace(dict.fromkeys(own, sp.false)))
         body.append(s)
         if isinstance(s, Let) and s.name in flags and s.name.name.startswith(LENGTHS):
             body.append(Require(sp.Not(s.name), Status.OK, "digits may be lost"))
