@@ -85,6 +85,7 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     _catalogue_options(check)
     check.set_defaults(only=[], fresh=True, package=None, keep_going=True, language=None)
     for parser in (derive, check):
+        parser.add_argument("--calibrated", action="store_true", help=_CALIBRATED)
         parser.add_argument(
             "--keep-going",
             action=argparse.BooleanOptionalAction,
@@ -128,6 +129,7 @@ def _view_command(commands: argparse._SubParsersAction[argparse.ArgumentParser])
         metavar="BODY=FILE.glb[*SCALE]",
         help="a mesh (binary glTF) in the place of a body of one machine: base, the axes that move it, plate, tool",
     )
+    shown.add_argument("--calibrated", action="store_true", help=_CALIBRATED)
     shown.set_defaults(
         run=view.view, mechanisms=MECHANISMS, only=[], profile=None, fresh=False, language=["javascript"],
         output=catalogue.OUTPUT,
@@ -143,6 +145,7 @@ def _languages(command: argparse.ArgumentParser) -> None:
     )
 
 
+_CALIBRATED = "with the deviations of axes, base and tool as further inputs: the machine as it was measured"
 _PROFILE = "a profile of templates/st/softmotion.toml, for an older library or flat blocks; several are joined by +"
 _PAGES = f"the folder of pages (default: {report.OUTPUT})"
 

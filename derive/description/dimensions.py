@@ -65,6 +65,13 @@ class Parameter(Quantity):
     """Its name in the description, where the derivation uses another name."""
     usual: tuple[float, float] | None = None
     """The range that a vendor states, which is shown where values are entered; values beyond it are not refused."""
+    deviation: float | None = None
+    """Its value in the machine that is tested, of a deviation: the machine that is drawn and shown has none."""
+
+    @property
+    def tested(self) -> float:
+        """The value in the machine that is tested."""
+        return self.nominal if self.deviation is None else self.deviation
 
     @property
     def given_name(self) -> str:

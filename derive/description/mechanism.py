@@ -161,6 +161,8 @@ class Mechanism:
     can do it; True: a machine that cannot is refused."""
     notes: tuple[str, ...] = field(default=())
     """Sentences for the user's documentation: definitions of our own, and properties to know."""
+    nominal: Mechanism | None = None
+    """The machine as it is drawn, of one that has its deviations as inputs: see `form.deviations`."""
 
     def __post_init__(self) -> None:
         for name, value in as_stated(vars(self)).items():

@@ -78,6 +78,7 @@ class Why(Enum):
     CENTRES_ON_A_LINE = "the centres coincide or lie on a line: nothing holds the plate"
     UNCONTROLLED = "nothing controls the plate"
     NOT_FOUND_AGAIN = "forward kinematics from the home pose does not find this pose again"
+    TRUE_MACHINE = "the machine as measured does not reach it on this branch"
     NOT_CONVERGED = "Newton's method does not find the pose"
     DRIVE_LIMITS_CROSSED = "the lower limit of the drive is above the upper one, or one of them is no number"
     NO_AXIS_VALUE = "no axis value is inside both limits"

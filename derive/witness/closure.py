@@ -303,6 +303,10 @@ def _residual(mechanism: Mechanism, known: Symbols, pose: Term) -> tuple[Term, i
         pose = followed_pose(mechanism, known, pose)
     difference = frame_at(mechanism.chain, known) - pose
     own = ["xyz".index(c) for c in mechanism.task.position]
+    if mechanism.nominal and mechanism.task.turning is Turning.ABOUT_Z:  # its axes are tilted: it meets the turn alone
+        here, goal = (ca.reshape(r[3:], 3, 3).T for r in (difference + pose, pose))
+        left = here @ goal.T
+        return ca.vertcat(difference[own], ca.atan2(left[1, 0] - left[0, 1], left[0, 0] + left[1, 1])), len(own)
     column = [5, 8, 11]
     followed = {Turning.NONE: [], Turning.DIRECTION: column, Turning.PITCH: column}
     rotation = followed.get(mechanism.task.turning, list(range(3, 12)))

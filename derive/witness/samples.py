@@ -232,7 +232,7 @@ def _nominal(kin: Kinematics) -> dict[str, Array]:
 
 def _draw(parameter: Parameter, count: int, rng: Generator, largest: float) -> Array:
     """Random values of one parameter; a parameter with a default keeps it in half of the machines."""
-    size = abs(parameter.nominal) or _SPREAD.get(parameter.role, largest)
+    size = abs(parameter.tested) or _SPREAD.get(parameter.role, largest)
     if parameter.role is Role.LENGTH:
         drawn = parameter.nominal * rng.uniform(0.5, 1.5, count)
     elif parameter.role in (Role.SIGNED_LENGTH, Role.TRANSMISSION):
@@ -242,7 +242,7 @@ def _draw(parameter: Parameter, count: int, rng: Generator, largest: float) -> A
     elif parameter.role is Role.SIGN:
         drawn = -np.ones(count)
     else:
-        drawn = parameter.nominal + size * rng.uniform(-1.0, 1.0, count)
+        drawn = parameter.tested + size * rng.uniform(-1.0, 1.0, count)
     drawn = np.clip(drawn, parameter.low, parameter.high)
     return drawn if parameter.default is None else np.where(rng.random(count) < 0.5, parameter.default, drawn)
 
@@ -251,7 +251,8 @@ def _reach(mechanism: Mechanism, values: dict[str, Array]) -> Array:
     if mechanism.is_platform:  # the sum of all its coordinates says little
         return values[SCALE.name]
     roles = (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
-    lengths = [np.abs(values[p.name]) for p in mechanism.parameters if p.role in roles]
+    own = (p for p in mechanism.parameters if p.role in roles and p.deviation is None)
+    lengths = [np.abs(values[p.name]) for p in own]
     total = np.sum(lengths, axis=0) if lengths else np.zeros_like(next(iter(values.values())))
     total = total + sum(_numbers(mechanism))
     legs = max(1, len(mechanism.rods))  # one leg of a loop

@@ -125,7 +125,7 @@ def costs(kin: Kinematics) -> list[str]:
     rows = [f"forward: {_operations(found.forward)}", f"inverse: {_operations(found.inverse)}"]
     if kin.branches:
         rows.append(f"inverse, all {2 ** len(kin.branches)} branches: {_operations(found.automatic)}")
-    more = {"repair of a frame, in addition": found.repair, "a branch at a singular pose, in addition": found.corners}
+    more = {"repair of a frame, in addition": found.repair, f"{found.corner}, in addition": found.corners}
     rows += [f"{what}: {_operations(cost)}" for what, cost in more.items() if any(cost.counts)]
     return [*rows, *(f"{b.note}: at most {b.limit} passes, all of which are counted" for b in found.bounds)]
 

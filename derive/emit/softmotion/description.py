@@ -225,7 +225,7 @@ def _costs(costs: Costs, block: Block) -> Iterator[str]:
     more = (
         ("In addition: check of an exact frame", costs.exact),
         ("In addition: repair of a frame", costs.repair),
-        ("In addition: a branch at a singular pose", costs.corners),
+        (f"In addition: {costs.corner}", costs.corners),
     )
     rows += [(what, cost) for what, cost in more if any(cost.counts)]
     yield from _table(_COST_HEAD, map(_cost_row, rows))

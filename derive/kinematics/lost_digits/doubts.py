@@ -11,7 +11,7 @@ large beside them. Lengths that differ there are always lost digits: the steps o
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -24,7 +24,8 @@ from derive.ir.primitives import Select
 from derive.ir.program import Call, Let, Program, Require, Statement, Status
 from derive.ir.reason import Why, about_joint
 from derive.ir.symbols import BOUND_OF, cosine, flag, names_in, real, sine
-from derive.kinematics.lost_digits.closure_steps import MET, Machine, given_name, meet_program, started, varying
+from derive.kinematics.lost_digits.closure_steps import MET, given_name, meet_program, started, varying
+from derive.kinematics.lost_digits.machine import Machine
 from derive.kinematics.lost_digits.starts import GOAL
 from derive.work import stage
 
@@ -139,27 +140,35 @@ def _doubts(machine: Machine, statements: Sequence[Statement], place: int) -> li
     ]
 
 
-def meeting(machine: Machine, branch: Program, doubts: Sequence[Doubt]) -> Program:
-    """The program of a branch, with steps on the closure before a doubtful refusal; as it is where it has none."""
+def meeting(
+    machine: Machine,
+    branch: Program,
+    doubts: Sequence[Doubt],
+    before: Callable[[Program], Program] = lambda search: search,
+) -> Program:
+    """The program of a branch, with steps on the closure before a doubtful refusal; as it is where it has none. On a
+    machine with deviations every refusal is doubtful. before: what is tried before these steps, as a program.
+    """
     bound = {s.name for s in branch.lets()}
-    doubts = [d for d in doubts if d.flag in bound]
-    if not doubts:
+    met = {d.flag: MET for d in doubts if d.flag in bound}
+    met |= {} if machine.deviates is None else {machine.deviates: MET}
+    if not met:
         return branch
     joints = machine.mechanism.joints
-    meet = meet_program(machine, branch)
+    meet = before(meet_program(machine, branch))
     own = {started(j): o.value for j, o in zip(joints, branch.outputs, strict=True)}
     given = {goal: name for name, goal in GOAL.items()} | own
     given |= {given_name(name): name for name in varying(machine, branch)}
     arguments = tuple((n, given[n]) for n in meet.inputs if n in given)
     names = (MET, *(real(f"found_{j.key}") for j in joints))
     note = "if digits were lost, steps on the closure meet the pose"
-    call = Call(meet, arguments, names, note, sp.Or(*(d.flag for d in doubts)))
+    call = Call(meet, arguments, names, note, sp.Or(*met))
     refusals: dict[bool, list[Require]] = {True: [], False: []}
-    for s in branch.requires():
-        for d in (d for d in doubts if d.flag in names_in(s.condition)):
-            refusals[d.lengths_differ].append(replace(s, condition=s.condition.xreplace({d.flag: MET})))
-    outputs = [replace(o, value=Select(MET, name, o.value)) for o, name in zip(branch.outputs, names[1:], strict=True)]
     lengths = {d.flag for d in doubts if d.lengths_differ}
+    for s in branch.requires():
+        if (read := names_in(s.condition)) & met.keys():
+            refusals[bool(read & lengths)].append(replace(s, condition=s.condition.xreplace(met)))
+    outputs = [replace(o, value=Select(MET, name, o.value)) for o, name in zip(branch.outputs, names[1:], strict=True)]
     body = (s for s in branch.body if not (isinstance(s, Require) and names_in(s.condition) & lengths))
     return normalise(branch.name, (*body, call, *_joined(refusals[True], refusals[False])), outputs)
 
@@ -172,14 +181,15 @@ def without_meeting(program: Program) -> Program:
     if call is None:
         return program
     flags = names_in(call.wanted)
+    given = sorted(flags - set(program.bound()), key=lambda f: f.name)
     before = program.body[: program.body.index(call)]
     refused = {name for s in before if isinstance(s, Require) for name in names_in(s.condition)}
-    body: list[Statement] = []
+    body: list[Statement] = [Require(sp.Not(f), Status.OK, "the machine has deviations") for f in given]
     for s in before:
         own = [f for f in flags if isinstance(s, Require) and f in names_in(s.condition)]
         if isinstance(s, Require) and own:
-            body.append(Require(sp.Not(own[0]), Status.OK, "digits may be lost"))
-            s = replace(s, condition=s.condition.xreplace({own[0]: sp.false}))
+            body += [Require(sp.Not(f), Status.OK, "digits may be lost") for f in own if f not in given]
+            s = replace(s, condition=s.condition.xreplace(dict.fromkeys(own, sp.false)))
         body.append(s)
         if isinstance(s, Let) and s.name in flags - refused:
             body.append(Require(sp.Not(s.name), Status.OK, "digits may be lost"))

@@ -656,7 +656,8 @@ class Mechanism(Value, ABC):
 
         if self.in_degrees() is not self:
             return self.in_degrees().deviations
-        return dict.fromkeys(_deviations.units_of(self), 0.0)
+        inputs = self.parameters if _deviations.are_inputs(self) else {}
+        return {name: inputs.get(name, 0.0) for name in _deviations.units_of(self)}
 
     def orientation_image(self) -> OrientationImage:
         """The orientations that the flange can have."""
