@@ -11,7 +11,7 @@ import sympy as sp
 
 from derive.algebra.angle_sums import terms_of
 from derive.description.amounts import wrong_amounts
-from derive.description.kinds import number, pair
+from derive.description.fields import number, pair
 from derive.description.mechanism import (
     ROTATION,
     DescriptionError,

@@ -10,6 +10,7 @@ from derive.description.mechanism import DescriptionError, Mechanism, Plane, Tur
 from derive.equations.axes import Forward
 from derive.equations.chain_splits import is_spatial
 from derive.equations.closures.fixed_names import fixed_lets, with_fixed_names
+from derive.equations.drives import rate
 from derive.equations.named_pose import named_pose
 from derive.equations.pitch.chain import followed_factors
 from derive.equations.trigonometry import named_trigonometry
@@ -92,19 +93,23 @@ def scaled_entries(mechanism: Mechanism, entries: Sequence[sp.Expr]) -> tuple[sp
     joints = mechanism.solved_joints
     found = []
     for k, value in enumerate(entries):
-        is_place, is_slide = k // len(joints) < len(mechanism.task.position), not joints[k % len(joints)].is_angle
+        is_place, is_slide = k // len(joints) < len(mechanism.task.position), not joints[k % len(joints)].axis_is_angle
         power = int(is_slide) - int(is_place)
         found.append(value * SCALE**power)
     return tuple(found)
 
 
-def _per_motor(mechanism: Mechanism, matrix: sp.Matrix) -> tuple[tuple[Let, ...], list[sp.Expr]]:
+def _per_motor(mechanism: Mechanism, matrix: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
     """The entries per velocity of a motor, with names for their sines and cosines."""
-    coupled = matrix * _motor_matrix(mechanism)
+    rates = {k: rate(mechanism, j) for k, j in enumerate(mechanism.joints) if j.loops}
+    motors = _motor_matrix(mechanism)
+    for k, (_, value) in rates.items():
+        motors[k, k] = value
+    coupled = matrix * motors
     planar = mechanism.chain is not None and not is_spatial(mechanism.chain)
     entries = [sp.expand_mul(e) if planar else e for e in coupled]
     lets, values = named_trigonometry(mechanism, entries)
-    return lets, values
+    return (*(s for statements, _ in rates.values() for s in statements), *lets), values
 
 
 def _entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:

@@ -115,6 +115,9 @@ def _inside_limits(joint: Joint, machine: Samples, values: tuple[float, float], 
 
 def _range_of(joint: Joint, size: float) -> tuple[float, float]:
     """The values of a joint that are tried: of a slide those up to once or twice the size of the machine."""
+    if joint.loops:
+        low, high = joint.limits or ((-90.0, 90.0) if joint.in_degrees else (-joint.nominal / 2, joint.nominal / 2))
+        return (low, high) if joint.limits else (low + joint.nominal, high + joint.nominal)
     if joint.is_angle:
         low, high = joint.domain or (-180.0, 180.0)
         return low, min(high, 1e3)

@@ -129,6 +129,8 @@ def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
     """
     if kin.mechanism.search is not None:
         return Exact(0, "its roots are searched along a joint")
+    if kin.mechanism.drives:
+        return Exact(0, "loops move joints of its chain")
     described = _with_exact_ends(with_exact_angles(described))
     try:
         return _checked(kin, described)
