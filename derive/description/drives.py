@@ -107,26 +107,25 @@ def _nominal(joint: Joint) -> np.ndarray:
 
 def _loop(drive: Drive, known: dict[str, np.ndarray], actuator: Joint) -> Loop:
     """The loop of a drive, with the sides of its nominal values; the actuator's own symbol is that of its motor."""
-    table = {actuator.symbol: actuator.motor}
-    by = table.get(drive.by.symbol, drive.by.symbol)
-    turns = drive.joint.is_angle, drive.by.is_angle
-    one = sp.Integer(1)
-    plain = Loop(drive.joint.symbol, drive.by.symbol, turns, (one, one), drive.start, drive.tip, drive.length, drive.joint.name)
-    for symbol in (plain.moved, plain.by):
-        if symbol not in plain.equation.free_symbols:
-            raise DescriptionError(f"the loop of joint {drive.joint.name!r} does not read {str(symbol).upper()!r}")
-    if unknown := sorted(s.name for s in plain.equation.free_symbols - {DEGREE} if s.name not in known):
+    table, name, ends = {actuator.symbol: actuator.motor}, drive.joint.name, (drive.start, drive.tip)
+    turns, sides = (drive.joint.is_angle, drive.by.is_angle), (drive.side, drive.by_side)
+    plain = Loop(drive.joint.symbol, drive.by.symbol, turns, sides, *ends, drive.length, name)
+    read = plain.equation.free_symbols
+    for joint in (drive.joint, drive.by):
+        if joint.symbol not in read:
+            raise DescriptionError(f"the loop of joint {name!r} does not read {joint.name!r}")
+    if unknown := sorted(s.name for s in read - {DEGREE} if s.name not in known):
         raise DescriptionError(
-            f"the loop of joint {drive.joint.name!r} reads {unknown[0]!r}, which is not a joint or a parameter of this "
-            "mechanism"
+            f"the loop of joint {name!r} reads {unknown[0]!r}, which is not a joint or a parameter of this mechanism"
         )
     _refuse_open(drive, plain, known)
     signs = [np.sign(float(evaluate(sp.diff(plain.equation, s), known))) for s in (plain.moved, plain.by)]
     if 0.0 in signs:
-        raise DescriptionError(f"the loop of joint {drive.joint.name!r} is at a dead point with nominal values")
-    sides = tuple(int(s) * stated for s, stated in zip(signs, (drive.side, drive.by_side), strict=True))
-    start, tip = (Chain(tuple(replace(f, amount=f.amount.xreplace(table)) for f in c.factors)) for c in (drive.start, drive.tip))
-    return Loop(plain.moved, by, turns, (sides[0], sides[1]), start, tip, drive.length.xreplace(table), plain.name)
+        raise DescriptionError(f"the loop of joint {name!r} is at a dead point with nominal values")
+    moved, moving = (int(sign) * stated for sign, stated in zip(signs, sides, strict=True))
+    start, tip = (Chain(tuple(replace(f, amount=f.amount.xreplace(table)) for f in end.factors)) for end in ends)
+    by = table.get(plain.by, plain.by)
+    return replace(plain, by=by, sides=(moved, moving), start=start, tip=tip, length=plain.length.xreplace(table))
 
 
 def _refuse_open(drive: Drive, loop: Loop, known: dict[str, np.ndarray]) -> None:
@@ -135,6 +134,6 @@ def _refuse_open(drive: Drive, loop: Loop, known: dict[str, np.ndarray]) -> None
     if abs(distance - length) > _OPEN * max(distance, length):
         raise DescriptionError(
             f"the loop of joint {drive.joint.name!r} is open at the nominal values of {drive.joint.name} "
-            f"({drive.joint.nominal:g}) and {drive.by.name} ({drive.by.nominal:g}): its ends are {distance:g} apart, and "
-            f"its length is {length:g}"
+            f"({drive.joint.nominal:g}) and {drive.by.name} ({drive.by.nominal:g}): its ends are {distance:g} apart, "
+            f"and its length is {length:g}"
         )

@@ -157,7 +157,7 @@ def plain_angle(joint: Joint) -> Let:
     shift = joint.offset - joint.coupling / joint.unit
     value = (joint.axis - shift) * joint.unit
     if joint.loops:
-        value = Atan2(sine(joint.symbol), cosine(joint.symbol))
+        value = Wrap(Atan2(sine(joint.symbol), cosine(joint.symbol)))
     if joint.is_geared:
         value = (joint.axis - joint.offset) * joint.unit * joint.ratio + joint.coupling
     return Let(joint.symbol, value, f"{joint.name}: joint value with its whole turns")

@@ -1,7 +1,7 @@
 """Joints that loops move: from the motor to the joint and back, and the derivatives of the loops.
 
-A loop is one equation. In an angle it is along cos u + across sin u = level, in a length square u^2 + u + rest = 0: each
-has two roots, of which the machine has the one on its side, where the derivative of the equation has a known sign.
+A loop is one equation: along cos u + across sin u = level in an angle, a square in a length. Each has two roots, of
+which the machine has the one on its side, where the derivative of the equation has a known sign.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from derive.description.joints import Joint, Loop
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.equations.closures.fixed_names import all_angles, fixed_angles, signs_of
 from derive.ir.constants import BOUNDARY, DEGREE, FREE_ANGLE, LEAST
-from derive.ir.primitives import Atan2, Root, Select
+from derive.ir.primitives import Atan2, Root, Select, Wrap
 from derive.ir.program import Let, Require, Statement, Status
 from derive.ir.reason import Why, about
 from derive.ir.symbols import SCALE, cosine, real, sine
@@ -31,7 +31,7 @@ def joint_of_motor(mechanism: Mechanism, joint: Joint) -> tuple[Statement, ...]:
         last = number == len(joint.loops) - 1
         statements += [*root.lets, _closed(joint, root.is_real, Status.IMPOSSIBLE), *root.values(joint_alone=last)]
         if root.turns and not last:
-            statements.append(Let(loop.moved, Atan2(sine(loop.moved), cosine(loop.moved))))
+            statements.append(Let(loop.moved, Wrap(Atan2(sine(loop.moved), cosine(loop.moved)))))
         statements.append(_on_side(mechanism, joint, loop, loop.by, Status.IMPOSSIBLE))
     return tuple(statements)
 
@@ -46,7 +46,7 @@ def motor_of_joint(mechanism: Mechanism, joint: Joint) -> tuple[Statement, ...]:
         statements.append(_on_side(mechanism, joint, loop, loop.moved, Status.UNREACHABLE))
     first = joint.loops[0]
     if first.turns[1]:
-        statements.append(Let(first.by, Atan2(sine(first.by), cosine(first.by))))
+        statements.append(Let(first.by, Wrap(Atan2(sine(first.by), cosine(first.by)))))
     return tuple(statements)
 
 
@@ -114,7 +114,7 @@ class _Solution:
         if not self.turns:
             return (Let(self.unknown, self.parts[0]),)
         if joint_alone:
-            return (Let(self.unknown, Atan2(self.parts[1], self.parts[0])),)
+            return (Let(self.unknown, Wrap(Atan2(self.parts[1], self.parts[0]))),)
         return tuple(Let(f(self.unknown), v) for f, v in zip((cosine, sine), self.parts, strict=True))
 
 

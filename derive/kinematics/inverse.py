@@ -8,7 +8,15 @@ import sympy as sp
 
 from derive.algebra.normal_form import polynomial
 from derive.description.mechanism import COORDINATE_NAMES_OF_A_PLANE, DescriptionError, Joint, Mechanism, Turning
-from derive.equations.axes import axes_of_drives, axis_lets, finite, frozen_lets, plain_angle, reference_lets, reference_value
+from derive.equations.axes import (
+    axes_of_drives,
+    axis_lets,
+    finite,
+    frozen_lets,
+    plain_angle,
+    reference_lets,
+    reference_value,
+)
 from derive.equations.closures.closure import FLANGE, Closure
 from derive.equations.closures.commanded import closure_at, flange_rotation, offset_closure, pose_closure
 from derive.equations.closures.fixed_names import (

@@ -31,7 +31,6 @@ from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
 from derive.plate.stated_rods import with_fixed_point, with_positive_lengths, with_stated_rods
 
-
 _MOTOR = "motor_"
 
 

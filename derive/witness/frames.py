@@ -63,14 +63,13 @@ def _moved(joint: Joint, motor: Term, known: Symbols) -> Term:
 
 
 def motor_of(joint: Joint, value: Term, known: Symbols) -> tuple[Term, Term]:
-    """The motor value of a joint that loops move, and what is positive where the machine has it; that is not a number
-    where a loop does not close."""
-    least = ca.SX(1)
+    """The motor value of a joint that loops move, and what is positive where loops close on their sides."""
+    is_possible = ca.SX(1)
     for loop in reversed(joint.loops):
         by = _closed(loop, 1, value, known)
         slope = _slope(loop, 0, value, by, known)
-        least, value = ca.fmin(least, slope) + 0 * slope, by
-    return value, least
+        is_possible, value = ca.logic_and(is_possible, slope > 0), by
+    return value, 2 * is_possible - 1
 
 
 def _closed(loop: Loop, sought: int, given: Term, known: Symbols) -> Term:
