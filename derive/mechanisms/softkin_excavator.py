@@ -31,9 +31,9 @@ ROCKER_ANGLE = rotary("R", "Rocker against the stick", nominal=-100.0)
 BUCKET_ANGLE = rotary("D", "Bucket against the stick, positive inward", nominal=30.0)
 
 A1 = rotary("A1", "Swing about Z")
-S2 = linear("S2", "Cylinder of the boom: its length", nominal=974.0, limits=(700.0, 1250.0))
-S3 = linear("S3", "Cylinder of the stick: its length", nominal=1058.0, limits=(850.0, 1280.0))
-S4 = linear("S4", "Cylinder of the bucket: its length", nominal=645.0, limits=(560.0, 820.0))
+S2 = linear("S2", "Cylinder of the boom: its length", nominal=974.0)
+S3 = linear("S3", "Cylinder of the stick: its length", nominal=1058.0)
+S4 = linear("S4", "Cylinder of the bucket: its length", nominal=645.0)
 
 AT_ROCKER = Tx(PIVOT) * Ry(ROCKER_ANGLE) * Tx(ROCKER)
 

@@ -37,8 +37,8 @@ REAR = rotary("B", "Rear arm: zero upright, positive forward", nominal=15.0)
 FOREARM = rotary("C", "Forearm, against the base: zero level, positive downward", nominal=10.0)
 
 A1 = rotary("A1", "Column about Z")
-S2 = linear("S2", "Cylinder of the rear arm: its length", nominal=601.0, limits=(450.0, 740.0))
-M3 = rotary("M3", "Crank about Y, from the direction forward", nominal=-40.0, limits=(-100.0, 20.0))
+S2 = linear("S2", "Cylinder of the rear arm: its length", nominal=601.0)
+M3 = rotary("M3", "Crank about Y, from the direction forward", nominal=-40.0)
 A4 = rotary("A4", "Flange about Z")
 
 OUT = BESIDE + L1 * sin(REAR) + L2 * cos(FOREARM) + WRIST

@@ -7,13 +7,13 @@ BEAM = length("beam_length", "Beams of the scissors, from pin to roller", nomina
 TOP = distance("table_height", "Upper pins to the table", nominal=120.0)
 
 LIFT = linear("H", "Upper pins above the lower ones", nominal=800.0)
-S1 = linear("S1", "Cylinder: fixed lower pin to the rollers", nominal=1385.6, limits=(700.0, 1580.0))
+S1 = linear("S1", "Cylinder: fixed lower pin to the rollers", nominal=1385.6)
 A2 = rotary("A2", "Table about Z")
 
 MECHANISM = Mechanism(
     name="Softkin_ScissorLift",
     vendor=Vendor.TEXTBOOK,
-    family="simple",
+    family="gantry",
     source="scissor lifting tables with a turntable",
     summary="Scissor lift: a horizontal cylinder lifts a table, which turns.",
     parameters=(BEAM, TOP),

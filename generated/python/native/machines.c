@@ -14,6 +14,7 @@
 #include "delta_c.h"
 #include "delta_p3c_type3.h"
 #include "dualscara.h"
+#include "excavator.h"
 #include "gantry2.h"
 #include "gantry3.h"
 #include "gantrycutter2.h"
@@ -32,6 +33,7 @@
 #include "p2x_type2.h"
 #include "p2y.h"
 #include "palletizer.h"
+#include "palletizercylinders.h"
 #include "pcc.h"
 #include "planar_3rrr.h"
 #include "polar.h"
@@ -46,6 +48,7 @@
 #include "scara4_zccoupled_type1.h"
 #include "scaraonrail.h"
 #include "sccc.h"
+#include "scissorlift.h"
 #include "tabletable_ac.h"
 #include "tgantry2.h"
 #include "tgantry3.h"
@@ -72,6 +75,8 @@ softkin_regular delta_p3c_type3_regular;
 softkin_regular_all delta_p3c_type3_regular_all;
 softkin_regular dualscara_regular;
 softkin_regular_all dualscara_regular_all;
+softkin_regular excavator_regular;
+softkin_regular_all excavator_regular_all;
 softkin_regular gantry2_regular;
 softkin_regular gantry3_regular;
 softkin_regular gantrycutter2_regular;
@@ -118,6 +123,7 @@ softkin_regular scara4_zccoupled_type1_regular;
 softkin_regular_all scara4_zccoupled_type1_regular_all;
 softkin_regular scaraonrail_regular;
 softkin_regular_all scaraonrail_regular_all;
+softkin_regular scissorlift_regular;
 softkin_regular tabletable_ac_regular;
 softkin_regular_all tabletable_ac_regular_all;
 softkin_regular tgantry2_regular;
@@ -150,6 +156,7 @@ const softkin_native softkin_machines[] = {
     {"delta_p3c_type3 a4e0e109f9346d6d", &delta_p3c_type3_mechanism,
         {delta_p3c_type3_regular, delta_p3c_type3_regular_all}},
     {"dualscara 518a05ebb26d0c73", &dualscara_mechanism, {dualscara_regular, dualscara_regular_all}},
+    {"excavator 5ff3acc2afd2fd65", &excavator_mechanism, {excavator_regular, excavator_regular_all}},
     {"gantry2 3c6edd1d7118e93d", &gantry2_mechanism, {gantry2_regular, NULL}},
     {"gantry3 9b8635e5f566e3b6", &gantry3_mechanism, {gantry3_regular, NULL}},
     {"gantrycutter2 5043f79761288349", &gantrycutter2_mechanism, {gantrycutter2_regular, NULL}},
@@ -170,6 +177,7 @@ const softkin_native softkin_machines[] = {
     {"p2x_type2 e9df9cbc459e05d1", &p2x_type2_mechanism, {p2x_type2_regular, NULL}},
     {"p2y f699eaab88473243", &p2y_mechanism, {p2y_regular, NULL}},
     {"palletizer b22aa2e3fca3a87d", &palletizer_mechanism, {palletizer_regular, palletizer_regular_all}},
+    {"palletizercylinders c913c1c252677b1f", &palletizercylinders_mechanism, {NULL, NULL}},
     {"pcc fc915a8e08510de0", &pcc_mechanism, {pcc_regular, pcc_regular_all}},
     {"planar_3rrr e5024333caf97add", &planar_3rrr_mechanism, {NULL, NULL}},
     {"polar 7f22839a27cccfa9", &polar_mechanism, {polar_regular, NULL}},
@@ -186,6 +194,7 @@ const softkin_native softkin_machines[] = {
         {scara4_zccoupled_type1_regular, scara4_zccoupled_type1_regular_all}},
     {"scaraonrail a59e29ec1fc13d4d", &scaraonrail_mechanism, {scaraonrail_regular, scaraonrail_regular_all}},
     {"sccc 44de60f530721870", &sccc_mechanism, {NULL, NULL}},
+    {"scissorlift 97d91c44b3095980", &scissorlift_mechanism, {scissorlift_regular, NULL}},
     {"tabletable_ac 6909ab958c9b1d87", &tabletable_ac_mechanism,
         {tabletable_ac_regular, tabletable_ac_regular_all}},
     {"tgantry2 83f275af2946655f", &tgantry2_mechanism, {tgantry2_regular, NULL}},

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from softkin.delta_c import DeltaC
     from softkin.delta_p3c_type3 import DeltaP3CType3
     from softkin.dualscara import DualScara
+    from softkin.excavator import Excavator
     from softkin.gantry2 import Gantry2
     from softkin.gantry3 import Gantry3
     from softkin.gantrycutter2 import GantryCutter2
@@ -63,6 +64,7 @@ if TYPE_CHECKING:
     from softkin.p2x_type2 import P2XType2
     from softkin.p2y import P2Y
     from softkin.palletizer import Palletizer
+    from softkin.palletizercylinders import PalletizerCylinders
     from softkin.pcc import PCC
     from softkin.planar_3rrr import Planar3RRR
     from softkin.polar import Polar
@@ -77,6 +79,7 @@ if TYPE_CHECKING:
     from softkin.scara4_zccoupled_type1 import Scara4ZCcoupledType1
     from softkin.scaraonrail import ScaraOnRail
     from softkin.sccc import SCCC
+    from softkin.scissorlift import ScissorLift
     from softkin.tabletable_ac import TableTableAC
     from softkin.tgantry2 import TGantry2
     from softkin.tgantry3 import TGantry3
@@ -109,6 +112,7 @@ __all__ = [
     "DeltaP3CType3",
     "Diagnosis",
     "DualScara",
+    "Excavator",
     "Frame",
     "FrameLike",
     "Gantry2",
@@ -132,6 +136,7 @@ __all__ = [
     "P2XType1",
     "P2XType2",
     "Palletizer",
+    "PalletizerCylinders",
     "Parameter",
     "Planar3RRR",
     "Polar",
@@ -146,6 +151,7 @@ __all__ = [
     "Scara4ZCCC",
     "Scara4ZCcoupledType1",
     "ScaraOnRail",
+    "ScissorLift",
     "Singularity",
     "Solution",
     "Status",
@@ -181,6 +187,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Softkin_Delta_C": ("delta_c", "DeltaC"),
     "Kin_Delta_P3C_Type3": ("delta_p3c_type3", "DeltaP3CType3"),
     "Softkin_DualScara": ("dualscara", "DualScara"),
+    "Softkin_Excavator": ("excavator", "Excavator"),
     "Kin_Gantry2": ("gantry2", "Gantry2"),
     "Kin_Gantry3": ("gantry3", "Gantry3"),
     "Kin_GantryCutter2": ("gantrycutter2", "GantryCutter2"),
@@ -199,6 +206,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_P2X_Type2": ("p2x_type2", "P2XType2"),
     "Kin_P2Y": ("p2y", "P2Y"),
     "Softkin_Palletizer": ("palletizer", "Palletizer"),
+    "Softkin_PalletizerCylinders": ("palletizercylinders", "PalletizerCylinders"),
     "Kin_PCC": ("pcc", "PCC"),
     "Softkin_Planar_3RRR": ("planar_3rrr", "Planar3RRR"),
     "Kin_Polar": ("polar", "Polar"),
@@ -213,6 +221,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Scara4_ZCcoupled_Type1": ("scara4_zccoupled_type1", "Scara4ZCcoupledType1"),
     "Softkin_ScaraOnRail": ("scaraonrail", "ScaraOnRail"),
     "Kin_SCCC": ("sccc", "SCCC"),
+    "Softkin_ScissorLift": ("scissorlift", "ScissorLift"),
     "Softkin_TableTable_AC": ("tabletable_ac", "TableTableAC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),
     "Kin_TGantry3": ("tgantry3", "TGantry3"),
