@@ -30,10 +30,11 @@ def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False)
     generator = np.random.default_rng(seed)
     values: Samples = {}
     nominal = unlimited_values(mechanism)
+    needed = {s for j in mechanism.joints for loop in j.loops for s in loop.equation.free_symbols}
     for parameter in machine_parameters(mechanism):
         spread, value = generator.uniform(0.8, 1.2), nominal[parameter.name]
         value = value if parameter.role in (Role.FLAG, Role.SIGN) else value * spread
-        if optional_zero and parameter.role is Role.DISTANCE:
+        if optional_zero and parameter.role is Role.DISTANCE and parameter.symbol not in needed:
             value = 0.0
         values[parameter.name] = np.asarray(value)
     return _with_scale(mechanism, values | fixed_values(mechanism))

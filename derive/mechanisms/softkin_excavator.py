@@ -1,7 +1,21 @@
 """Softkin_Excavator: swing, boom, stick and bucket; cylinders move the last three, the bucket over a four-bar."""
 
+from sympy import cos, sin
+
 from derive.frames import Ry, Rz, Tx, Tz
-from derive.mechanism import Mechanism, Task, Turning, Vendor, coordinate, distance, driven, length, linear, rotary
+from derive.mechanism import (
+    Mechanism,
+    Task,
+    Turning,
+    Vendor,
+    branch,
+    coordinate,
+    distance,
+    driven,
+    length,
+    linear,
+    rotary,
+)
 
 FORWARD = distance("boom_foot_x", "Axis A1 to the foot of the boom, forward", nominal=300.0)
 HEIGHT = distance("boom_foot_z", "Height of the foot of the boom", nominal=800.0)
@@ -37,6 +51,9 @@ S4 = linear("S4", "Cylinder of the bucket: its length", nominal=645.0)
 
 AT_ROCKER = Tx(PIVOT) * Ry(ROCKER_ANGLE) * Tx(ROCKER)
 
+TURNED = BOOM_ANGLE + STICK_ANGLE
+OUT = FORWARD + BOOM * cos(BOOM_ANGLE) + STICK * cos(TURNED) + BUCKET * cos(TURNED + BUCKET_ANGLE)
+
 MECHANISM = Mechanism(
     name="Softkin_Excavator",
     vendor=Vendor.TEXTBOOK,
@@ -66,4 +83,8 @@ MECHANISM = Mechanism(
         ),
     ),
     task=Task("xyz", Turning.PITCH),
+    branches=(
+        branch("shoulder", OUT, front=+1, back=-1, margin="teeth_on_a1"),
+        branch("elbow", sin(STICK_ANGLE), stick_down=+1, stick_up=-1),
+    ),
 )

@@ -77,8 +77,6 @@ class DrivenClosure(Closure):
     def __init__(self, mechanism: Mechanism, parameters: Mapping[str, float], reach: float) -> None:
         super().__init__(mechanism, parameters)
         self.reach = reach
-        self.units = np.array([ONE_DEGREE if j.in_degrees else 1.0 for j in mechanism.joints])
-        self.angles = np.array([j.in_degrees for j in mechanism.joints])
         self.loops = {k: loops for k, j in enumerate(mechanism.joints) if (loops := _loops_of(mechanism, j))}
 
     def joints(self, axes: Array) -> Array:

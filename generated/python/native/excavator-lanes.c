@@ -35,16 +35,16 @@ void excavator_regular(const void *machine, const softkin_lanes *given,
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r13 = given->rotation[2][lane], r23 = given->rotation[5][lane], r33 = given->rotation[8][lane],
-        sigma_shoulder_1 = given->signs[0][lane], sigma_elbow_1 = given->signs[1][lane],
+        sigma_shoulder = given->signs[0][lane], sigma_elbow = given->signs[1][lane],
         ref_a1 = given->reference[0][lane];
     double missed = misses[lane];
     /* distance of the point from the axis of a1 */
     const double distance_a1 = softkin_lane_root(x*x + y*y);
     missed += distance_a1 > machine_scale_times_free_angle ? 0.0 : 1.0;
-    const double sign_shoulder_1 = sigma_shoulder_1; /* shoulder_1: +1 positive, -1 negative */
-    const double along_a1 = sign_shoulder_1*x; /* rotation by a1 that points the arm at the point */
+    const double sign_shoulder = sigma_shoulder; /* shoulder: +1 front, -1 back */
+    const double along_a1 = sign_shoulder*x; /* rotation by a1 that points the arm at the point */
     const double cos_a1 = along_a1/distance_a1; /* at a singularity: the angle of the reference */
-    const double across_a1 = sign_shoulder_1*y;
+    const double across_a1 = sign_shoulder*y;
     const double sin_a1 = across_a1/distance_a1;
     const double r13_from_a1 = r13*cos_a1 + r23*sin_a1;
     /* length of the commanded direction in the plane in which the arm turns the tool */
@@ -52,7 +52,7 @@ void excavator_regular(const void *machine, const softkin_lanes *given,
     /* the tool points across the plane in which the arm can turn it */
     missed += in_plane > 2e-12 ? 0.0 : 1.0;
     /* how far ahead of the axis the point is; negative: behind it */
-    const double ahead_a1 = distance_a1*sign_shoulder_1;
+    const double ahead_a1 = distance_a1*sign_shoulder;
     const double tool_z = r33/in_plane;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x_from_a1 = ahead_a1 - boom_foot_x - bucket_length*tool_z;
@@ -71,10 +71,10 @@ void excavator_regular(const void *machine, const softkin_lanes *given,
     /* c: out of reach */
     missed += fabs(cos_c) <= bound_of_cos_c ? 0.0 : 1.0;
     const double arm_along_b = boom_length + stick_length*cos_c;
-    const double sign_elbow_1 = sigma_elbow_1; /* elbow_1: +1 positive, -1 negative */
+    const double sign_elbow = sigma_elbow; /* elbow: +1 stick_down, -1 stick_up */
     /* sine squared, times the squared scale */
     const double sine_square_c = one_less_cos_c*one_plus_cos_c;
-    const double sin_c = softkin_lane_root(sine_square_c)*half_by_boom_length_by_stick_length*sign_elbow_1;
+    const double sin_c = softkin_lane_root(sine_square_c)*half_by_boom_length_by_stick_length*sign_elbow;
     const double arm_across_b = stick_length*sin_c;
     /* rotation by b that takes the arm to its target point */
     const double along_b = arm_along_b*wrist_x_from_a1 - arm_across_b*wrist_z_from_a1;
@@ -179,37 +179,37 @@ void excavator_regular_all(const void *machine, const softkin_lanes *given,
   const double boom_cylinder_base_z_squared = boom_cylinder_base_z*boom_cylinder_base_z;
   const double boom_cylinder_eye_x_squared = boom_cylinder_eye_x*boom_cylinder_eye_x;
   const double boom_cylinder_eye_z_squared = boom_cylinder_eye_z*boom_cylinder_eye_z;
-  const double product_in_refusal_positive_positive = 2e-12
+  const double product_in_refusal_front_stick_down = 2e-12
       *softkin_lane_root(boom_cylinder_base_x_squared + boom_cylinder_base_z_squared)
       *softkin_lane_root(boom_cylinder_eye_x_squared + boom_cylinder_eye_z_squared);
   const double stick_cylinder_base_x_squared = stick_cylinder_base_x*stick_cylinder_base_x;
   const double stick_cylinder_base_z_squared = stick_cylinder_base_z*stick_cylinder_base_z;
   const double stick_cylinder_eye_x_squared = stick_cylinder_eye_x*stick_cylinder_eye_x;
   const double stick_cylinder_eye_z_squared = stick_cylinder_eye_z*stick_cylinder_eye_z;
-  const double product_in_refusal_positive_positive_2 = 2e-12
+  const double product_in_refusal_front_stick_down_2 = 2e-12
       *softkin_lane_root(stick_cylinder_base_x_squared + stick_cylinder_base_z_squared)
       *softkin_lane_root(stick_cylinder_eye_x_squared + stick_cylinder_eye_z_squared);
   const double bucket_ear_x_squared = bucket_ear_x*bucket_ear_x;
   const double bucket_ear_z_squared = bucket_ear_z*bucket_ear_z;
-  const double product_in_refusal_positive_positive_3 = 2e-12
+  const double product_in_refusal_front_stick_down_3 = 2e-12
       *softkin_lane_root(bucket_ear_x_squared + bucket_ear_z_squared)*rod_length;
   const double rocker_pivot_x_squared = rocker_pivot_x*rocker_pivot_x;
   const double bucket_cylinder_base_x_squared = bucket_cylinder_base_x*bucket_cylinder_base_x;
   const double bucket_cylinder_base_z_squared = bucket_cylinder_base_z*bucket_cylinder_base_z;
-  const double product_in_refusal_positive_positive_4_2 = 2.0*bucket_cylinder_base_x*rocker_pivot_x;
-  const double product_in_refusal_positive_positive_4 = 2e-12
+  const double product_in_refusal_front_stick_down_4_2 = 2.0*bucket_cylinder_base_x*rocker_pivot_x;
+  const double product_in_refusal_front_stick_down_4 = 2e-12
       *softkin_lane_root(bucket_cylinder_base_x_squared + bucket_cylinder_base_z_squared
-      + rocker_pivot_x_squared - product_in_refusal_positive_positive_4_2)*rocker_length;
+      + rocker_pivot_x_squared - product_in_refusal_front_stick_down_4_2)*rocker_length;
   const double sum_in_reference_level_of_b = boom_cylinder_base_x_squared + boom_cylinder_base_z_squared
       + boom_cylinder_eye_x_squared + boom_cylinder_eye_z_squared;
-  const double sum_in_rest_of_motor_s3_positive_positive = stick_cylinder_base_x_squared
+  const double sum_in_rest_of_motor_s3_front_stick_down = stick_cylinder_base_x_squared
       + stick_cylinder_base_z_squared + stick_cylinder_eye_x_squared + stick_cylinder_eye_z_squared;
   const double rocker_length_squared = rocker_length*rocker_length;
-  const double sum_in_level_of_r_positive_positive = rod_length*rod_length - bucket_ear_x_squared
+  const double sum_in_level_of_r_front_stick_down = rod_length*rod_length - bucket_ear_x_squared
       - bucket_ear_z_squared - rocker_length_squared - rocker_pivot_x_squared;
-  const double sum_in_rest_of_motor_s4_positive_positive = bucket_cylinder_base_x_squared
+  const double sum_in_rest_of_motor_s4_front_stick_down = bucket_cylinder_base_x_squared
       + bucket_cylinder_base_z_squared + rocker_length_squared + rocker_pivot_x_squared
-      - product_in_refusal_positive_positive_4_2;
+      - product_in_refusal_front_stick_down_4_2;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r13 = given->rotation[2][lane], r23 = given->rotation[5][lane], r33 = given->rotation[8][lane],
@@ -220,411 +220,393 @@ void excavator_regular_all(const void *machine, const softkin_lanes *given,
     missed += distance_a1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     const double x_by_distance_a1 = x/distance_a1;
     const double y_by_distance_a1 = y/distance_a1;
-    const double r13_from_a1_positive = r13*x_by_distance_a1 + r23*y_by_distance_a1;
+    const double r13_from_a1_front = r13*x_by_distance_a1 + r23*y_by_distance_a1;
     const double r33_squared = r33*r33;
     /* length of the commanded direction in the plane in which the arm turns the tool */
-    const double in_plane_positive = softkin_lane_root(r33_squared
-        + r13_from_a1_positive*r13_from_a1_positive);
-    missed += in_plane_positive > 2e-12 ? 0.0 : 1.0;
-    const double tool_z_positive = r33/in_plane_positive;
+    const double in_plane_front = softkin_lane_root(r33_squared + r13_from_a1_front*r13_from_a1_front);
+    missed += in_plane_front > 2e-12 ? 0.0 : 1.0;
+    const double tool_z_front = r33/in_plane_front;
     /* coordinate of the point that the remaining links must reach */
-    const double wrist_x_from_a1_positive = distance_a1 - boom_foot_x - bucket_length*tool_z_positive;
+    const double wrist_x_from_a1_front = distance_a1 - boom_foot_x - bucket_length*tool_z_front;
     /* the nearest direction that the arm can reach */
-    const double tool_x_positive = r13_from_a1_positive/in_plane_positive;
+    const double tool_x_front = r13_from_a1_front/in_plane_front;
     const double z_minus_boom_foot_z = z - boom_foot_z;
     /* coordinate of the point that the remaining links must reach */
-    const double wrist_z_from_a1_positive = z_minus_boom_foot_z + bucket_length*tool_x_positive;
+    const double wrist_z_from_a1_front = z_minus_boom_foot_z + bucket_length*tool_x_front;
     /* distance that the remaining links must span */
-    const double reach_positive = softkin_lane_root(wrist_x_from_a1_positive*wrist_x_from_a1_positive
-        + wrist_z_from_a1_positive*wrist_z_from_a1_positive);
+    const double reach_front = softkin_lane_root(wrist_x_from_a1_front*wrist_x_from_a1_front
+        + wrist_z_from_a1_front*wrist_z_from_a1_front);
     /* law of cosines for c (x_from_a1² + z_from_a1²): 1 - cosine, times a scale */
-    const double one_less_cos_c_positive = (boom_length_plus_stick_length + reach_positive)
-        *(boom_length_plus_stick_length - reach_positive);
+    const double one_less_cos_c_front = (boom_length_plus_stick_length + reach_front)
+        *(boom_length_plus_stick_length - reach_front);
     /* 1 + cosine, times the scale */
-    const double one_plus_cos_c_positive = (reach_positive - boom_length_minus_stick_length)
-        *(boom_length_minus_stick_length + reach_positive);
+    const double one_plus_cos_c_front = (reach_front - boom_length_minus_stick_length)
+        *(boom_length_minus_stick_length + reach_front);
     /* sine squared, times the squared scale */
-    const double sine_square_c_positive = one_less_cos_c_positive*one_plus_cos_c_positive;
-    const double sin_c_positive_positive = softkin_lane_root(sine_square_c_positive)
+    const double sine_square_c_front = one_less_cos_c_front*one_plus_cos_c_front;
+    const double sin_c_front_stick_down = softkin_lane_root(sine_square_c_front)
         *half_by_boom_length_by_stick_length;
-    const double arm_across_b_positive_positive = stick_length*sin_c_positive_positive;
-    const double product_in_along_b_positive_positive = arm_across_b_positive_positive
-        *wrist_z_from_a1_positive;
-    const double cos_c_positive = (one_plus_cos_c_positive - one_less_cos_c_positive)*quotient_in_cos_c;
-    const double arm_along_b_positive = boom_length + stick_length*cos_c_positive;
-    const double product_in_along_b_positive_positive_2 = arm_along_b_positive*wrist_x_from_a1_positive;
+    const double arm_across_b_front_stick_down = stick_length*sin_c_front_stick_down;
+    const double product_in_along_b_front_stick_down = arm_across_b_front_stick_down*wrist_z_from_a1_front;
+    const double cos_c_front = (one_plus_cos_c_front - one_less_cos_c_front)*quotient_in_cos_c;
+    const double arm_along_b_front = boom_length + stick_length*cos_c_front;
+    const double product_in_along_b_front_stick_down_2 = arm_along_b_front*wrist_x_from_a1_front;
     /* rotation by b that takes the arm to its target point */
-    const double along_b_positive_positive = product_in_along_b_positive_positive_2
-        - product_in_along_b_positive_positive;
-    const double product_in_across_b_positive_positive = arm_along_b_positive*wrist_z_from_a1_positive;
-    const double product_in_across_b_positive_positive_2 = arm_across_b_positive_positive
-        *wrist_x_from_a1_positive;
-    const double across_b_positive_positive = -product_in_across_b_positive_positive
-        - product_in_across_b_positive_positive_2;
-    const double sum_in_length_b_positive_positive = across_b_positive_positive*across_b_positive_positive
-        + along_b_positive_positive*along_b_positive_positive;
-    missed += reach_positive > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += sum_in_length_b_positive_positive > 0.0 ? 0.0 : 1.0;
-    const double length_b_positive_positive = softkin_lane_root(sum_in_length_b_positive_positive);
+    const double along_b_front_stick_down = product_in_along_b_front_stick_down_2
+        - product_in_along_b_front_stick_down;
+    const double product_in_across_b_front_stick_down = arm_along_b_front*wrist_z_from_a1_front;
+    const double product_in_across_b_front_stick_down_2 = arm_across_b_front_stick_down*wrist_x_from_a1_front;
+    const double across_b_front_stick_down = -product_in_across_b_front_stick_down
+        - product_in_across_b_front_stick_down_2;
+    const double sum_in_length_b_front_stick_down = across_b_front_stick_down*across_b_front_stick_down
+        + along_b_front_stick_down*along_b_front_stick_down;
+    missed += reach_front > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += sum_in_length_b_front_stick_down > 0.0 ? 0.0 : 1.0;
+    const double length_b_front_stick_down = softkin_lane_root(sum_in_length_b_front_stick_down);
     /* at a singularity: the angle of the reference */
-    const double cos_b_positive_positive = along_b_positive_positive/length_b_positive_positive;
-    const double sin_b_positive_positive = across_b_positive_positive/length_b_positive_positive;
-    const double cos_b_c_positive_positive = cos_b_positive_positive*cos_c_positive
-        - sin_b_positive_positive*sin_c_positive_positive;
-    const double sin_b_c_positive_positive = cos_b_positive_positive*sin_c_positive_positive
-        + cos_c_positive*sin_b_positive_positive;
+    const double cos_b_front_stick_down = along_b_front_stick_down/length_b_front_stick_down;
+    const double sin_b_front_stick_down = across_b_front_stick_down/length_b_front_stick_down;
+    const double cos_b_c_front_stick_down = cos_b_front_stick_down*cos_c_front
+        - sin_b_front_stick_down*sin_c_front_stick_down;
+    const double sin_b_c_front_stick_down = cos_b_front_stick_down*sin_c_front_stick_down
+        + cos_c_front*sin_b_front_stick_down;
     /* d from the sum b_c_d of angles about parallel axes */
-    const double cos_d_positive_positive = tool_z_positive*cos_b_c_positive_positive
-        + tool_x_positive*sin_b_c_positive_positive;
-    const double sin_d_positive_positive = tool_x_positive*cos_b_c_positive_positive
-        - tool_z_positive*sin_b_c_positive_positive;
+    const double cos_d_front_stick_down = tool_z_front*cos_b_c_front_stick_down
+        + tool_x_front*sin_b_c_front_stick_down;
+    const double sin_d_front_stick_down = tool_x_front*cos_b_c_front_stick_down
+        - tool_z_front*sin_b_c_front_stick_down;
     /* the loop of D, solved for R */
-    const double along_of_r_positive_positive = product_in_level_of_d
-        - bucket_ear_x_times_rocker_length_times_2*cos_d_positive_positive
-        - bucket_ear_z_times_rocker_length_times_2*sin_d_positive_positive;
-    const double across_of_r_positive_positive = bucket_ear_z_times_rocker_length_times_2
-        *cos_d_positive_positive - bucket_ear_x_times_rocker_length_times_2*sin_d_positive_positive;
-    const double sum_in_reach_of_r_positive_positive = across_of_r_positive_positive
-        *across_of_r_positive_positive + along_of_r_positive_positive*along_of_r_positive_positive;
-    missed += sum_in_reach_of_r_positive_positive > 1e-12 ? 0.0 : 1.0;
+    const double along_of_r_front_stick_down = product_in_level_of_d
+        - bucket_ear_x_times_rocker_length_times_2*cos_d_front_stick_down
+        - bucket_ear_z_times_rocker_length_times_2*sin_d_front_stick_down;
+    const double across_of_r_front_stick_down = bucket_ear_z_times_rocker_length_times_2
+        *cos_d_front_stick_down - bucket_ear_x_times_rocker_length_times_2*sin_d_front_stick_down;
+    const double sum_in_reach_of_r_front_stick_down = across_of_r_front_stick_down
+        *across_of_r_front_stick_down + along_of_r_front_stick_down*along_of_r_front_stick_down;
+    missed += sum_in_reach_of_r_front_stick_down > 1e-12 ? 0.0 : 1.0;
     /* rotation by b that takes the arm to its target point */
-    const double along_b_positive_negative = product_in_along_b_positive_positive
-        + product_in_along_b_positive_positive_2;
-    const double across_b_positive_negative = product_in_across_b_positive_positive_2
-        - product_in_across_b_positive_positive;
-    const double sum_in_length_b_positive_negative = across_b_positive_negative*across_b_positive_negative
-        + along_b_positive_negative*along_b_positive_negative;
-    missed += sum_in_length_b_positive_negative > 0.0 ? 0.0 : 1.0;
-    const double length_b_positive_negative = softkin_lane_root(sum_in_length_b_positive_negative);
+    const double along_b_front_stick_up = product_in_along_b_front_stick_down
+        + product_in_along_b_front_stick_down_2;
+    const double across_b_front_stick_up = product_in_across_b_front_stick_down_2
+        - product_in_across_b_front_stick_down;
+    const double sum_in_length_b_front_stick_up = across_b_front_stick_up*across_b_front_stick_up
+        + along_b_front_stick_up*along_b_front_stick_up;
+    missed += sum_in_length_b_front_stick_up > 0.0 ? 0.0 : 1.0;
+    const double length_b_front_stick_up = softkin_lane_root(sum_in_length_b_front_stick_up);
     /* at a singularity: the angle of the reference */
-    const double cos_b_positive_negative = along_b_positive_negative/length_b_positive_negative;
-    const double sin_b_positive_negative = across_b_positive_negative/length_b_positive_negative;
-    const double cos_b_c_positive_negative = cos_b_positive_negative*cos_c_positive
-        + sin_b_positive_negative*sin_c_positive_positive;
-    const double sin_b_c_positive_negative = cos_c_positive*sin_b_positive_negative
-        - cos_b_positive_negative*sin_c_positive_positive;
+    const double cos_b_front_stick_up = along_b_front_stick_up/length_b_front_stick_up;
+    const double sin_b_front_stick_up = across_b_front_stick_up/length_b_front_stick_up;
+    const double cos_b_c_front_stick_up = cos_b_front_stick_up*cos_c_front
+        + sin_b_front_stick_up*sin_c_front_stick_down;
+    const double sin_b_c_front_stick_up = cos_c_front*sin_b_front_stick_up
+        - cos_b_front_stick_up*sin_c_front_stick_down;
     /* d from the sum b_c_d of angles about parallel axes */
-    const double cos_d_positive_negative = tool_z_positive*cos_b_c_positive_negative
-        + tool_x_positive*sin_b_c_positive_negative;
-    const double sin_d_positive_negative = tool_x_positive*cos_b_c_positive_negative
-        - tool_z_positive*sin_b_c_positive_negative;
+    const double cos_d_front_stick_up = tool_z_front*cos_b_c_front_stick_up
+        + tool_x_front*sin_b_c_front_stick_up;
+    const double sin_d_front_stick_up = tool_x_front*cos_b_c_front_stick_up
+        - tool_z_front*sin_b_c_front_stick_up;
     /* the loop of D, solved for R */
-    const double along_of_r_positive_negative = product_in_level_of_d
-        - bucket_ear_x_times_rocker_length_times_2*cos_d_positive_negative
-        - bucket_ear_z_times_rocker_length_times_2*sin_d_positive_negative;
-    const double across_of_r_positive_negative = bucket_ear_z_times_rocker_length_times_2
-        *cos_d_positive_negative - bucket_ear_x_times_rocker_length_times_2*sin_d_positive_negative;
-    const double sum_in_reach_of_r_positive_negative = across_of_r_positive_negative
-        *across_of_r_positive_negative + along_of_r_positive_negative*along_of_r_positive_negative;
-    missed += sum_in_reach_of_r_positive_negative > 1e-12 ? 0.0 : 1.0;
+    const double along_of_r_front_stick_up = product_in_level_of_d
+        - bucket_ear_x_times_rocker_length_times_2*cos_d_front_stick_up
+        - bucket_ear_z_times_rocker_length_times_2*sin_d_front_stick_up;
+    const double across_of_r_front_stick_up = bucket_ear_z_times_rocker_length_times_2*cos_d_front_stick_up
+        - bucket_ear_x_times_rocker_length_times_2*sin_d_front_stick_up;
+    const double sum_in_reach_of_r_front_stick_up = across_of_r_front_stick_up*across_of_r_front_stick_up
+        + along_of_r_front_stick_up*along_of_r_front_stick_up;
+    missed += sum_in_reach_of_r_front_stick_up > 1e-12 ? 0.0 : 1.0;
     /* coordinate of the point that the remaining links must reach */
-    const double wrist_x_from_a1_negative = -boom_foot_x - distance_a1 - bucket_length*tool_z_positive;
-    const double tool_x_negative = -tool_x_positive; /* the nearest direction that the arm can reach */
+    const double wrist_x_from_a1_back = -boom_foot_x - distance_a1 - bucket_length*tool_z_front;
+    const double tool_x_back = -tool_x_front; /* the nearest direction that the arm can reach */
     /* coordinate of the point that the remaining links must reach */
-    const double wrist_z_from_a1_negative = z_minus_boom_foot_z + bucket_length*tool_x_negative;
+    const double wrist_z_from_a1_back = z_minus_boom_foot_z + bucket_length*tool_x_back;
     /* distance that the remaining links must span */
-    const double reach_negative = softkin_lane_root(wrist_x_from_a1_negative*wrist_x_from_a1_negative
-        + wrist_z_from_a1_negative*wrist_z_from_a1_negative);
+    const double reach_back = softkin_lane_root(wrist_x_from_a1_back*wrist_x_from_a1_back
+        + wrist_z_from_a1_back*wrist_z_from_a1_back);
     /* law of cosines for c (x_from_a1² + z_from_a1²): 1 - cosine, times a scale */
-    const double one_less_cos_c_negative = (boom_length_plus_stick_length + reach_negative)
-        *(boom_length_plus_stick_length - reach_negative);
+    const double one_less_cos_c_back = (boom_length_plus_stick_length + reach_back)
+        *(boom_length_plus_stick_length - reach_back);
     /* 1 + cosine, times the scale */
-    const double one_plus_cos_c_negative = (reach_negative - boom_length_minus_stick_length)
-        *(boom_length_minus_stick_length + reach_negative);
+    const double one_plus_cos_c_back = (reach_back - boom_length_minus_stick_length)
+        *(boom_length_minus_stick_length + reach_back);
     /* sine squared, times the squared scale */
-    const double sine_square_c_negative = one_less_cos_c_negative*one_plus_cos_c_negative;
-    const double sin_c_negative_positive = softkin_lane_root(sine_square_c_negative)
+    const double sine_square_c_back = one_less_cos_c_back*one_plus_cos_c_back;
+    const double sin_c_back_stick_down = softkin_lane_root(sine_square_c_back)
         *half_by_boom_length_by_stick_length;
-    const double arm_across_b_negative_positive = stick_length*sin_c_negative_positive;
-    const double product_in_along_b_negative_positive = arm_across_b_negative_positive
-        *wrist_z_from_a1_negative;
-    const double cos_c_negative = (one_plus_cos_c_negative - one_less_cos_c_negative)*quotient_in_cos_c;
-    const double arm_along_b_negative = boom_length + stick_length*cos_c_negative;
-    const double product_in_along_b_negative_positive_2 = arm_along_b_negative*wrist_x_from_a1_negative;
+    const double arm_across_b_back_stick_down = stick_length*sin_c_back_stick_down;
+    const double product_in_along_b_back_stick_down = arm_across_b_back_stick_down*wrist_z_from_a1_back;
+    const double cos_c_back = (one_plus_cos_c_back - one_less_cos_c_back)*quotient_in_cos_c;
+    const double arm_along_b_back = boom_length + stick_length*cos_c_back;
+    const double product_in_along_b_back_stick_down_2 = arm_along_b_back*wrist_x_from_a1_back;
     /* rotation by b that takes the arm to its target point */
-    const double along_b_negative_positive = product_in_along_b_negative_positive_2
-        - product_in_along_b_negative_positive;
-    const double product_in_across_b_negative_positive = arm_along_b_negative*wrist_z_from_a1_negative;
-    const double product_in_across_b_negative_positive_2 = arm_across_b_negative_positive
-        *wrist_x_from_a1_negative;
-    const double across_b_negative_positive = -product_in_across_b_negative_positive
-        - product_in_across_b_negative_positive_2;
-    const double sum_in_length_b_negative_positive = across_b_negative_positive*across_b_negative_positive
-        + along_b_negative_positive*along_b_negative_positive;
-    missed += reach_negative > machine_scale_times_free_angle ? 0.0 : 1.0;
-    missed += sum_in_length_b_negative_positive > 0.0 ? 0.0 : 1.0;
-    const double length_b_negative_positive = softkin_lane_root(sum_in_length_b_negative_positive);
+    const double along_b_back_stick_down = product_in_along_b_back_stick_down_2
+        - product_in_along_b_back_stick_down;
+    const double product_in_across_b_back_stick_down = arm_along_b_back*wrist_z_from_a1_back;
+    const double product_in_across_b_back_stick_down_2 = arm_across_b_back_stick_down*wrist_x_from_a1_back;
+    const double across_b_back_stick_down = -product_in_across_b_back_stick_down
+        - product_in_across_b_back_stick_down_2;
+    const double sum_in_length_b_back_stick_down = across_b_back_stick_down*across_b_back_stick_down
+        + along_b_back_stick_down*along_b_back_stick_down;
+    missed += reach_back > machine_scale_times_free_angle ? 0.0 : 1.0;
+    missed += sum_in_length_b_back_stick_down > 0.0 ? 0.0 : 1.0;
+    const double length_b_back_stick_down = softkin_lane_root(sum_in_length_b_back_stick_down);
     /* at a singularity: the angle of the reference */
-    const double cos_b_negative_positive = along_b_negative_positive/length_b_negative_positive;
-    const double sin_b_negative_positive = across_b_negative_positive/length_b_negative_positive;
-    const double cos_b_c_negative_positive = cos_b_negative_positive*cos_c_negative
-        - sin_b_negative_positive*sin_c_negative_positive;
-    const double sin_b_c_negative_positive = cos_b_negative_positive*sin_c_negative_positive
-        + cos_c_negative*sin_b_negative_positive;
+    const double cos_b_back_stick_down = along_b_back_stick_down/length_b_back_stick_down;
+    const double sin_b_back_stick_down = across_b_back_stick_down/length_b_back_stick_down;
+    const double cos_b_c_back_stick_down = cos_b_back_stick_down*cos_c_back
+        - sin_b_back_stick_down*sin_c_back_stick_down;
+    const double sin_b_c_back_stick_down = cos_b_back_stick_down*sin_c_back_stick_down
+        + cos_c_back*sin_b_back_stick_down;
     /* d from the sum b_c_d of angles about parallel axes */
-    const double cos_d_negative_positive = tool_z_positive*cos_b_c_negative_positive
-        + tool_x_negative*sin_b_c_negative_positive;
-    const double sin_d_negative_positive = tool_x_negative*cos_b_c_negative_positive
-        - tool_z_positive*sin_b_c_negative_positive;
+    const double cos_d_back_stick_down = tool_z_front*cos_b_c_back_stick_down
+        + tool_x_back*sin_b_c_back_stick_down;
+    const double sin_d_back_stick_down = tool_x_back*cos_b_c_back_stick_down
+        - tool_z_front*sin_b_c_back_stick_down;
     /* the loop of D, solved for R */
-    const double along_of_r_negative_positive = product_in_level_of_d
-        - bucket_ear_x_times_rocker_length_times_2*cos_d_negative_positive
-        - bucket_ear_z_times_rocker_length_times_2*sin_d_negative_positive;
-    const double across_of_r_negative_positive = bucket_ear_z_times_rocker_length_times_2
-        *cos_d_negative_positive - bucket_ear_x_times_rocker_length_times_2*sin_d_negative_positive;
-    const double sum_in_reach_of_r_negative_positive = across_of_r_negative_positive
-        *across_of_r_negative_positive + along_of_r_negative_positive*along_of_r_negative_positive;
-    missed += sum_in_reach_of_r_negative_positive > 1e-12 ? 0.0 : 1.0;
+    const double along_of_r_back_stick_down = product_in_level_of_d
+        - bucket_ear_x_times_rocker_length_times_2*cos_d_back_stick_down
+        - bucket_ear_z_times_rocker_length_times_2*sin_d_back_stick_down;
+    const double across_of_r_back_stick_down = bucket_ear_z_times_rocker_length_times_2*cos_d_back_stick_down
+        - bucket_ear_x_times_rocker_length_times_2*sin_d_back_stick_down;
+    const double sum_in_reach_of_r_back_stick_down = across_of_r_back_stick_down*across_of_r_back_stick_down
+        + along_of_r_back_stick_down*along_of_r_back_stick_down;
+    missed += sum_in_reach_of_r_back_stick_down > 1e-12 ? 0.0 : 1.0;
     /* rotation by b that takes the arm to its target point */
-    const double along_b_negative_negative = product_in_along_b_negative_positive
-        + product_in_along_b_negative_positive_2;
-    const double across_b_negative_negative = product_in_across_b_negative_positive_2
-        - product_in_across_b_negative_positive;
-    const double sum_in_length_b_negative_negative = across_b_negative_negative*across_b_negative_negative
-        + along_b_negative_negative*along_b_negative_negative;
-    missed += sum_in_length_b_negative_negative > 0.0 ? 0.0 : 1.0;
-    const double length_b_negative_negative = softkin_lane_root(sum_in_length_b_negative_negative);
+    const double along_b_back_stick_up = product_in_along_b_back_stick_down
+        + product_in_along_b_back_stick_down_2;
+    const double across_b_back_stick_up = product_in_across_b_back_stick_down_2
+        - product_in_across_b_back_stick_down;
+    const double sum_in_length_b_back_stick_up = across_b_back_stick_up*across_b_back_stick_up
+        + along_b_back_stick_up*along_b_back_stick_up;
+    missed += sum_in_length_b_back_stick_up > 0.0 ? 0.0 : 1.0;
+    const double length_b_back_stick_up = softkin_lane_root(sum_in_length_b_back_stick_up);
     /* at a singularity: the angle of the reference */
-    const double cos_b_negative_negative = along_b_negative_negative/length_b_negative_negative;
-    const double sin_b_negative_negative = across_b_negative_negative/length_b_negative_negative;
-    const double cos_b_c_negative_negative = cos_b_negative_negative*cos_c_negative
-        + sin_b_negative_negative*sin_c_negative_positive;
-    const double sin_b_c_negative_negative = cos_c_negative*sin_b_negative_negative
-        - cos_b_negative_negative*sin_c_negative_positive;
+    const double cos_b_back_stick_up = along_b_back_stick_up/length_b_back_stick_up;
+    const double sin_b_back_stick_up = across_b_back_stick_up/length_b_back_stick_up;
+    const double cos_b_c_back_stick_up = cos_b_back_stick_up*cos_c_back
+        + sin_b_back_stick_up*sin_c_back_stick_down;
+    const double sin_b_c_back_stick_up = cos_c_back*sin_b_back_stick_up
+        - cos_b_back_stick_up*sin_c_back_stick_down;
     /* d from the sum b_c_d of angles about parallel axes */
-    const double cos_d_negative_negative = tool_z_positive*cos_b_c_negative_negative
-        + tool_x_negative*sin_b_c_negative_negative;
-    const double sin_d_negative_negative = tool_x_negative*cos_b_c_negative_negative
-        - tool_z_positive*sin_b_c_negative_negative;
+    const double cos_d_back_stick_up = tool_z_front*cos_b_c_back_stick_up + tool_x_back*sin_b_c_back_stick_up;
+    const double sin_d_back_stick_up = tool_x_back*cos_b_c_back_stick_up - tool_z_front*sin_b_c_back_stick_up;
     /* the loop of D, solved for R */
-    const double along_of_r_negative_negative = product_in_level_of_d
-        - bucket_ear_x_times_rocker_length_times_2*cos_d_negative_negative
-        - bucket_ear_z_times_rocker_length_times_2*sin_d_negative_negative;
-    const double across_of_r_negative_negative = bucket_ear_z_times_rocker_length_times_2
-        *cos_d_negative_negative - bucket_ear_x_times_rocker_length_times_2*sin_d_negative_negative;
-    const double sum_in_reach_of_r_negative_negative = across_of_r_negative_negative
-        *across_of_r_negative_negative + along_of_r_negative_negative*along_of_r_negative_negative;
-    missed += sum_in_reach_of_r_negative_negative > 1e-12 ? 0.0 : 1.0;
+    const double along_of_r_back_stick_up = product_in_level_of_d
+        - bucket_ear_x_times_rocker_length_times_2*cos_d_back_stick_up
+        - bucket_ear_z_times_rocker_length_times_2*sin_d_back_stick_up;
+    const double across_of_r_back_stick_up = bucket_ear_z_times_rocker_length_times_2*cos_d_back_stick_up
+        - bucket_ear_x_times_rocker_length_times_2*sin_d_back_stick_up;
+    const double sum_in_reach_of_r_back_stick_up = across_of_r_back_stick_up*across_of_r_back_stick_up
+        + along_of_r_back_stick_up*along_of_r_back_stick_up;
+    missed += sum_in_reach_of_r_back_stick_up > 1e-12 ? 0.0 : 1.0;
     /* the tool points across the plane in which the arm can turn it, c: out of reach */
-    const double refusal_positive = (in_plane_positive > 2e-12) && (fabs(cos_c_positive) <= bound_of_cos_c)
-        ? 0 : 3;
-    const double rest_of_motor_s2_positive_positive = sum_in_reference_level_of_b
-        - 2.0*(sum_in_rest_of_motor_s2*cos_b_positive_positive
-        + sum_in_rest_of_motor_s2_2*sin_b_positive_positive);
-    const double level_of_r_positive_positive = sum_in_level_of_r_positive_positive
-        + product_in_along_of_d*cos_d_positive_positive + product_in_across_of_d*sin_d_positive_positive;
-    const double reach_of_r_positive_positive = softkin_lane_root(sum_in_reach_of_r_positive_positive);
-    const double root_of_r_positive_positive = -softkin_lane_root((reach_of_r_positive_positive
-        - level_of_r_positive_positive)*(level_of_r_positive_positive + reach_of_r_positive_positive));
-    const double cos_r_positive_positive = (across_of_r_positive_positive*root_of_r_positive_positive
-        + along_of_r_positive_positive*level_of_r_positive_positive)/sum_in_reach_of_r_positive_positive;
-    const double sin_r_positive_positive = (across_of_r_positive_positive*level_of_r_positive_positive
-        - along_of_r_positive_positive*root_of_r_positive_positive)/sum_in_reach_of_r_positive_positive;
-    const double product_in_refusal_positive_positive_5 = (product_in_across_of_d
-        + bucket_ear_x_times_rocker_length_times_2*sin_r_positive_positive
-        + bucket_ear_z_times_rocker_length_times_2*cos_r_positive_positive)*cos_d_positive_positive;
-    const double sin_c_positive_positive_times_along_of_c = along_of_c*sin_c_positive_positive;
-    const double cos_c_positive_times_across_of_c = across_of_c*cos_c_positive;
-    const double product_in_rest_of_motor_s3_positive_positive = sum_in_rest_of_motor_s3*cos_c_positive;
-    const double product_in_rest_of_motor_s3_positive_positive_2 = sum_in_rest_of_motor_s3_2
-        *sin_c_positive_positive;
-    const double rest_of_motor_s3_positive_positive = sum_in_rest_of_motor_s3_positive_positive
-        - 2.0*(product_in_rest_of_motor_s3_positive_positive
-        + product_in_rest_of_motor_s3_positive_positive_2);
-    const double rest_of_motor_s4_positive_positive = sum_in_rest_of_motor_s4_positive_positive
-        + across_of_r_2*sin_r_positive_positive - product_in_rest_of_motor_s4*cos_r_positive_positive;
-    const double value_in_refusal_positive_positive = (rest_of_motor_s2_positive_positive >= -1e-12
-        *fabs(rest_of_motor_s2_positive_positive))
-        && (rest_of_motor_s3_positive_positive >= -1e-12*fabs(rest_of_motor_s3_positive_positive))
-        && (rest_of_motor_s4_positive_positive >= -1e-12*fabs(rest_of_motor_s4_positive_positive))
-        && (fabs(level_of_r_positive_positive) <= 1.000000000001*reach_of_r_positive_positive)
-        && (cos_c_positive_times_across_of_c
-        - sin_c_positive_positive_times_along_of_c >= -product_in_refusal_positive_positive_2)
-        && (along_of_b*sin_b_positive_positive
-        - across_of_b*cos_b_positive_positive >= -product_in_refusal_positive_positive)
-        && (across_of_r_2*cos_r_positive_positive
-        - along_of_r_2*sin_r_positive_positive >= -product_in_refusal_positive_positive_4)
-        && ((product_in_along_of_d + bucket_ear_x_times_rocker_length_times_2*cos_r_positive_positive
-        - bucket_ear_z_times_rocker_length_times_2*sin_r_positive_positive)*sin_d_positive_positive
-        - product_in_refusal_positive_positive_5 >= -product_in_refusal_positive_positive_3) ? 0 : 3;
+    const double refusal_front = (in_plane_front > 2e-12) && (fabs(cos_c_front) <= bound_of_cos_c) ? 0 : 3;
+    const double rest_of_motor_s2_front_stick_down = sum_in_reference_level_of_b
+        - 2.0*(sum_in_rest_of_motor_s2*cos_b_front_stick_down
+        + sum_in_rest_of_motor_s2_2*sin_b_front_stick_down);
+    const double level_of_r_front_stick_down = sum_in_level_of_r_front_stick_down
+        + product_in_along_of_d*cos_d_front_stick_down + product_in_across_of_d*sin_d_front_stick_down;
+    const double reach_of_r_front_stick_down = softkin_lane_root(sum_in_reach_of_r_front_stick_down);
+    const double root_of_r_front_stick_down = -softkin_lane_root((reach_of_r_front_stick_down
+        - level_of_r_front_stick_down)*(level_of_r_front_stick_down + reach_of_r_front_stick_down));
+    const double cos_r_front_stick_down = (across_of_r_front_stick_down*root_of_r_front_stick_down
+        + along_of_r_front_stick_down*level_of_r_front_stick_down)/sum_in_reach_of_r_front_stick_down;
+    const double sin_r_front_stick_down = (across_of_r_front_stick_down*level_of_r_front_stick_down
+        - along_of_r_front_stick_down*root_of_r_front_stick_down)/sum_in_reach_of_r_front_stick_down;
+    const double product_in_refusal_front_stick_down_5 = (product_in_across_of_d
+        + bucket_ear_x_times_rocker_length_times_2*sin_r_front_stick_down
+        + bucket_ear_z_times_rocker_length_times_2*cos_r_front_stick_down)*cos_d_front_stick_down;
+    const double sin_c_front_stick_down_times_along_of_c = along_of_c*sin_c_front_stick_down;
+    const double cos_c_front_times_across_of_c = across_of_c*cos_c_front;
+    const double product_in_rest_of_motor_s3_front_stick_down = sum_in_rest_of_motor_s3*cos_c_front;
+    const double product_in_rest_of_motor_s3_front_stick_down_2 = sum_in_rest_of_motor_s3_2
+        *sin_c_front_stick_down;
+    const double rest_of_motor_s3_front_stick_down = sum_in_rest_of_motor_s3_front_stick_down
+        - 2.0*(product_in_rest_of_motor_s3_front_stick_down + product_in_rest_of_motor_s3_front_stick_down_2);
+    const double rest_of_motor_s4_front_stick_down = sum_in_rest_of_motor_s4_front_stick_down
+        + across_of_r_2*sin_r_front_stick_down - product_in_rest_of_motor_s4*cos_r_front_stick_down;
+    const double value_in_refusal_front_stick_down = (rest_of_motor_s2_front_stick_down >= -1e-12
+        *fabs(rest_of_motor_s2_front_stick_down))
+        && (rest_of_motor_s3_front_stick_down >= -1e-12*fabs(rest_of_motor_s3_front_stick_down))
+        && (rest_of_motor_s4_front_stick_down >= -1e-12*fabs(rest_of_motor_s4_front_stick_down))
+        && (fabs(level_of_r_front_stick_down) <= 1.000000000001*reach_of_r_front_stick_down)
+        && (cos_c_front_times_across_of_c
+        - sin_c_front_stick_down_times_along_of_c >= -product_in_refusal_front_stick_down_2)
+        && (along_of_b*sin_b_front_stick_down
+        - across_of_b*cos_b_front_stick_down >= -product_in_refusal_front_stick_down)
+        && (across_of_r_2*cos_r_front_stick_down
+        - along_of_r_2*sin_r_front_stick_down >= -product_in_refusal_front_stick_down_4)
+        && ((product_in_along_of_d + bucket_ear_x_times_rocker_length_times_2*cos_r_front_stick_down
+        - bucket_ear_z_times_rocker_length_times_2*sin_r_front_stick_down)*sin_d_front_stick_down
+        - product_in_refusal_front_stick_down_5 >= -product_in_refusal_front_stick_down_3) ? 0 : 3;
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
      * S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity */
-    const double refusal_positive_positive = refusal_positive > 0 ? refusal_positive
-        : value_in_refusal_positive_positive;
-    const double axis_a1_positive = offset_a1
+    const double refusal_front_stick_down = refusal_front > 0 ? refusal_front
+        : value_in_refusal_front_stick_down;
+    const double axis_a1_front = offset_a1
         + softkin_lane_angle(y_by_distance_a1, x_by_distance_a1)*SOFTKIN_RADIAN;
-    const double motor_s2_positive_positive = softkin_lane_root(rest_of_motor_s2_positive_positive);
-    const double axis_s2_positive_positive = motor_s2_positive_positive + offset_s2;
-    const double motor_s3_positive_positive = softkin_lane_root(rest_of_motor_s3_positive_positive);
-    const double axis_s3_positive_positive = motor_s3_positive_positive + offset_s3;
-    const double motor_s4_positive_positive = softkin_lane_root(rest_of_motor_s4_positive_positive);
-    const double axis_s4_positive_positive = motor_s4_positive_positive + offset_s4;
-    const double rest_of_motor_s2_positive_negative = sum_in_reference_level_of_b
-        - 2.0*(sum_in_rest_of_motor_s2*cos_b_positive_negative
-        + sum_in_rest_of_motor_s2_2*sin_b_positive_negative);
-    const double level_of_r_positive_negative = sum_in_level_of_r_positive_positive
-        + product_in_along_of_d*cos_d_positive_negative + product_in_across_of_d*sin_d_positive_negative;
-    const double reach_of_r_positive_negative = softkin_lane_root(sum_in_reach_of_r_positive_negative);
-    const double root_of_r_positive_negative = -softkin_lane_root((reach_of_r_positive_negative
-        - level_of_r_positive_negative)*(level_of_r_positive_negative + reach_of_r_positive_negative));
-    const double cos_r_positive_negative = (across_of_r_positive_negative*root_of_r_positive_negative
-        + along_of_r_positive_negative*level_of_r_positive_negative)/sum_in_reach_of_r_positive_negative;
-    const double sin_r_positive_negative = (across_of_r_positive_negative*level_of_r_positive_negative
-        - along_of_r_positive_negative*root_of_r_positive_negative)/sum_in_reach_of_r_positive_negative;
-    const double product_in_refusal_positive_negative = (product_in_across_of_d
-        + bucket_ear_x_times_rocker_length_times_2*sin_r_positive_negative
-        + bucket_ear_z_times_rocker_length_times_2*cos_r_positive_negative)*cos_d_positive_negative;
-    const double rest_of_motor_s3_positive_negative = sum_in_rest_of_motor_s3_positive_positive
-        + 2.0*(product_in_rest_of_motor_s3_positive_positive_2
-        - product_in_rest_of_motor_s3_positive_positive);
-    const double rest_of_motor_s4_positive_negative = sum_in_rest_of_motor_s4_positive_positive
-        + across_of_r_2*sin_r_positive_negative - product_in_rest_of_motor_s4*cos_r_positive_negative;
-    const double value_in_refusal_positive_negative = (rest_of_motor_s2_positive_negative >= -1e-12
-        *fabs(rest_of_motor_s2_positive_negative))
-        && (rest_of_motor_s3_positive_negative >= -1e-12*fabs(rest_of_motor_s3_positive_negative))
-        && (rest_of_motor_s4_positive_negative >= -1e-12*fabs(rest_of_motor_s4_positive_negative))
-        && (fabs(level_of_r_positive_negative) <= 1.000000000001*reach_of_r_positive_negative)
-        && (cos_c_positive_times_across_of_c
-        + sin_c_positive_positive_times_along_of_c >= -product_in_refusal_positive_positive_2)
-        && (along_of_b*sin_b_positive_negative
-        - across_of_b*cos_b_positive_negative >= -product_in_refusal_positive_positive)
-        && (across_of_r_2*cos_r_positive_negative
-        - along_of_r_2*sin_r_positive_negative >= -product_in_refusal_positive_positive_4)
-        && ((product_in_along_of_d + bucket_ear_x_times_rocker_length_times_2*cos_r_positive_negative
-        - bucket_ear_z_times_rocker_length_times_2*sin_r_positive_negative)*sin_d_positive_negative
-        - product_in_refusal_positive_negative >= -product_in_refusal_positive_positive_3) ? 0 : 3;
+    const double motor_s2_front_stick_down = softkin_lane_root(rest_of_motor_s2_front_stick_down);
+    const double axis_s2_front_stick_down = motor_s2_front_stick_down + offset_s2;
+    const double motor_s3_front_stick_down = softkin_lane_root(rest_of_motor_s3_front_stick_down);
+    const double axis_s3_front_stick_down = motor_s3_front_stick_down + offset_s3;
+    const double motor_s4_front_stick_down = softkin_lane_root(rest_of_motor_s4_front_stick_down);
+    const double axis_s4_front_stick_down = motor_s4_front_stick_down + offset_s4;
+    const double rest_of_motor_s2_front_stick_up = sum_in_reference_level_of_b
+        - 2.0*(sum_in_rest_of_motor_s2*cos_b_front_stick_up + sum_in_rest_of_motor_s2_2*sin_b_front_stick_up);
+    const double level_of_r_front_stick_up = sum_in_level_of_r_front_stick_down
+        + product_in_along_of_d*cos_d_front_stick_up + product_in_across_of_d*sin_d_front_stick_up;
+    const double reach_of_r_front_stick_up = softkin_lane_root(sum_in_reach_of_r_front_stick_up);
+    const double root_of_r_front_stick_up = -softkin_lane_root((reach_of_r_front_stick_up
+        - level_of_r_front_stick_up)*(level_of_r_front_stick_up + reach_of_r_front_stick_up));
+    const double cos_r_front_stick_up = (across_of_r_front_stick_up*root_of_r_front_stick_up
+        + along_of_r_front_stick_up*level_of_r_front_stick_up)/sum_in_reach_of_r_front_stick_up;
+    const double sin_r_front_stick_up = (across_of_r_front_stick_up*level_of_r_front_stick_up
+        - along_of_r_front_stick_up*root_of_r_front_stick_up)/sum_in_reach_of_r_front_stick_up;
+    const double product_in_refusal_front_stick_up = (product_in_across_of_d
+        + bucket_ear_x_times_rocker_length_times_2*sin_r_front_stick_up
+        + bucket_ear_z_times_rocker_length_times_2*cos_r_front_stick_up)*cos_d_front_stick_up;
+    const double rest_of_motor_s3_front_stick_up = sum_in_rest_of_motor_s3_front_stick_down
+        + 2.0*(product_in_rest_of_motor_s3_front_stick_down_2 - product_in_rest_of_motor_s3_front_stick_down);
+    const double rest_of_motor_s4_front_stick_up = sum_in_rest_of_motor_s4_front_stick_down
+        + across_of_r_2*sin_r_front_stick_up - product_in_rest_of_motor_s4*cos_r_front_stick_up;
+    const double value_in_refusal_front_stick_up = (rest_of_motor_s2_front_stick_up >= -1e-12
+        *fabs(rest_of_motor_s2_front_stick_up))
+        && (rest_of_motor_s3_front_stick_up >= -1e-12*fabs(rest_of_motor_s3_front_stick_up))
+        && (rest_of_motor_s4_front_stick_up >= -1e-12*fabs(rest_of_motor_s4_front_stick_up))
+        && (fabs(level_of_r_front_stick_up) <= 1.000000000001*reach_of_r_front_stick_up)
+        && (cos_c_front_times_across_of_c
+        + sin_c_front_stick_down_times_along_of_c >= -product_in_refusal_front_stick_down_2)
+        && (along_of_b*sin_b_front_stick_up
+        - across_of_b*cos_b_front_stick_up >= -product_in_refusal_front_stick_down)
+        && (across_of_r_2*cos_r_front_stick_up
+        - along_of_r_2*sin_r_front_stick_up >= -product_in_refusal_front_stick_down_4)
+        && ((product_in_along_of_d + bucket_ear_x_times_rocker_length_times_2*cos_r_front_stick_up
+        - bucket_ear_z_times_rocker_length_times_2*sin_r_front_stick_up)*sin_d_front_stick_up
+        - product_in_refusal_front_stick_up >= -product_in_refusal_front_stick_down_3) ? 0 : 3;
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
      * S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity */
-    const double refusal_positive_negative = refusal_positive > 0 ? refusal_positive
-        : value_in_refusal_positive_negative;
-    const double motor_s2_positive_negative = softkin_lane_root(rest_of_motor_s2_positive_negative);
-    const double axis_s2_positive_negative = motor_s2_positive_negative + offset_s2;
-    const double motor_s3_positive_negative = softkin_lane_root(rest_of_motor_s3_positive_negative);
-    const double axis_s3_positive_negative = motor_s3_positive_negative + offset_s3;
-    const double motor_s4_positive_negative = softkin_lane_root(rest_of_motor_s4_positive_negative);
-    const double axis_s4_positive_negative = motor_s4_positive_negative + offset_s4;
+    const double refusal_front_stick_up = refusal_front > 0 ? refusal_front : value_in_refusal_front_stick_up;
+    const double motor_s2_front_stick_up = softkin_lane_root(rest_of_motor_s2_front_stick_up);
+    const double axis_s2_front_stick_up = motor_s2_front_stick_up + offset_s2;
+    const double motor_s3_front_stick_up = softkin_lane_root(rest_of_motor_s3_front_stick_up);
+    const double axis_s3_front_stick_up = motor_s3_front_stick_up + offset_s3;
+    const double motor_s4_front_stick_up = softkin_lane_root(rest_of_motor_s4_front_stick_up);
+    const double axis_s4_front_stick_up = motor_s4_front_stick_up + offset_s4;
     /* the tool points across the plane in which the arm can turn it, c: out of reach */
-    const double refusal_negative = (in_plane_positive > 2e-12) && (fabs(cos_c_negative) <= bound_of_cos_c)
-        ? 0 : 3;
-    const double rest_of_motor_s2_negative_positive = sum_in_reference_level_of_b
-        - 2.0*(sum_in_rest_of_motor_s2*cos_b_negative_positive
-        + sum_in_rest_of_motor_s2_2*sin_b_negative_positive);
-    const double level_of_r_negative_positive = sum_in_level_of_r_positive_positive
-        + product_in_along_of_d*cos_d_negative_positive + product_in_across_of_d*sin_d_negative_positive;
-    const double reach_of_r_negative_positive = softkin_lane_root(sum_in_reach_of_r_negative_positive);
-    const double root_of_r_negative_positive = -softkin_lane_root((reach_of_r_negative_positive
-        - level_of_r_negative_positive)*(level_of_r_negative_positive + reach_of_r_negative_positive));
-    const double cos_r_negative_positive = (across_of_r_negative_positive*root_of_r_negative_positive
-        + along_of_r_negative_positive*level_of_r_negative_positive)/sum_in_reach_of_r_negative_positive;
-    const double sin_r_negative_positive = (across_of_r_negative_positive*level_of_r_negative_positive
-        - along_of_r_negative_positive*root_of_r_negative_positive)/sum_in_reach_of_r_negative_positive;
-    const double product_in_refusal_negative_positive = (product_in_across_of_d
-        + bucket_ear_x_times_rocker_length_times_2*sin_r_negative_positive
-        + bucket_ear_z_times_rocker_length_times_2*cos_r_negative_positive)*cos_d_negative_positive;
-    const double sin_c_negative_positive_times_along_of_c = along_of_c*sin_c_negative_positive;
-    const double cos_c_negative_times_across_of_c = across_of_c*cos_c_negative;
-    const double product_in_rest_of_motor_s3_negative_positive = sum_in_rest_of_motor_s3*cos_c_negative;
-    const double product_in_rest_of_motor_s3_negative_positive_2 = sum_in_rest_of_motor_s3_2
-        *sin_c_negative_positive;
-    const double rest_of_motor_s3_negative_positive = sum_in_rest_of_motor_s3_positive_positive
-        - 2.0*(product_in_rest_of_motor_s3_negative_positive
-        + product_in_rest_of_motor_s3_negative_positive_2);
-    const double rest_of_motor_s4_negative_positive = sum_in_rest_of_motor_s4_positive_positive
-        + across_of_r_2*sin_r_negative_positive - product_in_rest_of_motor_s4*cos_r_negative_positive;
-    const double value_in_refusal_negative_positive = (rest_of_motor_s2_negative_positive >= -1e-12
-        *fabs(rest_of_motor_s2_negative_positive))
-        && (rest_of_motor_s3_negative_positive >= -1e-12*fabs(rest_of_motor_s3_negative_positive))
-        && (rest_of_motor_s4_negative_positive >= -1e-12*fabs(rest_of_motor_s4_negative_positive))
-        && (fabs(level_of_r_negative_positive) <= 1.000000000001*reach_of_r_negative_positive)
-        && (cos_c_negative_times_across_of_c
-        - sin_c_negative_positive_times_along_of_c >= -product_in_refusal_positive_positive_2)
-        && (along_of_b*sin_b_negative_positive
-        - across_of_b*cos_b_negative_positive >= -product_in_refusal_positive_positive)
-        && (across_of_r_2*cos_r_negative_positive
-        - along_of_r_2*sin_r_negative_positive >= -product_in_refusal_positive_positive_4)
-        && ((product_in_along_of_d + bucket_ear_x_times_rocker_length_times_2*cos_r_negative_positive
-        - bucket_ear_z_times_rocker_length_times_2*sin_r_negative_positive)*sin_d_negative_positive
-        - product_in_refusal_negative_positive >= -product_in_refusal_positive_positive_3) ? 0 : 3;
+    const double refusal_back = (in_plane_front > 2e-12) && (fabs(cos_c_back) <= bound_of_cos_c) ? 0 : 3;
+    const double rest_of_motor_s2_back_stick_down = sum_in_reference_level_of_b
+        - 2.0*(sum_in_rest_of_motor_s2*cos_b_back_stick_down
+        + sum_in_rest_of_motor_s2_2*sin_b_back_stick_down);
+    const double level_of_r_back_stick_down = sum_in_level_of_r_front_stick_down
+        + product_in_along_of_d*cos_d_back_stick_down + product_in_across_of_d*sin_d_back_stick_down;
+    const double reach_of_r_back_stick_down = softkin_lane_root(sum_in_reach_of_r_back_stick_down);
+    const double root_of_r_back_stick_down = -softkin_lane_root((reach_of_r_back_stick_down
+        - level_of_r_back_stick_down)*(level_of_r_back_stick_down + reach_of_r_back_stick_down));
+    const double cos_r_back_stick_down = (across_of_r_back_stick_down*root_of_r_back_stick_down
+        + along_of_r_back_stick_down*level_of_r_back_stick_down)/sum_in_reach_of_r_back_stick_down;
+    const double sin_r_back_stick_down = (across_of_r_back_stick_down*level_of_r_back_stick_down
+        - along_of_r_back_stick_down*root_of_r_back_stick_down)/sum_in_reach_of_r_back_stick_down;
+    const double product_in_refusal_back_stick_down = (product_in_across_of_d
+        + bucket_ear_x_times_rocker_length_times_2*sin_r_back_stick_down
+        + bucket_ear_z_times_rocker_length_times_2*cos_r_back_stick_down)*cos_d_back_stick_down;
+    const double sin_c_back_stick_down_times_along_of_c = along_of_c*sin_c_back_stick_down;
+    const double cos_c_back_times_across_of_c = across_of_c*cos_c_back;
+    const double sum_in_rest_of_motor_s3_times_cos_c_back = sum_in_rest_of_motor_s3*cos_c_back;
+    const double product_in_rest_of_motor_s3_back_stick_down = sum_in_rest_of_motor_s3_2
+        *sin_c_back_stick_down;
+    const double rest_of_motor_s3_back_stick_down = sum_in_rest_of_motor_s3_front_stick_down
+        - 2.0*(product_in_rest_of_motor_s3_back_stick_down + sum_in_rest_of_motor_s3_times_cos_c_back);
+    const double rest_of_motor_s4_back_stick_down = sum_in_rest_of_motor_s4_front_stick_down
+        + across_of_r_2*sin_r_back_stick_down - product_in_rest_of_motor_s4*cos_r_back_stick_down;
+    const double value_in_refusal_back_stick_down = (rest_of_motor_s2_back_stick_down >= -1e-12
+        *fabs(rest_of_motor_s2_back_stick_down))
+        && (rest_of_motor_s3_back_stick_down >= -1e-12*fabs(rest_of_motor_s3_back_stick_down))
+        && (rest_of_motor_s4_back_stick_down >= -1e-12*fabs(rest_of_motor_s4_back_stick_down))
+        && (fabs(level_of_r_back_stick_down) <= 1.000000000001*reach_of_r_back_stick_down)
+        && (cos_c_back_times_across_of_c
+        - sin_c_back_stick_down_times_along_of_c >= -product_in_refusal_front_stick_down_2)
+        && (along_of_b*sin_b_back_stick_down
+        - across_of_b*cos_b_back_stick_down >= -product_in_refusal_front_stick_down)
+        && (across_of_r_2*cos_r_back_stick_down
+        - along_of_r_2*sin_r_back_stick_down >= -product_in_refusal_front_stick_down_4)
+        && ((product_in_along_of_d + bucket_ear_x_times_rocker_length_times_2*cos_r_back_stick_down
+        - bucket_ear_z_times_rocker_length_times_2*sin_r_back_stick_down)*sin_d_back_stick_down
+        - product_in_refusal_back_stick_down >= -product_in_refusal_front_stick_down_3) ? 0 : 3;
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
      * S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity */
-    const double refusal_negative_positive = refusal_negative > 0 ? refusal_negative
-        : value_in_refusal_negative_positive;
-    const double axis_a1_negative = 180.0 + axis_a1_positive;
-    const double motor_s2_negative_positive = softkin_lane_root(rest_of_motor_s2_negative_positive);
-    const double axis_s2_negative_positive = motor_s2_negative_positive + offset_s2;
-    const double motor_s3_negative_positive = softkin_lane_root(rest_of_motor_s3_negative_positive);
-    const double axis_s3_negative_positive = motor_s3_negative_positive + offset_s3;
-    const double motor_s4_negative_positive = softkin_lane_root(rest_of_motor_s4_negative_positive);
-    const double axis_s4_negative_positive = motor_s4_negative_positive + offset_s4;
-    const double rest_of_motor_s2_negative_negative = sum_in_reference_level_of_b
-        - 2.0*(sum_in_rest_of_motor_s2*cos_b_negative_negative
-        + sum_in_rest_of_motor_s2_2*sin_b_negative_negative);
-    const double level_of_r_negative_negative = sum_in_level_of_r_positive_positive
-        + product_in_along_of_d*cos_d_negative_negative + product_in_across_of_d*sin_d_negative_negative;
-    const double reach_of_r_negative_negative = softkin_lane_root(sum_in_reach_of_r_negative_negative);
-    const double root_of_r_negative_negative = -softkin_lane_root((reach_of_r_negative_negative
-        - level_of_r_negative_negative)*(level_of_r_negative_negative + reach_of_r_negative_negative));
-    const double cos_r_negative_negative = (across_of_r_negative_negative*root_of_r_negative_negative
-        + along_of_r_negative_negative*level_of_r_negative_negative)/sum_in_reach_of_r_negative_negative;
-    const double sin_r_negative_negative = (across_of_r_negative_negative*level_of_r_negative_negative
-        - along_of_r_negative_negative*root_of_r_negative_negative)/sum_in_reach_of_r_negative_negative;
-    const double product_in_refusal_negative_negative = (product_in_across_of_d
-        + bucket_ear_x_times_rocker_length_times_2*sin_r_negative_negative
-        + bucket_ear_z_times_rocker_length_times_2*cos_r_negative_negative)*cos_d_negative_negative;
-    const double rest_of_motor_s3_negative_negative = sum_in_rest_of_motor_s3_positive_positive
-        + 2.0*(product_in_rest_of_motor_s3_negative_positive_2
-        - product_in_rest_of_motor_s3_negative_positive);
-    const double rest_of_motor_s4_negative_negative = sum_in_rest_of_motor_s4_positive_positive
-        + across_of_r_2*sin_r_negative_negative - product_in_rest_of_motor_s4*cos_r_negative_negative;
-    const double value_in_refusal_negative_negative = (rest_of_motor_s2_negative_negative >= -1e-12
-        *fabs(rest_of_motor_s2_negative_negative))
-        && (rest_of_motor_s3_negative_negative >= -1e-12*fabs(rest_of_motor_s3_negative_negative))
-        && (rest_of_motor_s4_negative_negative >= -1e-12*fabs(rest_of_motor_s4_negative_negative))
-        && (fabs(level_of_r_negative_negative) <= 1.000000000001*reach_of_r_negative_negative)
-        && (cos_c_negative_times_across_of_c
-        + sin_c_negative_positive_times_along_of_c >= -product_in_refusal_positive_positive_2)
-        && (along_of_b*sin_b_negative_negative
-        - across_of_b*cos_b_negative_negative >= -product_in_refusal_positive_positive)
-        && (across_of_r_2*cos_r_negative_negative
-        - along_of_r_2*sin_r_negative_negative >= -product_in_refusal_positive_positive_4)
-        && ((product_in_along_of_d + bucket_ear_x_times_rocker_length_times_2*cos_r_negative_negative
-        - bucket_ear_z_times_rocker_length_times_2*sin_r_negative_negative)*sin_d_negative_negative
-        - product_in_refusal_negative_negative >= -product_in_refusal_positive_positive_3) ? 0 : 3;
+    const double refusal_back_stick_down = refusal_back > 0 ? refusal_back : value_in_refusal_back_stick_down;
+    const double axis_a1_back = 180.0 + axis_a1_front;
+    const double motor_s2_back_stick_down = softkin_lane_root(rest_of_motor_s2_back_stick_down);
+    const double axis_s2_back_stick_down = motor_s2_back_stick_down + offset_s2;
+    const double motor_s3_back_stick_down = softkin_lane_root(rest_of_motor_s3_back_stick_down);
+    const double axis_s3_back_stick_down = motor_s3_back_stick_down + offset_s3;
+    const double motor_s4_back_stick_down = softkin_lane_root(rest_of_motor_s4_back_stick_down);
+    const double axis_s4_back_stick_down = motor_s4_back_stick_down + offset_s4;
+    const double rest_of_motor_s2_back_stick_up = sum_in_reference_level_of_b
+        - 2.0*(sum_in_rest_of_motor_s2*cos_b_back_stick_up + sum_in_rest_of_motor_s2_2*sin_b_back_stick_up);
+    const double level_of_r_back_stick_up = sum_in_level_of_r_front_stick_down
+        + product_in_along_of_d*cos_d_back_stick_up + product_in_across_of_d*sin_d_back_stick_up;
+    const double reach_of_r_back_stick_up = softkin_lane_root(sum_in_reach_of_r_back_stick_up);
+    const double root_of_r_back_stick_up = -softkin_lane_root((reach_of_r_back_stick_up
+        - level_of_r_back_stick_up)*(level_of_r_back_stick_up + reach_of_r_back_stick_up));
+    const double cos_r_back_stick_up = (across_of_r_back_stick_up*root_of_r_back_stick_up
+        + along_of_r_back_stick_up*level_of_r_back_stick_up)/sum_in_reach_of_r_back_stick_up;
+    const double sin_r_back_stick_up = (across_of_r_back_stick_up*level_of_r_back_stick_up
+        - along_of_r_back_stick_up*root_of_r_back_stick_up)/sum_in_reach_of_r_back_stick_up;
+    const double product_in_refusal_back_stick_up = (product_in_across_of_d
+        + bucket_ear_x_times_rocker_length_times_2*sin_r_back_stick_up
+        + bucket_ear_z_times_rocker_length_times_2*cos_r_back_stick_up)*cos_d_back_stick_up;
+    const double rest_of_motor_s3_back_stick_up = sum_in_rest_of_motor_s3_front_stick_down
+        + 2.0*(product_in_rest_of_motor_s3_back_stick_down - sum_in_rest_of_motor_s3_times_cos_c_back);
+    const double rest_of_motor_s4_back_stick_up = sum_in_rest_of_motor_s4_front_stick_down
+        + across_of_r_2*sin_r_back_stick_up - product_in_rest_of_motor_s4*cos_r_back_stick_up;
+    const double value_in_refusal_back_stick_up = (rest_of_motor_s2_back_stick_up >= -1e-12
+        *fabs(rest_of_motor_s2_back_stick_up))
+        && (rest_of_motor_s3_back_stick_up >= -1e-12*fabs(rest_of_motor_s3_back_stick_up))
+        && (rest_of_motor_s4_back_stick_up >= -1e-12*fabs(rest_of_motor_s4_back_stick_up))
+        && (fabs(level_of_r_back_stick_up) <= 1.000000000001*reach_of_r_back_stick_up)
+        && (cos_c_back_times_across_of_c
+        + sin_c_back_stick_down_times_along_of_c >= -product_in_refusal_front_stick_down_2)
+        && (along_of_b*sin_b_back_stick_up
+        - across_of_b*cos_b_back_stick_up >= -product_in_refusal_front_stick_down)
+        && (across_of_r_2*cos_r_back_stick_up
+        - along_of_r_2*sin_r_back_stick_up >= -product_in_refusal_front_stick_down_4)
+        && ((product_in_along_of_d + bucket_ear_x_times_rocker_length_times_2*cos_r_back_stick_up
+        - bucket_ear_z_times_rocker_length_times_2*sin_r_back_stick_up)*sin_d_back_stick_up
+        - product_in_refusal_back_stick_up >= -product_in_refusal_front_stick_down_3) ? 0 : 3;
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
      * S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity */
-    const double refusal_negative_negative = refusal_negative > 0 ? refusal_negative
-        : value_in_refusal_negative_negative;
-    const double motor_s2_negative_negative = softkin_lane_root(rest_of_motor_s2_negative_negative);
-    const double axis_s2_negative_negative = motor_s2_negative_negative + offset_s2;
-    const double motor_s3_negative_negative = softkin_lane_root(rest_of_motor_s3_negative_negative);
-    const double axis_s3_negative_negative = motor_s3_negative_negative + offset_s3;
-    const double motor_s4_negative_negative = softkin_lane_root(rest_of_motor_s4_negative_negative);
-    const double axis_s4_negative_negative = motor_s4_negative_negative + offset_s4;
+    const double refusal_back_stick_up = refusal_back > 0 ? refusal_back : value_in_refusal_back_stick_up;
+    const double motor_s2_back_stick_up = softkin_lane_root(rest_of_motor_s2_back_stick_up);
+    const double axis_s2_back_stick_up = motor_s2_back_stick_up + offset_s2;
+    const double motor_s3_back_stick_up = softkin_lane_root(rest_of_motor_s3_back_stick_up);
+    const double axis_s3_back_stick_up = motor_s3_back_stick_up + offset_s3;
+    const double motor_s4_back_stick_up = softkin_lane_root(rest_of_motor_s4_back_stick_up);
+    const double axis_s4_back_stick_up = motor_s4_back_stick_up + offset_s4;
     near[0][lane] = single_a1 > 0.0 ? mid_a1 : ref_a1;
-    statuses[0][lane] = refusal_positive_positive;
-    axes[0][lane] = axis_a1_positive;
-    axes[1][lane] = axis_s2_positive_positive;
-    axes[2][lane] = axis_s3_positive_positive;
-    axes[3][lane] = axis_s4_positive_positive;
-    statuses[1][lane] = refusal_negative_positive;
-    axes[4][lane] = axis_a1_negative;
-    axes[5][lane] = axis_s2_negative_positive;
-    axes[6][lane] = axis_s3_negative_positive;
-    axes[7][lane] = axis_s4_negative_positive;
-    statuses[2][lane] = refusal_positive_negative;
-    axes[8][lane] = axis_a1_positive;
-    axes[9][lane] = axis_s2_positive_negative;
-    axes[10][lane] = axis_s3_positive_negative;
-    axes[11][lane] = axis_s4_positive_negative;
-    statuses[3][lane] = refusal_negative_negative;
-    axes[12][lane] = axis_a1_negative;
-    axes[13][lane] = axis_s2_negative_negative;
-    axes[14][lane] = axis_s3_negative_negative;
-    axes[15][lane] = axis_s4_negative_negative;
+    statuses[0][lane] = refusal_front_stick_down;
+    axes[0][lane] = axis_a1_front;
+    axes[1][lane] = axis_s2_front_stick_down;
+    axes[2][lane] = axis_s3_front_stick_down;
+    axes[3][lane] = axis_s4_front_stick_down;
+    statuses[1][lane] = refusal_back_stick_down;
+    axes[4][lane] = axis_a1_back;
+    axes[5][lane] = axis_s2_back_stick_down;
+    axes[6][lane] = axis_s3_back_stick_down;
+    axes[7][lane] = axis_s4_back_stick_down;
+    statuses[2][lane] = refusal_front_stick_up;
+    axes[8][lane] = axis_a1_front;
+    axes[9][lane] = axis_s2_front_stick_up;
+    axes[10][lane] = axis_s3_front_stick_up;
+    axes[11][lane] = axis_s4_front_stick_up;
+    statuses[3][lane] = refusal_back_stick_up;
+    axes[12][lane] = axis_a1_back;
+    axes[13][lane] = axis_s2_back_stick_up;
+    axes[14][lane] = axis_s3_back_stick_up;
+    axes[15][lane] = axis_s4_back_stick_up;
     misses[lane] = missed;
   }
 }

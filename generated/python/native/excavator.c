@@ -132,8 +132,8 @@ static const softkin_parameter PARAMETERS[] = {
 };
 
 static const softkin_byte CONFIGURATION[] = {
-  {"shoulder_1", "positive", "negative", 1},
-  {"elbow_1", "positive", "negative", 1},
+  {"shoulder", "front", "back", 1},
+  {"elbow", "stick_down", "stick_up", 1},
   {"A1", "", "", 0},
 };
 
@@ -145,8 +145,8 @@ static const softkin_limit LIMITS[] = {
 };
 
 static const softkin_margin MARGINS[] = {
-  {"shoulder_1", "type 1"},
-  {"elbow_1", "type 1"},
+  {"teeth_on_a1", "type 1"},
+  {"elbow", "type 1"},
   {"crank_s2", "type 1"},
   {"lever_b", "type 2"},
   {"crank_s3", "type 1"},
@@ -267,7 +267,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double z = z_at_d - k->bucket_length*sin_b_c_d;
   const double r13_at_b_c_d = cos_a1*sin_b_c_d;
   const double r23_at_b_c_d = sin_a1*sin_b_c_d;
-  const double branch_shoulder_1 = k->one_by_machine_scale*(x*cos_a1 + y*sin_a1);
+  const double branch_shoulder = k->one_by_machine_scale*(x*cos_a1 + y*sin_a1);
   const double sin_c = sin(c);
   frame->position[0] = x;
   frame->position[1] = y;
@@ -281,7 +281,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   frame->rotation[2][0] = -sin_b_c_d;
   frame->rotation[2][1] = 0.0;
   frame->rotation[2][2] = cos_b_c_d;
-  margins[0] = branch_shoulder_1;
+  margins[0] = branch_shoulder;
   margins[1] = sin_c;
   return SOFTKIN_OK;
 }
@@ -293,23 +293,23 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2],
       r13 = frame->rotation[0][2], r23 = frame->rotation[1][2], r33 = frame->rotation[2][2],
       ref_a1 = reference[0], ref_s2 = reference[1];
-  const int sigma_shoulder_1 = signs[0], sigma_elbow_1 = signs[1], turn_a1 = turns[0];
+  const int sigma_shoulder = signs[0], sigma_elbow = signs[1], turn_a1 = turns[0];
   if (!softkin_are_reasonable((const double[]){x, y, z, ref_a1, ref_s2}, 5)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
-  const double sign_shoulder_1 = sigma_shoulder_1; /* shoulder_1: +1 positive, -1 negative */
+  const double sign_shoulder = sigma_shoulder; /* shoulder: +1 front, -1 back */
   const double distance_a1 = sqrt(x*x + y*y); /* distance of the point from the axis of a1 */
   double cos_a1, sin_a1;
   if (distance_a1 > k->machine_scale_times_free_angle) {
-    const double along_a1 = sign_shoulder_1*x; /* rotation by a1 that points the arm at the point */
+    const double along_a1 = sign_shoulder*x; /* rotation by a1 that points the arm at the point */
     cos_a1 = along_a1/distance_a1; /* at a singularity: the angle of the reference */
-    const double across_a1 = sign_shoulder_1*y;
+    const double across_a1 = sign_shoulder*y;
     sin_a1 = across_a1/distance_a1;
   } else {
     const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     const double heading_length = sqrt(r13*r13 + r23*r23);
-    const double free_a1 = heading_length > 2e-12
-        ? softkin_angle_of(-r23*sign_shoulder_1, -r13*sign_shoulder_1) : reference_a1;
+    const double free_a1 = heading_length > 2e-12 ? softkin_angle_of(-r23*sign_shoulder, -r13*sign_shoulder)
+        : reference_a1;
     cos_a1 = cos(free_a1); /* at a singularity: the angle of the reference */
     sin_a1 = sin(free_a1);
   }
@@ -322,7 +322,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         "the tool points across the plane in which the arm can turn it", "", 0.0, 0);
   }
   /* how far ahead of the axis the point is; negative: behind it */
-  const double ahead_a1 = distance_a1*sign_shoulder_1;
+  const double ahead_a1 = distance_a1*sign_shoulder;
   const double tool_z = r33/in_plane;
   /* coordinate of the point that the remaining links must reach */
   const double wrist_x_from_a1 = ahead_a1 - k->boom_foot_x - k->bucket_length*tool_z;
@@ -344,10 +344,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         (reach - k->boom_length_plus_stick_length > fabs(k->boom_length_minus_stick_length) - reach ? reach
         - k->boom_length_plus_stick_length : fabs(k->boom_length_minus_stick_length) - reach), 0);
   }
-  const double sign_elbow_1 = sigma_elbow_1; /* elbow_1: +1 positive, -1 negative */
+  const double sign_elbow = sigma_elbow; /* elbow: +1 stick_down, -1 stick_up */
   /* sine squared, times the squared scale */
   const double sine_square_c = one_less_cos_c*one_plus_cos_c;
-  const double sin_c = softkin_root(sine_square_c)*k->half_by_boom_length_by_stick_length*sign_elbow_1;
+  const double sin_c = softkin_root(sine_square_c)*k->half_by_boom_length_by_stick_length*sign_elbow;
   double cos_b, sin_b;
   if (reach > k->machine_scale_times_free_angle) {
     const double arm_along_b = k->boom_length + k->stick_length*cos_c;
@@ -602,7 +602,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double y_at_d = y_at_c + r21_at_b_c*k->stick_length;
   const double r21_at_b_c_d = cos_b_c_d*sin_a1;
   const double y = y_at_d + k->bucket_length*r21_at_b_c_d;
-  const double margin_shoulder_1 = k->one_by_machine_scale*(x*cos_a1 + y*sin_a1);
+  const double margin_teeth_on_a1 = k->one_by_machine_scale*(x*cos_a1 + y*sin_a1);
   const double sin_c = sin(c);
   const double margin_crank_s2 = -motor_s2*k->quotient_in_margin_crank_s2;
   const double margin_lever_b = (k->across_of_b*cos_b - k->along_of_b*sin(b))*k->quotient_in_margin_lever_b;
@@ -613,7 +613,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
       *k->quotient_in_margin_lever_r;
   const double margin_crank_r = k->half_by_rocker_length_by_rod_length*shared_sum;
   const double margin_lever_d = (across_of_d*cos_of_d - along_of_d*sin_of_d)*k->quotient_in_margin_lever_d;
-  margins[0] = margin_shoulder_1;
+  margins[0] = margin_teeth_on_a1;
   margins[1] = sin_c;
   margins[2] = margin_crank_s2;
   margins[3] = margin_lever_b;
@@ -796,120 +796,118 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double boom_cylinder_base_z_squared = k->boom_cylinder_base_z*k->boom_cylinder_base_z;
   const double boom_cylinder_eye_x_squared = k->boom_cylinder_eye_x*k->boom_cylinder_eye_x;
   const double boom_cylinder_eye_z_squared = k->boom_cylinder_eye_z*k->boom_cylinder_eye_z;
-  const double product_in_refusal_positive_positive = 2e-12
+  const double product_in_refusal_front_stick_down = 2e-12
       *softkin_root(boom_cylinder_base_x_squared + boom_cylinder_base_z_squared)
       *softkin_root(boom_cylinder_eye_x_squared + boom_cylinder_eye_z_squared);
   const double stick_cylinder_base_x_squared = k->stick_cylinder_base_x*k->stick_cylinder_base_x;
   const double stick_cylinder_base_z_squared = k->stick_cylinder_base_z*k->stick_cylinder_base_z;
   const double stick_cylinder_eye_x_squared = k->stick_cylinder_eye_x*k->stick_cylinder_eye_x;
   const double stick_cylinder_eye_z_squared = k->stick_cylinder_eye_z*k->stick_cylinder_eye_z;
-  const double product_in_refusal_positive_positive_2 = 2e-12
+  const double product_in_refusal_front_stick_down_2 = 2e-12
       *softkin_root(stick_cylinder_base_x_squared + stick_cylinder_base_z_squared)
       *softkin_root(stick_cylinder_eye_x_squared + stick_cylinder_eye_z_squared);
   const double bucket_ear_x_squared = k->bucket_ear_x*k->bucket_ear_x;
   const double bucket_ear_z_squared = k->bucket_ear_z*k->bucket_ear_z;
-  const double product_in_refusal_positive_positive_3 = 2e-12
+  const double product_in_refusal_front_stick_down_3 = 2e-12
       *softkin_root(bucket_ear_x_squared + bucket_ear_z_squared)*k->rod_length;
   const double rocker_pivot_x_squared = k->rocker_pivot_x*k->rocker_pivot_x;
   const double bucket_cylinder_base_x_squared = k->bucket_cylinder_base_x*k->bucket_cylinder_base_x;
   const double bucket_cylinder_base_z_squared = k->bucket_cylinder_base_z*k->bucket_cylinder_base_z;
-  const double product_in_refusal_positive_positive_4_2 = 2.0*k->bucket_cylinder_base_x*k->rocker_pivot_x;
-  const double product_in_refusal_positive_positive_4 = 2e-12
+  const double product_in_refusal_front_stick_down_4_2 = 2.0*k->bucket_cylinder_base_x*k->rocker_pivot_x;
+  const double product_in_refusal_front_stick_down_4 = 2e-12
       *softkin_root(bucket_cylinder_base_x_squared + bucket_cylinder_base_z_squared + rocker_pivot_x_squared
-      - product_in_refusal_positive_positive_4_2)*k->rocker_length;
+      - product_in_refusal_front_stick_down_4_2)*k->rocker_length;
   const double sum_in_reference_level_of_b = boom_cylinder_base_x_squared + boom_cylinder_base_z_squared
       + boom_cylinder_eye_x_squared + boom_cylinder_eye_z_squared;
-  const double sum_in_rest_of_motor_s3_positive_positive = stick_cylinder_base_x_squared
+  const double sum_in_rest_of_motor_s3_front_stick_down = stick_cylinder_base_x_squared
       + stick_cylinder_base_z_squared + stick_cylinder_eye_x_squared + stick_cylinder_eye_z_squared;
   const double rocker_length_squared = k->rocker_length*k->rocker_length;
-  const double sum_in_level_of_r_positive_positive = k->rod_length*k->rod_length - bucket_ear_x_squared
+  const double sum_in_level_of_r_front_stick_down = k->rod_length*k->rod_length - bucket_ear_x_squared
       - bucket_ear_z_squared - rocker_length_squared - rocker_pivot_x_squared;
-  const double sum_in_rest_of_motor_s4_positive_positive = bucket_cylinder_base_x_squared
+  const double sum_in_rest_of_motor_s4_front_stick_down = bucket_cylinder_base_x_squared
       + bucket_cylinder_base_z_squared + rocker_length_squared + rocker_pivot_x_squared
-      - product_in_refusal_positive_positive_4_2;
+      - product_in_refusal_front_stick_down_4_2;
   const double distance_a1 = sqrt(x*x + y*y); /* distance of the point from the axis of a1 */
-  double cos_a1_positive, sin_a1_positive, cos_a1_negative, sin_a1_negative;
+  double cos_a1_front, sin_a1_front, cos_a1_back, sin_a1_back;
   if (distance_a1 > k->machine_scale_times_free_angle) {
-    cos_a1_positive = x/distance_a1; /* at a singularity: the angle of the reference */
-    sin_a1_positive = y/distance_a1;
-    cos_a1_negative = -cos_a1_positive; /* at a singularity: the angle of the reference */
-    sin_a1_negative = -sin_a1_positive;
+    cos_a1_front = x/distance_a1; /* at a singularity: the angle of the reference */
+    sin_a1_front = y/distance_a1;
+    cos_a1_back = -cos_a1_front; /* at a singularity: the angle of the reference */
+    sin_a1_back = -sin_a1_front;
   } else {
     const double heading_length = sqrt(r13*r13 + r23*r23);
-    double free_a1_positive, free_a1_negative;
+    double free_a1_front, free_a1_back;
     if (heading_length > 2e-12) {
-      free_a1_positive = -softkin_angle_of(r23, -r13);
-      free_a1_negative = softkin_angle_of(r23, r13);
+      free_a1_front = -softkin_angle_of(r23, -r13);
+      free_a1_back = softkin_angle_of(r23, r13);
     } else {
-      free_a1_positive = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
-      free_a1_negative = free_a1_positive;
+      free_a1_front = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
+      free_a1_back = free_a1_front;
     }
-    cos_a1_positive = cos(free_a1_positive); /* at a singularity: the angle of the reference */
-    sin_a1_positive = sin(free_a1_positive);
-    cos_a1_negative = cos(free_a1_negative); /* at a singularity: the angle of the reference */
-    sin_a1_negative = sin(free_a1_negative);
+    cos_a1_front = cos(free_a1_front); /* at a singularity: the angle of the reference */
+    sin_a1_front = sin(free_a1_front);
+    cos_a1_back = cos(free_a1_back); /* at a singularity: the angle of the reference */
+    sin_a1_back = sin(free_a1_back);
   }
-  const double r13_from_a1_positive = r13*cos_a1_positive + r23*sin_a1_positive;
+  const double r13_from_a1_front = r13*cos_a1_front + r23*sin_a1_front;
   const double r33_squared = r33*r33;
   /* length of the commanded direction in the plane in which the arm turns the tool */
-  const double in_plane_positive = softkin_root(r33_squared + r13_from_a1_positive*r13_from_a1_positive);
-  const double in_plane_divisor_positive = in_plane_positive > 2e-12 ? in_plane_positive : 1.0;
-  const double tool_z_positive = r33/in_plane_divisor_positive;
+  const double in_plane_front = softkin_root(r33_squared + r13_from_a1_front*r13_from_a1_front);
+  const double in_plane_divisor_front = in_plane_front > 2e-12 ? in_plane_front : 1.0;
+  const double tool_z_front = r33/in_plane_divisor_front;
   /* coordinate of the point that the remaining links must reach */
-  const double wrist_x_from_a1_positive = distance_a1 - k->boom_foot_x - k->bucket_length*tool_z_positive;
+  const double wrist_x_from_a1_front = distance_a1 - k->boom_foot_x - k->bucket_length*tool_z_front;
   /* the nearest direction that the arm can reach */
-  const double tool_x_positive = r13_from_a1_positive/in_plane_divisor_positive;
+  const double tool_x_front = r13_from_a1_front/in_plane_divisor_front;
   const double z_minus_boom_foot_z = z - k->boom_foot_z;
   /* coordinate of the point that the remaining links must reach */
-  const double wrist_z_from_a1_positive = z_minus_boom_foot_z + k->bucket_length*tool_x_positive;
+  const double wrist_z_from_a1_front = z_minus_boom_foot_z + k->bucket_length*tool_x_front;
   /* distance that the remaining links must span */
-  const double reach_positive = sqrt(wrist_x_from_a1_positive*wrist_x_from_a1_positive
-      + wrist_z_from_a1_positive*wrist_z_from_a1_positive);
+  const double reach_front = sqrt(wrist_x_from_a1_front*wrist_x_from_a1_front
+      + wrist_z_from_a1_front*wrist_z_from_a1_front);
   /* law of cosines for c (x_from_a1² + z_from_a1²): 1 - cosine, times a scale */
-  const double one_less_cos_c_positive = (k->boom_length_plus_stick_length + reach_positive)
-      *(k->boom_length_plus_stick_length - reach_positive);
+  const double one_less_cos_c_front = (k->boom_length_plus_stick_length + reach_front)
+      *(k->boom_length_plus_stick_length - reach_front);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_c_positive = (reach_positive - k->boom_length_minus_stick_length)
-      *(k->boom_length_minus_stick_length + reach_positive);
-  const double cos_c_positive = (one_plus_cos_c_positive - one_less_cos_c_positive)*k->quotient_in_cos_c;
+  const double one_plus_cos_c_front = (reach_front - k->boom_length_minus_stick_length)
+      *(k->boom_length_minus_stick_length + reach_front);
+  const double cos_c_front = (one_plus_cos_c_front - one_less_cos_c_front)*k->quotient_in_cos_c;
   /* sine squared, times the squared scale */
-  const double sine_square_c_positive = one_less_cos_c_positive*one_plus_cos_c_positive;
-  const double sin_c_positive_positive = softkin_root(sine_square_c_positive)
+  const double sine_square_c_front = one_less_cos_c_front*one_plus_cos_c_front;
+  const double sin_c_front_stick_down = softkin_root(sine_square_c_front)
       *k->half_by_boom_length_by_stick_length;
-  double cos_b_positive_positive, sin_b_positive_positive, cos_b_positive_negative, sin_b_positive_negative;
-  if (reach_positive > k->machine_scale_times_free_angle) {
-    const double arm_across_b_positive_positive = k->stick_length*sin_c_positive_positive;
-    const double product_in_along_b_positive_positive = arm_across_b_positive_positive
-        *wrist_z_from_a1_positive;
-    const double arm_along_b_positive = k->boom_length + k->stick_length*cos_c_positive;
-    const double product_in_along_b_positive_positive_2 = arm_along_b_positive*wrist_x_from_a1_positive;
+  double cos_b_front_stick_down, sin_b_front_stick_down, cos_b_front_stick_up, sin_b_front_stick_up;
+  if (reach_front > k->machine_scale_times_free_angle) {
+    const double arm_across_b_front_stick_down = k->stick_length*sin_c_front_stick_down;
+    const double product_in_along_b_front_stick_down = arm_across_b_front_stick_down*wrist_z_from_a1_front;
+    const double arm_along_b_front = k->boom_length + k->stick_length*cos_c_front;
+    const double product_in_along_b_front_stick_down_2 = arm_along_b_front*wrist_x_from_a1_front;
     /* rotation by b that takes the arm to its target point */
-    const double along_b_positive_positive = product_in_along_b_positive_positive_2
-        - product_in_along_b_positive_positive;
-    const double product_in_across_b_positive_positive = arm_along_b_positive*wrist_z_from_a1_positive;
-    const double product_in_across_b_positive_positive_2 = arm_across_b_positive_positive
-        *wrist_x_from_a1_positive;
-    const double across_b_positive_positive = -product_in_across_b_positive_positive
-        - product_in_across_b_positive_positive_2;
-    const double sum_in_length_b_positive_positive = across_b_positive_positive*across_b_positive_positive
-        + along_b_positive_positive*along_b_positive_positive;
-    const double length_b_positive_positive = sum_in_length_b_positive_positive > 0.0
-        ? softkin_root(sum_in_length_b_positive_positive) : 1.0;
+    const double along_b_front_stick_down = product_in_along_b_front_stick_down_2
+        - product_in_along_b_front_stick_down;
+    const double product_in_across_b_front_stick_down = arm_along_b_front*wrist_z_from_a1_front;
+    const double product_in_across_b_front_stick_down_2 = arm_across_b_front_stick_down*wrist_x_from_a1_front;
+    const double across_b_front_stick_down = -product_in_across_b_front_stick_down
+        - product_in_across_b_front_stick_down_2;
+    const double sum_in_length_b_front_stick_down = across_b_front_stick_down*across_b_front_stick_down
+        + along_b_front_stick_down*along_b_front_stick_down;
+    const double length_b_front_stick_down = sum_in_length_b_front_stick_down > 0.0
+        ? softkin_root(sum_in_length_b_front_stick_down) : 1.0;
     /* at a singularity: the angle of the reference */
-    cos_b_positive_positive = along_b_positive_positive/length_b_positive_positive;
-    sin_b_positive_positive = across_b_positive_positive/length_b_positive_positive;
+    cos_b_front_stick_down = along_b_front_stick_down/length_b_front_stick_down;
+    sin_b_front_stick_down = across_b_front_stick_down/length_b_front_stick_down;
     /* rotation by b that takes the arm to its target point */
-    const double along_b_positive_negative = product_in_along_b_positive_positive
-        + product_in_along_b_positive_positive_2;
-    const double across_b_positive_negative = product_in_across_b_positive_positive_2
-        - product_in_across_b_positive_positive;
-    const double sum_in_length_b_positive_negative = across_b_positive_negative*across_b_positive_negative
-        + along_b_positive_negative*along_b_positive_negative;
-    const double length_b_positive_negative = sum_in_length_b_positive_negative > 0.0
-        ? softkin_root(sum_in_length_b_positive_negative) : 1.0;
+    const double along_b_front_stick_up = product_in_along_b_front_stick_down
+        + product_in_along_b_front_stick_down_2;
+    const double across_b_front_stick_up = product_in_across_b_front_stick_down_2
+        - product_in_across_b_front_stick_down;
+    const double sum_in_length_b_front_stick_up = across_b_front_stick_up*across_b_front_stick_up
+        + along_b_front_stick_up*along_b_front_stick_up;
+    const double length_b_front_stick_up = sum_in_length_b_front_stick_up > 0.0
+        ? softkin_root(sum_in_length_b_front_stick_up) : 1.0;
     /* at a singularity: the angle of the reference */
-    cos_b_positive_negative = along_b_positive_negative/length_b_positive_negative;
-    sin_b_positive_negative = across_b_positive_negative/length_b_positive_negative;
+    cos_b_front_stick_up = along_b_front_stick_up/length_b_front_stick_up;
+    sin_b_front_stick_up = across_b_front_stick_up/length_b_front_stick_up;
   } else {
     const double ref_motor_s2 = ref_s2 - k->offset_s2;
     const double reference_level_of_b = ref_motor_s2*ref_motor_s2 - sum_in_reference_level_of_b;
@@ -920,221 +918,218 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         (k->across_of_b*reference_root_of_b + k->along_of_b*reference_level_of_b)*k->one_by_divisor_of_b);
     const double cos_of_reference_s2 = cos(reference_s2);
     const double sin_of_reference_s2 = sin(reference_s2);
-    cos_b_positive_positive = cos_of_reference_s2; /* at a singularity: the angle of the reference */
-    sin_b_positive_positive = sin_of_reference_s2;
-    cos_b_positive_negative = cos_of_reference_s2; /* at a singularity: the angle of the reference */
-    sin_b_positive_negative = sin_of_reference_s2;
+    cos_b_front_stick_down = cos_of_reference_s2; /* at a singularity: the angle of the reference */
+    sin_b_front_stick_down = sin_of_reference_s2;
+    cos_b_front_stick_up = cos_of_reference_s2; /* at a singularity: the angle of the reference */
+    sin_b_front_stick_up = sin_of_reference_s2;
   }
-  const double rest_of_motor_s2_positive_positive = sum_in_reference_level_of_b
-      - 2.0*(k->sum_in_rest_of_motor_s2*cos_b_positive_positive
-      + k->sum_in_rest_of_motor_s2_2*sin_b_positive_positive);
-  const double cos_b_c_positive_positive = cos_b_positive_positive*cos_c_positive
-      - sin_b_positive_positive*sin_c_positive_positive;
-  const double sin_b_c_positive_positive = cos_b_positive_positive*sin_c_positive_positive
-      + cos_c_positive*sin_b_positive_positive;
+  const double rest_of_motor_s2_front_stick_down = sum_in_reference_level_of_b
+      - 2.0*(k->sum_in_rest_of_motor_s2*cos_b_front_stick_down
+      + k->sum_in_rest_of_motor_s2_2*sin_b_front_stick_down);
+  const double cos_b_c_front_stick_down = cos_b_front_stick_down*cos_c_front
+      - sin_b_front_stick_down*sin_c_front_stick_down;
+  const double sin_b_c_front_stick_down = cos_b_front_stick_down*sin_c_front_stick_down
+      + cos_c_front*sin_b_front_stick_down;
   /* d from the sum b_c_d of angles about parallel axes */
-  const double cos_d_positive_positive = tool_z_positive*cos_b_c_positive_positive
-      + tool_x_positive*sin_b_c_positive_positive;
-  const double sin_d_positive_positive = tool_x_positive*cos_b_c_positive_positive
-      - tool_z_positive*sin_b_c_positive_positive;
-  const double level_of_r_positive_positive = sum_in_level_of_r_positive_positive
-      + k->product_in_along_of_d*cos_d_positive_positive + k->product_in_across_of_d*sin_d_positive_positive;
+  const double cos_d_front_stick_down = tool_z_front*cos_b_c_front_stick_down
+      + tool_x_front*sin_b_c_front_stick_down;
+  const double sin_d_front_stick_down = tool_x_front*cos_b_c_front_stick_down
+      - tool_z_front*sin_b_c_front_stick_down;
+  const double level_of_r_front_stick_down = sum_in_level_of_r_front_stick_down
+      + k->product_in_along_of_d*cos_d_front_stick_down + k->product_in_across_of_d*sin_d_front_stick_down;
   /* the loop of D, solved for R */
-  const double along_of_r_positive_positive = k->product_in_level_of_d
-      - k->bucket_ear_x_times_rocker_length_times_2*cos_d_positive_positive
-      - k->bucket_ear_z_times_rocker_length_times_2*sin_d_positive_positive;
-  const double across_of_r_positive_positive = k->bucket_ear_z_times_rocker_length_times_2
-      *cos_d_positive_positive - k->bucket_ear_x_times_rocker_length_times_2*sin_d_positive_positive;
-  const double sum_in_reach_of_r_positive_positive = across_of_r_positive_positive
-      *across_of_r_positive_positive + along_of_r_positive_positive*along_of_r_positive_positive;
-  const double reach_of_r_positive_positive = softkin_root(sum_in_reach_of_r_positive_positive);
-  const double root_of_r_positive_positive = -softkin_root((reach_of_r_positive_positive
-      - level_of_r_positive_positive)*(level_of_r_positive_positive + reach_of_r_positive_positive));
-  const double divisor_of_r_positive_positive = sum_in_reach_of_r_positive_positive > 1e-12
-      ? sum_in_reach_of_r_positive_positive : 1.0;
-  const double cos_r_positive_positive = (across_of_r_positive_positive*root_of_r_positive_positive
-      + along_of_r_positive_positive*level_of_r_positive_positive)/divisor_of_r_positive_positive;
-  const double sin_r_positive_positive = (across_of_r_positive_positive*level_of_r_positive_positive
-      - along_of_r_positive_positive*root_of_r_positive_positive)/divisor_of_r_positive_positive;
-  const double product_in_rest_of_motor_s3_positive_positive = k->sum_in_rest_of_motor_s3*cos_c_positive;
-  const double product_in_rest_of_motor_s3_positive_positive_2 = k->sum_in_rest_of_motor_s3_2
-      *sin_c_positive_positive;
-  const double rest_of_motor_s3_positive_positive = sum_in_rest_of_motor_s3_positive_positive
-      - 2.0*(product_in_rest_of_motor_s3_positive_positive + product_in_rest_of_motor_s3_positive_positive_2);
-  const double rest_of_motor_s4_positive_positive = sum_in_rest_of_motor_s4_positive_positive
-      + k->across_of_r_2*sin_r_positive_positive - k->product_in_rest_of_motor_s4*cos_r_positive_positive;
-  const double rest_of_motor_s2_positive_negative = sum_in_reference_level_of_b
-      - 2.0*(k->sum_in_rest_of_motor_s2*cos_b_positive_negative
-      + k->sum_in_rest_of_motor_s2_2*sin_b_positive_negative);
-  const double cos_b_c_positive_negative = cos_b_positive_negative*cos_c_positive
-      + sin_b_positive_negative*sin_c_positive_positive;
-  const double sin_b_c_positive_negative = cos_c_positive*sin_b_positive_negative
-      - cos_b_positive_negative*sin_c_positive_positive;
+  const double along_of_r_front_stick_down = k->product_in_level_of_d
+      - k->bucket_ear_x_times_rocker_length_times_2*cos_d_front_stick_down
+      - k->bucket_ear_z_times_rocker_length_times_2*sin_d_front_stick_down;
+  const double across_of_r_front_stick_down = k->bucket_ear_z_times_rocker_length_times_2
+      *cos_d_front_stick_down - k->bucket_ear_x_times_rocker_length_times_2*sin_d_front_stick_down;
+  const double sum_in_reach_of_r_front_stick_down = across_of_r_front_stick_down*across_of_r_front_stick_down
+      + along_of_r_front_stick_down*along_of_r_front_stick_down;
+  const double reach_of_r_front_stick_down = softkin_root(sum_in_reach_of_r_front_stick_down);
+  const double root_of_r_front_stick_down = -softkin_root((reach_of_r_front_stick_down
+      - level_of_r_front_stick_down)*(level_of_r_front_stick_down + reach_of_r_front_stick_down));
+  const double divisor_of_r_front_stick_down = sum_in_reach_of_r_front_stick_down > 1e-12
+      ? sum_in_reach_of_r_front_stick_down : 1.0;
+  const double cos_r_front_stick_down = (across_of_r_front_stick_down*root_of_r_front_stick_down
+      + along_of_r_front_stick_down*level_of_r_front_stick_down)/divisor_of_r_front_stick_down;
+  const double sin_r_front_stick_down = (across_of_r_front_stick_down*level_of_r_front_stick_down
+      - along_of_r_front_stick_down*root_of_r_front_stick_down)/divisor_of_r_front_stick_down;
+  const double product_in_rest_of_motor_s3_front_stick_down = k->sum_in_rest_of_motor_s3*cos_c_front;
+  const double product_in_rest_of_motor_s3_front_stick_down_2 = k->sum_in_rest_of_motor_s3_2
+      *sin_c_front_stick_down;
+  const double rest_of_motor_s3_front_stick_down = sum_in_rest_of_motor_s3_front_stick_down
+      - 2.0*(product_in_rest_of_motor_s3_front_stick_down + product_in_rest_of_motor_s3_front_stick_down_2);
+  const double rest_of_motor_s4_front_stick_down = sum_in_rest_of_motor_s4_front_stick_down
+      + k->across_of_r_2*sin_r_front_stick_down - k->product_in_rest_of_motor_s4*cos_r_front_stick_down;
+  const double rest_of_motor_s2_front_stick_up = sum_in_reference_level_of_b
+      - 2.0*(k->sum_in_rest_of_motor_s2*cos_b_front_stick_up
+      + k->sum_in_rest_of_motor_s2_2*sin_b_front_stick_up);
+  const double cos_b_c_front_stick_up = cos_b_front_stick_up*cos_c_front
+      + sin_b_front_stick_up*sin_c_front_stick_down;
+  const double sin_b_c_front_stick_up = cos_c_front*sin_b_front_stick_up
+      - cos_b_front_stick_up*sin_c_front_stick_down;
   /* d from the sum b_c_d of angles about parallel axes */
-  const double cos_d_positive_negative = tool_z_positive*cos_b_c_positive_negative
-      + tool_x_positive*sin_b_c_positive_negative;
-  const double sin_d_positive_negative = tool_x_positive*cos_b_c_positive_negative
-      - tool_z_positive*sin_b_c_positive_negative;
-  const double level_of_r_positive_negative = sum_in_level_of_r_positive_positive
-      + k->product_in_along_of_d*cos_d_positive_negative + k->product_in_across_of_d*sin_d_positive_negative;
+  const double cos_d_front_stick_up = tool_z_front*cos_b_c_front_stick_up
+      + tool_x_front*sin_b_c_front_stick_up;
+  const double sin_d_front_stick_up = tool_x_front*cos_b_c_front_stick_up
+      - tool_z_front*sin_b_c_front_stick_up;
+  const double level_of_r_front_stick_up = sum_in_level_of_r_front_stick_down
+      + k->product_in_along_of_d*cos_d_front_stick_up + k->product_in_across_of_d*sin_d_front_stick_up;
   /* the loop of D, solved for R */
-  const double along_of_r_positive_negative = k->product_in_level_of_d
-      - k->bucket_ear_x_times_rocker_length_times_2*cos_d_positive_negative
-      - k->bucket_ear_z_times_rocker_length_times_2*sin_d_positive_negative;
-  const double across_of_r_positive_negative = k->bucket_ear_z_times_rocker_length_times_2
-      *cos_d_positive_negative - k->bucket_ear_x_times_rocker_length_times_2*sin_d_positive_negative;
-  const double sum_in_reach_of_r_positive_negative = across_of_r_positive_negative
-      *across_of_r_positive_negative + along_of_r_positive_negative*along_of_r_positive_negative;
-  const double reach_of_r_positive_negative = softkin_root(sum_in_reach_of_r_positive_negative);
-  const double root_of_r_positive_negative = -softkin_root((reach_of_r_positive_negative
-      - level_of_r_positive_negative)*(level_of_r_positive_negative + reach_of_r_positive_negative));
-  const double divisor_of_r_positive_negative = sum_in_reach_of_r_positive_negative > 1e-12
-      ? sum_in_reach_of_r_positive_negative : 1.0;
-  const double cos_r_positive_negative = (across_of_r_positive_negative*root_of_r_positive_negative
-      + along_of_r_positive_negative*level_of_r_positive_negative)/divisor_of_r_positive_negative;
-  const double sin_r_positive_negative = (across_of_r_positive_negative*level_of_r_positive_negative
-      - along_of_r_positive_negative*root_of_r_positive_negative)/divisor_of_r_positive_negative;
-  const double rest_of_motor_s3_positive_negative = sum_in_rest_of_motor_s3_positive_positive
-      + 2.0*(product_in_rest_of_motor_s3_positive_positive_2 - product_in_rest_of_motor_s3_positive_positive);
-  const double rest_of_motor_s4_positive_negative = sum_in_rest_of_motor_s4_positive_positive
-      + k->across_of_r_2*sin_r_positive_negative - k->product_in_rest_of_motor_s4*cos_r_positive_negative;
-  int refusal_positive_positive, refusal_positive_negative;
-  if (in_plane_positive > 2e-12 && fabs(cos_c_positive) <= k->bound_of_cos_c) {
-    const double product_in_refusal_positive_positive_5 = (k->product_in_across_of_d
-        + k->bucket_ear_x_times_rocker_length_times_2*sin_r_positive_positive
-        + k->bucket_ear_z_times_rocker_length_times_2*cos_r_positive_positive)*cos_d_positive_positive;
-    const double sin_c_positive_positive_times_along_of_c = k->along_of_c*sin_c_positive_positive;
-    const double cos_c_positive_times_across_of_c = k->across_of_c*cos_c_positive;
+  const double along_of_r_front_stick_up = k->product_in_level_of_d
+      - k->bucket_ear_x_times_rocker_length_times_2*cos_d_front_stick_up
+      - k->bucket_ear_z_times_rocker_length_times_2*sin_d_front_stick_up;
+  const double across_of_r_front_stick_up = k->bucket_ear_z_times_rocker_length_times_2*cos_d_front_stick_up
+      - k->bucket_ear_x_times_rocker_length_times_2*sin_d_front_stick_up;
+  const double sum_in_reach_of_r_front_stick_up = across_of_r_front_stick_up*across_of_r_front_stick_up
+      + along_of_r_front_stick_up*along_of_r_front_stick_up;
+  const double reach_of_r_front_stick_up = softkin_root(sum_in_reach_of_r_front_stick_up);
+  const double root_of_r_front_stick_up = -softkin_root((reach_of_r_front_stick_up
+      - level_of_r_front_stick_up)*(level_of_r_front_stick_up + reach_of_r_front_stick_up));
+  const double divisor_of_r_front_stick_up = sum_in_reach_of_r_front_stick_up > 1e-12
+      ? sum_in_reach_of_r_front_stick_up : 1.0;
+  const double cos_r_front_stick_up = (across_of_r_front_stick_up*root_of_r_front_stick_up
+      + along_of_r_front_stick_up*level_of_r_front_stick_up)/divisor_of_r_front_stick_up;
+  const double sin_r_front_stick_up = (across_of_r_front_stick_up*level_of_r_front_stick_up
+      - along_of_r_front_stick_up*root_of_r_front_stick_up)/divisor_of_r_front_stick_up;
+  const double rest_of_motor_s3_front_stick_up = sum_in_rest_of_motor_s3_front_stick_down
+      + 2.0*(product_in_rest_of_motor_s3_front_stick_down_2 - product_in_rest_of_motor_s3_front_stick_down);
+  const double rest_of_motor_s4_front_stick_up = sum_in_rest_of_motor_s4_front_stick_down
+      + k->across_of_r_2*sin_r_front_stick_up - k->product_in_rest_of_motor_s4*cos_r_front_stick_up;
+  int refusal_front_stick_down, refusal_front_stick_up;
+  if (in_plane_front > 2e-12 && fabs(cos_c_front) <= k->bound_of_cos_c) {
+    const double product_in_refusal_front_stick_down_5 = (k->product_in_across_of_d
+        + k->bucket_ear_x_times_rocker_length_times_2*sin_r_front_stick_down
+        + k->bucket_ear_z_times_rocker_length_times_2*cos_r_front_stick_down)*cos_d_front_stick_down;
+    const double sin_c_front_stick_down_times_along_of_c = k->along_of_c*sin_c_front_stick_down;
+    const double cos_c_front_times_across_of_c = k->across_of_c*cos_c_front;
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
      * S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity */
-    refusal_positive_positive = (rest_of_motor_s2_positive_positive >= -1e-12
-        *fabs(rest_of_motor_s2_positive_positive))
-        && (rest_of_motor_s3_positive_positive >= -1e-12*fabs(rest_of_motor_s3_positive_positive))
-        && (rest_of_motor_s4_positive_positive >= -1e-12*fabs(rest_of_motor_s4_positive_positive))
-        && (fabs(level_of_r_positive_positive) <= 1.000000000001*reach_of_r_positive_positive)
-        && (cos_c_positive_times_across_of_c
-        - sin_c_positive_positive_times_along_of_c >= -product_in_refusal_positive_positive_2)
-        && (k->along_of_b*sin_b_positive_positive
-        - k->across_of_b*cos_b_positive_positive >= -product_in_refusal_positive_positive)
-        && (k->across_of_r_2*cos_r_positive_positive
-        - k->along_of_r_2*sin_r_positive_positive >= -product_in_refusal_positive_positive_4)
-        && ((k->product_in_along_of_d + k->bucket_ear_x_times_rocker_length_times_2*cos_r_positive_positive
-        - k->bucket_ear_z_times_rocker_length_times_2*sin_r_positive_positive)*sin_d_positive_positive
-        - product_in_refusal_positive_positive_5 >= -product_in_refusal_positive_positive_3) ? 0 : 3;
-    const double product_in_refusal_positive_negative = (k->product_in_across_of_d
-        + k->bucket_ear_x_times_rocker_length_times_2*sin_r_positive_negative
-        + k->bucket_ear_z_times_rocker_length_times_2*cos_r_positive_negative)*cos_d_positive_negative;
+    refusal_front_stick_down = (rest_of_motor_s2_front_stick_down >= -1e-12
+        *fabs(rest_of_motor_s2_front_stick_down))
+        && (rest_of_motor_s3_front_stick_down >= -1e-12*fabs(rest_of_motor_s3_front_stick_down))
+        && (rest_of_motor_s4_front_stick_down >= -1e-12*fabs(rest_of_motor_s4_front_stick_down))
+        && (fabs(level_of_r_front_stick_down) <= 1.000000000001*reach_of_r_front_stick_down)
+        && (cos_c_front_times_across_of_c
+        - sin_c_front_stick_down_times_along_of_c >= -product_in_refusal_front_stick_down_2)
+        && (k->along_of_b*sin_b_front_stick_down
+        - k->across_of_b*cos_b_front_stick_down >= -product_in_refusal_front_stick_down)
+        && (k->across_of_r_2*cos_r_front_stick_down
+        - k->along_of_r_2*sin_r_front_stick_down >= -product_in_refusal_front_stick_down_4)
+        && ((k->product_in_along_of_d + k->bucket_ear_x_times_rocker_length_times_2*cos_r_front_stick_down
+        - k->bucket_ear_z_times_rocker_length_times_2*sin_r_front_stick_down)*sin_d_front_stick_down
+        - product_in_refusal_front_stick_down_5 >= -product_in_refusal_front_stick_down_3) ? 0 : 3;
+    const double product_in_refusal_front_stick_up = (k->product_in_across_of_d
+        + k->bucket_ear_x_times_rocker_length_times_2*sin_r_front_stick_up
+        + k->bucket_ear_z_times_rocker_length_times_2*cos_r_front_stick_up)*cos_d_front_stick_up;
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
      * S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity */
-    refusal_positive_negative = (rest_of_motor_s2_positive_negative >= -1e-12
-        *fabs(rest_of_motor_s2_positive_negative))
-        && (rest_of_motor_s3_positive_negative >= -1e-12*fabs(rest_of_motor_s3_positive_negative))
-        && (rest_of_motor_s4_positive_negative >= -1e-12*fabs(rest_of_motor_s4_positive_negative))
-        && (fabs(level_of_r_positive_negative) <= 1.000000000001*reach_of_r_positive_negative)
-        && (cos_c_positive_times_across_of_c
-        + sin_c_positive_positive_times_along_of_c >= -product_in_refusal_positive_positive_2)
-        && (k->along_of_b*sin_b_positive_negative
-        - k->across_of_b*cos_b_positive_negative >= -product_in_refusal_positive_positive)
-        && (k->across_of_r_2*cos_r_positive_negative
-        - k->along_of_r_2*sin_r_positive_negative >= -product_in_refusal_positive_positive_4)
-        && ((k->product_in_along_of_d + k->bucket_ear_x_times_rocker_length_times_2*cos_r_positive_negative
-        - k->bucket_ear_z_times_rocker_length_times_2*sin_r_positive_negative)*sin_d_positive_negative
-        - product_in_refusal_positive_negative >= -product_in_refusal_positive_positive_3) ? 0 : 3;
+    refusal_front_stick_up = (rest_of_motor_s2_front_stick_up >= -1e-12
+        *fabs(rest_of_motor_s2_front_stick_up))
+        && (rest_of_motor_s3_front_stick_up >= -1e-12*fabs(rest_of_motor_s3_front_stick_up))
+        && (rest_of_motor_s4_front_stick_up >= -1e-12*fabs(rest_of_motor_s4_front_stick_up))
+        && (fabs(level_of_r_front_stick_up) <= 1.000000000001*reach_of_r_front_stick_up)
+        && (cos_c_front_times_across_of_c
+        + sin_c_front_stick_down_times_along_of_c >= -product_in_refusal_front_stick_down_2)
+        && (k->along_of_b*sin_b_front_stick_up
+        - k->across_of_b*cos_b_front_stick_up >= -product_in_refusal_front_stick_down)
+        && (k->across_of_r_2*cos_r_front_stick_up
+        - k->along_of_r_2*sin_r_front_stick_up >= -product_in_refusal_front_stick_down_4)
+        && ((k->product_in_along_of_d + k->bucket_ear_x_times_rocker_length_times_2*cos_r_front_stick_up
+        - k->bucket_ear_z_times_rocker_length_times_2*sin_r_front_stick_up)*sin_d_front_stick_up
+        - product_in_refusal_front_stick_up >= -product_in_refusal_front_stick_down_3) ? 0 : 3;
   } else {
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
      * S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity */
-    refusal_positive_positive = 3;
+    refusal_front_stick_down = 3;
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
      * S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity */
-    refusal_positive_negative = 3;
+    refusal_front_stick_up = 3;
   }
-  const double axis_a1_positive = k->offset_a1
-      + softkin_angle_of(sin_a1_positive, cos_a1_positive)*SOFTKIN_RADIAN;
-  const double motor_s2_positive_positive = softkin_root(rest_of_motor_s2_positive_positive);
-  const double axis_s2_positive_positive = motor_s2_positive_positive + k->offset_s2;
-  const double motor_s3_positive_positive = softkin_root(rest_of_motor_s3_positive_positive);
-  const double axis_s3_positive_positive = motor_s3_positive_positive + k->offset_s3;
-  const double motor_s4_positive_positive = softkin_root(rest_of_motor_s4_positive_positive);
-  const double axis_s4_positive_positive = motor_s4_positive_positive + k->offset_s4;
-  const double motor_s2_positive_negative = softkin_root(rest_of_motor_s2_positive_negative);
-  const double axis_s2_positive_negative = motor_s2_positive_negative + k->offset_s2;
-  const double motor_s3_positive_negative = softkin_root(rest_of_motor_s3_positive_negative);
-  const double axis_s3_positive_negative = motor_s3_positive_negative + k->offset_s3;
-  const double motor_s4_positive_negative = softkin_root(rest_of_motor_s4_positive_negative);
-  const double axis_s4_positive_negative = motor_s4_positive_negative + k->offset_s4;
-  double in_plane_negative, tool_z_negative, tool_x_negative, axis_a1_negative;
+  const double axis_a1_front = k->offset_a1 + softkin_angle_of(sin_a1_front, cos_a1_front)*SOFTKIN_RADIAN;
+  const double motor_s2_front_stick_down = softkin_root(rest_of_motor_s2_front_stick_down);
+  const double axis_s2_front_stick_down = motor_s2_front_stick_down + k->offset_s2;
+  const double motor_s3_front_stick_down = softkin_root(rest_of_motor_s3_front_stick_down);
+  const double axis_s3_front_stick_down = motor_s3_front_stick_down + k->offset_s3;
+  const double motor_s4_front_stick_down = softkin_root(rest_of_motor_s4_front_stick_down);
+  const double axis_s4_front_stick_down = motor_s4_front_stick_down + k->offset_s4;
+  const double motor_s2_front_stick_up = softkin_root(rest_of_motor_s2_front_stick_up);
+  const double axis_s2_front_stick_up = motor_s2_front_stick_up + k->offset_s2;
+  const double motor_s3_front_stick_up = softkin_root(rest_of_motor_s3_front_stick_up);
+  const double axis_s3_front_stick_up = motor_s3_front_stick_up + k->offset_s3;
+  const double motor_s4_front_stick_up = softkin_root(rest_of_motor_s4_front_stick_up);
+  const double axis_s4_front_stick_up = motor_s4_front_stick_up + k->offset_s4;
+  double in_plane_back, tool_z_back, tool_x_back, axis_a1_back;
   if (distance_a1 > k->machine_scale_times_free_angle) {
     /* length of the commanded direction in the plane in which the arm turns the tool */
-    in_plane_negative = in_plane_positive;
-    tool_z_negative = tool_z_positive;
-    tool_x_negative = -tool_x_positive; /* the nearest direction that the arm can reach */
-    axis_a1_negative = 180.0 + axis_a1_positive;
+    in_plane_back = in_plane_front;
+    tool_z_back = tool_z_front;
+    tool_x_back = -tool_x_front; /* the nearest direction that the arm can reach */
+    axis_a1_back = 180.0 + axis_a1_front;
   } else {
-    const double r13_from_a1_negative = r13*cos_a1_negative + r23*sin_a1_negative;
+    const double r13_from_a1_back = r13*cos_a1_back + r23*sin_a1_back;
     /* length of the commanded direction in the plane in which the arm turns the tool */
-    in_plane_negative = softkin_root(r33_squared + r13_from_a1_negative*r13_from_a1_negative);
-    const double in_plane_divisor_negative = in_plane_negative > 2e-12 ? in_plane_negative : 1.0;
-    tool_z_negative = r33/in_plane_divisor_negative;
+    in_plane_back = softkin_root(r33_squared + r13_from_a1_back*r13_from_a1_back);
+    const double in_plane_divisor_back = in_plane_back > 2e-12 ? in_plane_back : 1.0;
+    tool_z_back = r33/in_plane_divisor_back;
     /* the nearest direction that the arm can reach */
-    tool_x_negative = r13_from_a1_negative/in_plane_divisor_negative;
-    axis_a1_negative = k->offset_a1 + softkin_angle_of(sin_a1_negative, cos_a1_negative)*SOFTKIN_RADIAN;
+    tool_x_back = r13_from_a1_back/in_plane_divisor_back;
+    axis_a1_back = k->offset_a1 + softkin_angle_of(sin_a1_back, cos_a1_back)*SOFTKIN_RADIAN;
   }
   /* coordinate of the point that the remaining links must reach */
-  const double wrist_x_from_a1_negative = -k->boom_foot_x - distance_a1 - k->bucket_length*tool_z_negative;
+  const double wrist_x_from_a1_back = -k->boom_foot_x - distance_a1 - k->bucket_length*tool_z_back;
   /* coordinate of the point that the remaining links must reach */
-  const double wrist_z_from_a1_negative = z_minus_boom_foot_z + k->bucket_length*tool_x_negative;
+  const double wrist_z_from_a1_back = z_minus_boom_foot_z + k->bucket_length*tool_x_back;
   /* distance that the remaining links must span */
-  const double reach_negative = sqrt(wrist_x_from_a1_negative*wrist_x_from_a1_negative
-      + wrist_z_from_a1_negative*wrist_z_from_a1_negative);
+  const double reach_back = sqrt(wrist_x_from_a1_back*wrist_x_from_a1_back
+      + wrist_z_from_a1_back*wrist_z_from_a1_back);
   /* law of cosines for c (x_from_a1² + z_from_a1²): 1 - cosine, times a scale */
-  const double one_less_cos_c_negative = (k->boom_length_plus_stick_length + reach_negative)
-      *(k->boom_length_plus_stick_length - reach_negative);
+  const double one_less_cos_c_back = (k->boom_length_plus_stick_length + reach_back)
+      *(k->boom_length_plus_stick_length - reach_back);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_c_negative = (reach_negative - k->boom_length_minus_stick_length)
-      *(k->boom_length_minus_stick_length + reach_negative);
-  const double cos_c_negative = (one_plus_cos_c_negative - one_less_cos_c_negative)*k->quotient_in_cos_c;
+  const double one_plus_cos_c_back = (reach_back - k->boom_length_minus_stick_length)
+      *(k->boom_length_minus_stick_length + reach_back);
+  const double cos_c_back = (one_plus_cos_c_back - one_less_cos_c_back)*k->quotient_in_cos_c;
   /* sine squared, times the squared scale */
-  const double sine_square_c_negative = one_less_cos_c_negative*one_plus_cos_c_negative;
-  const double sin_c_negative_positive = softkin_root(sine_square_c_negative)
+  const double sine_square_c_back = one_less_cos_c_back*one_plus_cos_c_back;
+  const double sin_c_back_stick_down = softkin_root(sine_square_c_back)
       *k->half_by_boom_length_by_stick_length;
-  double cos_b_negative_positive, sin_b_negative_positive, cos_b_negative_negative, sin_b_negative_negative;
-  if (reach_negative > k->machine_scale_times_free_angle) {
-    const double arm_across_b_negative_positive = k->stick_length*sin_c_negative_positive;
-    const double product_in_along_b_negative_positive = arm_across_b_negative_positive
-        *wrist_z_from_a1_negative;
-    const double arm_along_b_negative = k->boom_length + k->stick_length*cos_c_negative;
-    const double product_in_along_b_negative_positive_2 = arm_along_b_negative*wrist_x_from_a1_negative;
+  double cos_b_back_stick_down, sin_b_back_stick_down, cos_b_back_stick_up, sin_b_back_stick_up;
+  if (reach_back > k->machine_scale_times_free_angle) {
+    const double arm_across_b_back_stick_down = k->stick_length*sin_c_back_stick_down;
+    const double product_in_along_b_back_stick_down = arm_across_b_back_stick_down*wrist_z_from_a1_back;
+    const double arm_along_b_back = k->boom_length + k->stick_length*cos_c_back;
+    const double product_in_along_b_back_stick_down_2 = arm_along_b_back*wrist_x_from_a1_back;
     /* rotation by b that takes the arm to its target point */
-    const double along_b_negative_positive = product_in_along_b_negative_positive_2
-        - product_in_along_b_negative_positive;
-    const double product_in_across_b_negative_positive = arm_along_b_negative*wrist_z_from_a1_negative;
-    const double product_in_across_b_negative_positive_2 = arm_across_b_negative_positive
-        *wrist_x_from_a1_negative;
-    const double across_b_negative_positive = -product_in_across_b_negative_positive
-        - product_in_across_b_negative_positive_2;
-    const double sum_in_length_b_negative_positive = across_b_negative_positive*across_b_negative_positive
-        + along_b_negative_positive*along_b_negative_positive;
-    const double length_b_negative_positive = sum_in_length_b_negative_positive > 0.0
-        ? softkin_root(sum_in_length_b_negative_positive) : 1.0;
+    const double along_b_back_stick_down = product_in_along_b_back_stick_down_2
+        - product_in_along_b_back_stick_down;
+    const double product_in_across_b_back_stick_down = arm_along_b_back*wrist_z_from_a1_back;
+    const double product_in_across_b_back_stick_down_2 = arm_across_b_back_stick_down*wrist_x_from_a1_back;
+    const double across_b_back_stick_down = -product_in_across_b_back_stick_down
+        - product_in_across_b_back_stick_down_2;
+    const double sum_in_length_b_back_stick_down = across_b_back_stick_down*across_b_back_stick_down
+        + along_b_back_stick_down*along_b_back_stick_down;
+    const double length_b_back_stick_down = sum_in_length_b_back_stick_down > 0.0
+        ? softkin_root(sum_in_length_b_back_stick_down) : 1.0;
     /* at a singularity: the angle of the reference */
-    cos_b_negative_positive = along_b_negative_positive/length_b_negative_positive;
-    sin_b_negative_positive = across_b_negative_positive/length_b_negative_positive;
+    cos_b_back_stick_down = along_b_back_stick_down/length_b_back_stick_down;
+    sin_b_back_stick_down = across_b_back_stick_down/length_b_back_stick_down;
     /* rotation by b that takes the arm to its target point */
-    const double along_b_negative_negative = product_in_along_b_negative_positive
-        + product_in_along_b_negative_positive_2;
-    const double across_b_negative_negative = product_in_across_b_negative_positive_2
-        - product_in_across_b_negative_positive;
-    const double sum_in_length_b_negative_negative = across_b_negative_negative*across_b_negative_negative
-        + along_b_negative_negative*along_b_negative_negative;
-    const double length_b_negative_negative = sum_in_length_b_negative_negative > 0.0
-        ? softkin_root(sum_in_length_b_negative_negative) : 1.0;
+    const double along_b_back_stick_up = product_in_along_b_back_stick_down
+        + product_in_along_b_back_stick_down_2;
+    const double across_b_back_stick_up = product_in_across_b_back_stick_down_2
+        - product_in_across_b_back_stick_down;
+    const double sum_in_length_b_back_stick_up = across_b_back_stick_up*across_b_back_stick_up
+        + along_b_back_stick_up*along_b_back_stick_up;
+    const double length_b_back_stick_up = sum_in_length_b_back_stick_up > 0.0
+        ? softkin_root(sum_in_length_b_back_stick_up) : 1.0;
     /* at a singularity: the angle of the reference */
-    cos_b_negative_negative = along_b_negative_negative/length_b_negative_negative;
-    sin_b_negative_negative = across_b_negative_negative/length_b_negative_negative;
+    cos_b_back_stick_up = along_b_back_stick_up/length_b_back_stick_up;
+    sin_b_back_stick_up = across_b_back_stick_up/length_b_back_stick_up;
   } else {
     const double ref_motor_s2 = ref_s2 - k->offset_s2;
     const double reference_level_of_b = ref_motor_s2*ref_motor_s2 - sum_in_reference_level_of_b;
@@ -1145,171 +1140,168 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         (k->across_of_b*reference_root_of_b + k->along_of_b*reference_level_of_b)*k->one_by_divisor_of_b);
     const double cos_of_reference_s2 = cos(reference_s2);
     const double sin_of_reference_s2 = sin(reference_s2);
-    cos_b_negative_positive = cos_of_reference_s2; /* at a singularity: the angle of the reference */
-    sin_b_negative_positive = sin_of_reference_s2;
-    cos_b_negative_negative = cos_of_reference_s2; /* at a singularity: the angle of the reference */
-    sin_b_negative_negative = sin_of_reference_s2;
+    cos_b_back_stick_down = cos_of_reference_s2; /* at a singularity: the angle of the reference */
+    sin_b_back_stick_down = sin_of_reference_s2;
+    cos_b_back_stick_up = cos_of_reference_s2; /* at a singularity: the angle of the reference */
+    sin_b_back_stick_up = sin_of_reference_s2;
   }
-  const double rest_of_motor_s2_negative_positive = sum_in_reference_level_of_b
-      - 2.0*(k->sum_in_rest_of_motor_s2*cos_b_negative_positive
-      + k->sum_in_rest_of_motor_s2_2*sin_b_negative_positive);
-  const double cos_b_c_negative_positive = cos_b_negative_positive*cos_c_negative
-      - sin_b_negative_positive*sin_c_negative_positive;
-  const double sin_b_c_negative_positive = cos_b_negative_positive*sin_c_negative_positive
-      + cos_c_negative*sin_b_negative_positive;
+  const double rest_of_motor_s2_back_stick_down = sum_in_reference_level_of_b
+      - 2.0*(k->sum_in_rest_of_motor_s2*cos_b_back_stick_down
+      + k->sum_in_rest_of_motor_s2_2*sin_b_back_stick_down);
+  const double cos_b_c_back_stick_down = cos_b_back_stick_down*cos_c_back
+      - sin_b_back_stick_down*sin_c_back_stick_down;
+  const double sin_b_c_back_stick_down = cos_b_back_stick_down*sin_c_back_stick_down
+      + cos_c_back*sin_b_back_stick_down;
   /* d from the sum b_c_d of angles about parallel axes */
-  const double cos_d_negative_positive = tool_z_negative*cos_b_c_negative_positive
-      + tool_x_negative*sin_b_c_negative_positive;
-  const double sin_d_negative_positive = tool_x_negative*cos_b_c_negative_positive
-      - tool_z_negative*sin_b_c_negative_positive;
-  const double level_of_r_negative_positive = sum_in_level_of_r_positive_positive
-      + k->product_in_along_of_d*cos_d_negative_positive + k->product_in_across_of_d*sin_d_negative_positive;
+  const double cos_d_back_stick_down = tool_z_back*cos_b_c_back_stick_down
+      + tool_x_back*sin_b_c_back_stick_down;
+  const double sin_d_back_stick_down = tool_x_back*cos_b_c_back_stick_down
+      - tool_z_back*sin_b_c_back_stick_down;
+  const double level_of_r_back_stick_down = sum_in_level_of_r_front_stick_down
+      + k->product_in_along_of_d*cos_d_back_stick_down + k->product_in_across_of_d*sin_d_back_stick_down;
   /* the loop of D, solved for R */
-  const double along_of_r_negative_positive = k->product_in_level_of_d
-      - k->bucket_ear_x_times_rocker_length_times_2*cos_d_negative_positive
-      - k->bucket_ear_z_times_rocker_length_times_2*sin_d_negative_positive;
-  const double across_of_r_negative_positive = k->bucket_ear_z_times_rocker_length_times_2
-      *cos_d_negative_positive - k->bucket_ear_x_times_rocker_length_times_2*sin_d_negative_positive;
-  const double sum_in_reach_of_r_negative_positive = across_of_r_negative_positive
-      *across_of_r_negative_positive + along_of_r_negative_positive*along_of_r_negative_positive;
-  const double reach_of_r_negative_positive = softkin_root(sum_in_reach_of_r_negative_positive);
-  const double root_of_r_negative_positive = -softkin_root((reach_of_r_negative_positive
-      - level_of_r_negative_positive)*(level_of_r_negative_positive + reach_of_r_negative_positive));
-  const double divisor_of_r_negative_positive = sum_in_reach_of_r_negative_positive > 1e-12
-      ? sum_in_reach_of_r_negative_positive : 1.0;
-  const double cos_r_negative_positive = (across_of_r_negative_positive*root_of_r_negative_positive
-      + along_of_r_negative_positive*level_of_r_negative_positive)/divisor_of_r_negative_positive;
-  const double sin_r_negative_positive = (across_of_r_negative_positive*level_of_r_negative_positive
-      - along_of_r_negative_positive*root_of_r_negative_positive)/divisor_of_r_negative_positive;
-  const double product_in_rest_of_motor_s3_negative_positive = k->sum_in_rest_of_motor_s3*cos_c_negative;
-  const double product_in_rest_of_motor_s3_negative_positive_2 = k->sum_in_rest_of_motor_s3_2
-      *sin_c_negative_positive;
-  const double rest_of_motor_s3_negative_positive = sum_in_rest_of_motor_s3_positive_positive
-      - 2.0*(product_in_rest_of_motor_s3_negative_positive + product_in_rest_of_motor_s3_negative_positive_2);
-  const double rest_of_motor_s4_negative_positive = sum_in_rest_of_motor_s4_positive_positive
-      + k->across_of_r_2*sin_r_negative_positive - k->product_in_rest_of_motor_s4*cos_r_negative_positive;
-  const double rest_of_motor_s2_negative_negative = sum_in_reference_level_of_b
-      - 2.0*(k->sum_in_rest_of_motor_s2*cos_b_negative_negative
-      + k->sum_in_rest_of_motor_s2_2*sin_b_negative_negative);
-  const double cos_b_c_negative_negative = cos_b_negative_negative*cos_c_negative
-      + sin_b_negative_negative*sin_c_negative_positive;
-  const double sin_b_c_negative_negative = cos_c_negative*sin_b_negative_negative
-      - cos_b_negative_negative*sin_c_negative_positive;
+  const double along_of_r_back_stick_down = k->product_in_level_of_d
+      - k->bucket_ear_x_times_rocker_length_times_2*cos_d_back_stick_down
+      - k->bucket_ear_z_times_rocker_length_times_2*sin_d_back_stick_down;
+  const double across_of_r_back_stick_down = k->bucket_ear_z_times_rocker_length_times_2
+      *cos_d_back_stick_down - k->bucket_ear_x_times_rocker_length_times_2*sin_d_back_stick_down;
+  const double sum_in_reach_of_r_back_stick_down = across_of_r_back_stick_down*across_of_r_back_stick_down
+      + along_of_r_back_stick_down*along_of_r_back_stick_down;
+  const double reach_of_r_back_stick_down = softkin_root(sum_in_reach_of_r_back_stick_down);
+  const double root_of_r_back_stick_down = -softkin_root((reach_of_r_back_stick_down
+      - level_of_r_back_stick_down)*(level_of_r_back_stick_down + reach_of_r_back_stick_down));
+  const double divisor_of_r_back_stick_down = sum_in_reach_of_r_back_stick_down > 1e-12
+      ? sum_in_reach_of_r_back_stick_down : 1.0;
+  const double cos_r_back_stick_down = (across_of_r_back_stick_down*root_of_r_back_stick_down
+      + along_of_r_back_stick_down*level_of_r_back_stick_down)/divisor_of_r_back_stick_down;
+  const double sin_r_back_stick_down = (across_of_r_back_stick_down*level_of_r_back_stick_down
+      - along_of_r_back_stick_down*root_of_r_back_stick_down)/divisor_of_r_back_stick_down;
+  const double sum_in_rest_of_motor_s3_times_cos_c_back = k->sum_in_rest_of_motor_s3*cos_c_back;
+  const double product_in_rest_of_motor_s3_back_stick_down = k->sum_in_rest_of_motor_s3_2
+      *sin_c_back_stick_down;
+  const double rest_of_motor_s3_back_stick_down = sum_in_rest_of_motor_s3_front_stick_down
+      - 2.0*(product_in_rest_of_motor_s3_back_stick_down + sum_in_rest_of_motor_s3_times_cos_c_back);
+  const double rest_of_motor_s4_back_stick_down = sum_in_rest_of_motor_s4_front_stick_down
+      + k->across_of_r_2*sin_r_back_stick_down - k->product_in_rest_of_motor_s4*cos_r_back_stick_down;
+  const double rest_of_motor_s2_back_stick_up = sum_in_reference_level_of_b
+      - 2.0*(k->sum_in_rest_of_motor_s2*cos_b_back_stick_up
+      + k->sum_in_rest_of_motor_s2_2*sin_b_back_stick_up);
+  const double cos_b_c_back_stick_up = cos_b_back_stick_up*cos_c_back
+      + sin_b_back_stick_up*sin_c_back_stick_down;
+  const double sin_b_c_back_stick_up = cos_c_back*sin_b_back_stick_up
+      - cos_b_back_stick_up*sin_c_back_stick_down;
   /* d from the sum b_c_d of angles about parallel axes */
-  const double cos_d_negative_negative = tool_z_negative*cos_b_c_negative_negative
-      + tool_x_negative*sin_b_c_negative_negative;
-  const double sin_d_negative_negative = tool_x_negative*cos_b_c_negative_negative
-      - tool_z_negative*sin_b_c_negative_negative;
-  const double level_of_r_negative_negative = sum_in_level_of_r_positive_positive
-      + k->product_in_along_of_d*cos_d_negative_negative + k->product_in_across_of_d*sin_d_negative_negative;
+  const double cos_d_back_stick_up = tool_z_back*cos_b_c_back_stick_up + tool_x_back*sin_b_c_back_stick_up;
+  const double sin_d_back_stick_up = tool_x_back*cos_b_c_back_stick_up - tool_z_back*sin_b_c_back_stick_up;
+  const double level_of_r_back_stick_up = sum_in_level_of_r_front_stick_down
+      + k->product_in_along_of_d*cos_d_back_stick_up + k->product_in_across_of_d*sin_d_back_stick_up;
   /* the loop of D, solved for R */
-  const double along_of_r_negative_negative = k->product_in_level_of_d
-      - k->bucket_ear_x_times_rocker_length_times_2*cos_d_negative_negative
-      - k->bucket_ear_z_times_rocker_length_times_2*sin_d_negative_negative;
-  const double across_of_r_negative_negative = k->bucket_ear_z_times_rocker_length_times_2
-      *cos_d_negative_negative - k->bucket_ear_x_times_rocker_length_times_2*sin_d_negative_negative;
-  const double sum_in_reach_of_r_negative_negative = across_of_r_negative_negative
-      *across_of_r_negative_negative + along_of_r_negative_negative*along_of_r_negative_negative;
-  const double reach_of_r_negative_negative = softkin_root(sum_in_reach_of_r_negative_negative);
-  const double root_of_r_negative_negative = -softkin_root((reach_of_r_negative_negative
-      - level_of_r_negative_negative)*(level_of_r_negative_negative + reach_of_r_negative_negative));
-  const double divisor_of_r_negative_negative = sum_in_reach_of_r_negative_negative > 1e-12
-      ? sum_in_reach_of_r_negative_negative : 1.0;
-  const double cos_r_negative_negative = (across_of_r_negative_negative*root_of_r_negative_negative
-      + along_of_r_negative_negative*level_of_r_negative_negative)/divisor_of_r_negative_negative;
-  const double sin_r_negative_negative = (across_of_r_negative_negative*level_of_r_negative_negative
-      - along_of_r_negative_negative*root_of_r_negative_negative)/divisor_of_r_negative_negative;
-  const double rest_of_motor_s3_negative_negative = sum_in_rest_of_motor_s3_positive_positive
-      + 2.0*(product_in_rest_of_motor_s3_negative_positive_2 - product_in_rest_of_motor_s3_negative_positive);
-  const double rest_of_motor_s4_negative_negative = sum_in_rest_of_motor_s4_positive_positive
-      + k->across_of_r_2*sin_r_negative_negative - k->product_in_rest_of_motor_s4*cos_r_negative_negative;
-  int refusal_negative_positive, refusal_negative_negative;
-  if (in_plane_negative > 2e-12 && fabs(cos_c_negative) <= k->bound_of_cos_c) {
-    const double product_in_refusal_negative_positive = (k->product_in_across_of_d
-        + k->bucket_ear_x_times_rocker_length_times_2*sin_r_negative_positive
-        + k->bucket_ear_z_times_rocker_length_times_2*cos_r_negative_positive)*cos_d_negative_positive;
-    const double sin_c_negative_positive_times_along_of_c = k->along_of_c*sin_c_negative_positive;
-    const double cos_c_negative_times_across_of_c = k->across_of_c*cos_c_negative;
+  const double along_of_r_back_stick_up = k->product_in_level_of_d
+      - k->bucket_ear_x_times_rocker_length_times_2*cos_d_back_stick_up
+      - k->bucket_ear_z_times_rocker_length_times_2*sin_d_back_stick_up;
+  const double across_of_r_back_stick_up = k->bucket_ear_z_times_rocker_length_times_2*cos_d_back_stick_up
+      - k->bucket_ear_x_times_rocker_length_times_2*sin_d_back_stick_up;
+  const double sum_in_reach_of_r_back_stick_up = across_of_r_back_stick_up*across_of_r_back_stick_up
+      + along_of_r_back_stick_up*along_of_r_back_stick_up;
+  const double reach_of_r_back_stick_up = softkin_root(sum_in_reach_of_r_back_stick_up);
+  const double root_of_r_back_stick_up = -softkin_root((reach_of_r_back_stick_up - level_of_r_back_stick_up)
+      *(level_of_r_back_stick_up + reach_of_r_back_stick_up));
+  const double divisor_of_r_back_stick_up = sum_in_reach_of_r_back_stick_up > 1e-12
+      ? sum_in_reach_of_r_back_stick_up : 1.0;
+  const double cos_r_back_stick_up = (across_of_r_back_stick_up*root_of_r_back_stick_up
+      + along_of_r_back_stick_up*level_of_r_back_stick_up)/divisor_of_r_back_stick_up;
+  const double sin_r_back_stick_up = (across_of_r_back_stick_up*level_of_r_back_stick_up
+      - along_of_r_back_stick_up*root_of_r_back_stick_up)/divisor_of_r_back_stick_up;
+  const double rest_of_motor_s3_back_stick_up = sum_in_rest_of_motor_s3_front_stick_down
+      + 2.0*(product_in_rest_of_motor_s3_back_stick_down - sum_in_rest_of_motor_s3_times_cos_c_back);
+  const double rest_of_motor_s4_back_stick_up = sum_in_rest_of_motor_s4_front_stick_down
+      + k->across_of_r_2*sin_r_back_stick_up - k->product_in_rest_of_motor_s4*cos_r_back_stick_up;
+  int refusal_back_stick_down, refusal_back_stick_up;
+  if (in_plane_back > 2e-12 && fabs(cos_c_back) <= k->bound_of_cos_c) {
+    const double product_in_refusal_back_stick_down = (k->product_in_across_of_d
+        + k->bucket_ear_x_times_rocker_length_times_2*sin_r_back_stick_down
+        + k->bucket_ear_z_times_rocker_length_times_2*cos_r_back_stick_down)*cos_d_back_stick_down;
+    const double sin_c_back_stick_down_times_along_of_c = k->along_of_c*sin_c_back_stick_down;
+    const double cos_c_back_times_across_of_c = k->across_of_c*cos_c_back;
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
      * S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity */
-    refusal_negative_positive = (rest_of_motor_s2_negative_positive >= -1e-12
-        *fabs(rest_of_motor_s2_negative_positive))
-        && (rest_of_motor_s3_negative_positive >= -1e-12*fabs(rest_of_motor_s3_negative_positive))
-        && (rest_of_motor_s4_negative_positive >= -1e-12*fabs(rest_of_motor_s4_negative_positive))
-        && (fabs(level_of_r_negative_positive) <= 1.000000000001*reach_of_r_negative_positive)
-        && (cos_c_negative_times_across_of_c
-        - sin_c_negative_positive_times_along_of_c >= -product_in_refusal_positive_positive_2)
-        && (k->along_of_b*sin_b_negative_positive
-        - k->across_of_b*cos_b_negative_positive >= -product_in_refusal_positive_positive)
-        && (k->across_of_r_2*cos_r_negative_positive
-        - k->along_of_r_2*sin_r_negative_positive >= -product_in_refusal_positive_positive_4)
-        && ((k->product_in_along_of_d + k->bucket_ear_x_times_rocker_length_times_2*cos_r_negative_positive
-        - k->bucket_ear_z_times_rocker_length_times_2*sin_r_negative_positive)*sin_d_negative_positive
-        - product_in_refusal_negative_positive >= -product_in_refusal_positive_positive_3) ? 0 : 3;
-    const double product_in_refusal_negative_negative = (k->product_in_across_of_d
-        + k->bucket_ear_x_times_rocker_length_times_2*sin_r_negative_negative
-        + k->bucket_ear_z_times_rocker_length_times_2*cos_r_negative_negative)*cos_d_negative_negative;
+    refusal_back_stick_down = (rest_of_motor_s2_back_stick_down >= -1e-12
+        *fabs(rest_of_motor_s2_back_stick_down))
+        && (rest_of_motor_s3_back_stick_down >= -1e-12*fabs(rest_of_motor_s3_back_stick_down))
+        && (rest_of_motor_s4_back_stick_down >= -1e-12*fabs(rest_of_motor_s4_back_stick_down))
+        && (fabs(level_of_r_back_stick_down) <= 1.000000000001*reach_of_r_back_stick_down)
+        && (cos_c_back_times_across_of_c
+        - sin_c_back_stick_down_times_along_of_c >= -product_in_refusal_front_stick_down_2)
+        && (k->along_of_b*sin_b_back_stick_down
+        - k->across_of_b*cos_b_back_stick_down >= -product_in_refusal_front_stick_down)
+        && (k->across_of_r_2*cos_r_back_stick_down
+        - k->along_of_r_2*sin_r_back_stick_down >= -product_in_refusal_front_stick_down_4)
+        && ((k->product_in_along_of_d + k->bucket_ear_x_times_rocker_length_times_2*cos_r_back_stick_down
+        - k->bucket_ear_z_times_rocker_length_times_2*sin_r_back_stick_down)*sin_d_back_stick_down
+        - product_in_refusal_back_stick_down >= -product_in_refusal_front_stick_down_3) ? 0 : 3;
+    const double product_in_refusal_back_stick_up = (k->product_in_across_of_d
+        + k->bucket_ear_x_times_rocker_length_times_2*sin_r_back_stick_up
+        + k->bucket_ear_z_times_rocker_length_times_2*cos_r_back_stick_up)*cos_d_back_stick_up;
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
      * S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity */
-    refusal_negative_negative = (rest_of_motor_s2_negative_negative >= -1e-12
-        *fabs(rest_of_motor_s2_negative_negative))
-        && (rest_of_motor_s3_negative_negative >= -1e-12*fabs(rest_of_motor_s3_negative_negative))
-        && (rest_of_motor_s4_negative_negative >= -1e-12*fabs(rest_of_motor_s4_negative_negative))
-        && (fabs(level_of_r_negative_negative) <= 1.000000000001*reach_of_r_negative_negative)
-        && (cos_c_negative_times_across_of_c
-        + sin_c_negative_positive_times_along_of_c >= -product_in_refusal_positive_positive_2)
-        && (k->along_of_b*sin_b_negative_negative
-        - k->across_of_b*cos_b_negative_negative >= -product_in_refusal_positive_positive)
-        && (k->across_of_r_2*cos_r_negative_negative
-        - k->along_of_r_2*sin_r_negative_negative >= -product_in_refusal_positive_positive_4)
-        && ((k->product_in_along_of_d + k->bucket_ear_x_times_rocker_length_times_2*cos_r_negative_negative
-        - k->bucket_ear_z_times_rocker_length_times_2*sin_r_negative_negative)*sin_d_negative_negative
-        - product_in_refusal_negative_negative >= -product_in_refusal_positive_positive_3) ? 0 : 3;
+    refusal_back_stick_up = (rest_of_motor_s2_back_stick_up >= -1e-12*fabs(rest_of_motor_s2_back_stick_up))
+        && (rest_of_motor_s3_back_stick_up >= -1e-12*fabs(rest_of_motor_s3_back_stick_up))
+        && (rest_of_motor_s4_back_stick_up >= -1e-12*fabs(rest_of_motor_s4_back_stick_up))
+        && (fabs(level_of_r_back_stick_up) <= 1.000000000001*reach_of_r_back_stick_up)
+        && (cos_c_back_times_across_of_c
+        + sin_c_back_stick_down_times_along_of_c >= -product_in_refusal_front_stick_down_2)
+        && (k->along_of_b*sin_b_back_stick_up
+        - k->across_of_b*cos_b_back_stick_up >= -product_in_refusal_front_stick_down)
+        && (k->across_of_r_2*cos_r_back_stick_up
+        - k->along_of_r_2*sin_r_back_stick_up >= -product_in_refusal_front_stick_down_4)
+        && ((k->product_in_along_of_d + k->bucket_ear_x_times_rocker_length_times_2*cos_r_back_stick_up
+        - k->bucket_ear_z_times_rocker_length_times_2*sin_r_back_stick_up)*sin_d_back_stick_up
+        - product_in_refusal_back_stick_up >= -product_in_refusal_front_stick_down_3) ? 0 : 3;
   } else {
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
      * S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity */
-    refusal_negative_positive = 3;
+    refusal_back_stick_down = 3;
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
      * S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity */
-    refusal_negative_negative = 3;
+    refusal_back_stick_up = 3;
   }
-  const double motor_s2_negative_positive = softkin_root(rest_of_motor_s2_negative_positive);
-  const double axis_s2_negative_positive = motor_s2_negative_positive + k->offset_s2;
-  const double motor_s3_negative_positive = softkin_root(rest_of_motor_s3_negative_positive);
-  const double axis_s3_negative_positive = motor_s3_negative_positive + k->offset_s3;
-  const double motor_s4_negative_positive = softkin_root(rest_of_motor_s4_negative_positive);
-  const double axis_s4_negative_positive = motor_s4_negative_positive + k->offset_s4;
-  const double motor_s2_negative_negative = softkin_root(rest_of_motor_s2_negative_negative);
-  const double axis_s2_negative_negative = motor_s2_negative_negative + k->offset_s2;
-  const double motor_s3_negative_negative = softkin_root(rest_of_motor_s3_negative_negative);
-  const double axis_s3_negative_negative = motor_s3_negative_negative + k->offset_s3;
-  const double motor_s4_negative_negative = softkin_root(rest_of_motor_s4_negative_negative);
-  const double axis_s4_negative_negative = motor_s4_negative_negative + k->offset_s4;
+  const double motor_s2_back_stick_down = softkin_root(rest_of_motor_s2_back_stick_down);
+  const double axis_s2_back_stick_down = motor_s2_back_stick_down + k->offset_s2;
+  const double motor_s3_back_stick_down = softkin_root(rest_of_motor_s3_back_stick_down);
+  const double axis_s3_back_stick_down = motor_s3_back_stick_down + k->offset_s3;
+  const double motor_s4_back_stick_down = softkin_root(rest_of_motor_s4_back_stick_down);
+  const double axis_s4_back_stick_down = motor_s4_back_stick_down + k->offset_s4;
+  const double motor_s2_back_stick_up = softkin_root(rest_of_motor_s2_back_stick_up);
+  const double axis_s2_back_stick_up = motor_s2_back_stick_up + k->offset_s2;
+  const double motor_s3_back_stick_up = softkin_root(rest_of_motor_s3_back_stick_up);
+  const double axis_s3_back_stick_up = motor_s3_back_stick_up + k->offset_s3;
+  const double motor_s4_back_stick_up = softkin_root(rest_of_motor_s4_back_stick_up);
+  const double axis_s4_back_stick_up = motor_s4_back_stick_up + k->offset_s4;
   const double near_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
-  statuses[0] = (softkin_status)(refusal_positive_positive);
-  axes[0] = softkin_on_turn(axis_a1_positive, near_a1);
-  axes[1] = axis_s2_positive_positive;
-  axes[2] = axis_s3_positive_positive;
-  axes[3] = axis_s4_positive_positive;
-  statuses[1] = (softkin_status)(refusal_negative_positive);
-  axes[4] = softkin_on_turn(axis_a1_negative, near_a1);
-  axes[5] = axis_s2_negative_positive;
-  axes[6] = axis_s3_negative_positive;
-  axes[7] = axis_s4_negative_positive;
-  statuses[2] = (softkin_status)(refusal_positive_negative);
-  axes[8] = softkin_on_turn(axis_a1_positive, near_a1);
-  axes[9] = axis_s2_positive_negative;
-  axes[10] = axis_s3_positive_negative;
-  axes[11] = axis_s4_positive_negative;
-  statuses[3] = (softkin_status)(refusal_negative_negative);
-  axes[12] = softkin_on_turn(axis_a1_negative, near_a1);
-  axes[13] = axis_s2_negative_negative;
-  axes[14] = axis_s3_negative_negative;
-  axes[15] = axis_s4_negative_negative;
+  statuses[0] = (softkin_status)(refusal_front_stick_down);
+  axes[0] = softkin_on_turn(axis_a1_front, near_a1);
+  axes[1] = axis_s2_front_stick_down;
+  axes[2] = axis_s3_front_stick_down;
+  axes[3] = axis_s4_front_stick_down;
+  statuses[1] = (softkin_status)(refusal_back_stick_down);
+  axes[4] = softkin_on_turn(axis_a1_back, near_a1);
+  axes[5] = axis_s2_back_stick_down;
+  axes[6] = axis_s3_back_stick_down;
+  axes[7] = axis_s4_back_stick_down;
+  statuses[2] = (softkin_status)(refusal_front_stick_up);
+  axes[8] = softkin_on_turn(axis_a1_front, near_a1);
+  axes[9] = axis_s2_front_stick_up;
+  axes[10] = axis_s3_front_stick_up;
+  axes[11] = axis_s4_front_stick_up;
+  statuses[3] = (softkin_status)(refusal_back_stick_up);
+  axes[12] = softkin_on_turn(axis_a1_back, near_a1);
+  axes[13] = axis_s2_back_stick_up;
+  axes[14] = axis_s3_back_stick_up;
+  axes[15] = axis_s4_back_stick_up;
   return true;
 }
 

@@ -8,21 +8,10 @@
  * S2 (linear, u): Cylinder of the boom: its length
  * S3 (linear, u): Cylinder of the stick: its length
  * S4 (linear, u): Cylinder of the bucket: its length
- * shoulder_1: 1 = positive, 2 = negative, 0 = automatic, 3 = both meet
- * elbow_1: 1 = positive, 2 = negative, 0 = automatic, 3 = both meet
- * configuration: shoulder_1, elbow_1, turn of A1
+ * shoulder: 1 = front, 2 = back, 0 = automatic, 3 = both meet
+ * elbow: 1 = stick_down, 2 = stick_up, 0 = automatic, 3 = both meet
+ * configuration: shoulder, elbow, turn of A1
  * rows of the Jacobian: x, y, z, pitch
- *
- * The description does not name the branch shoulder_1. In positive boom_foot_x + boom_length*cos(B) -
- * bucket_length*sin(B)*sin(C)*cos(D) - bucket_length*sin(B)*sin(D)*cos(C) -
- * bucket_length*sin(C)*sin(D)*cos(B) + bucket_length*cos(B)*cos(C)*cos(D) - stick_length*sin(B)*sin(C)
- * + stick_length*cos(B)*cos(C) > 0; in negative boom_foot_x + boom_length*cos(B) -
- * bucket_length*sin(B)*sin(C)*cos(D) - bucket_length*sin(B)*sin(D)*cos(C) -
- * bucket_length*sin(C)*sin(D)*cos(B) + bucket_length*cos(B)*cos(C)*cos(D) - stick_length*sin(B)*sin(C)
- * + stick_length*cos(B)*cos(C) < 0.
- *
- * The description does not name the branch elbow_1. In positive C is between 0 and 180 degrees; in
- * negative C is between -180 and 0 degrees.
  *
  * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
  * and

@@ -145,7 +145,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double motor_s2 = axis_s2 - k->offset_s2;
   const double level_of_b = motor_s2*motor_s2 - k->sum_in_level_of_b;
   /* S2: its loop does not close */
-  if (!(fabs(level_of_b) <= k->shared_product)) {
+  if (!(fabs(level_of_b) <= k->product_in_pose_is_met)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S2: its loop does not close", "", 0.0, 0);
   }
   if (!(2.0*motor_s2 >= -k->machine_scale_times_rounding)) {
@@ -177,7 +177,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   /* M3: in the other assembly mode, or too close to a type 2 singularity */
   if (!((k->crank_length_times_lever_length_times_2*cos_c - k->crank_base_x_times_crank_length_times_2)
       *sin_motor_m3 - (k->crank_base_z_times_crank_length_times_2
-      + k->crank_length_times_lever_length_times_2*sin_c)*cos_motor_m3 >= -k->shared_product_2)) {
+      + k->crank_length_times_lever_length_times_2*sin_c)*cos_motor_m3 >= -k->product_in_pose_is_met_2)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
         "M3: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
   }
@@ -263,7 +263,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double one_plus_cos_c_from_b = (k->link_length_1_plus_link_length_2 + reach)
       *(k->link_length_1_plus_link_length_2 - reach);
   const double cos_swing_c_from_b = (one_plus_cos_c_from_b - one_less_cos_c_from_b)
-      *k->quotient_in_cos_swing_c_from_b;
+      *k->quotient_in_closed_cos_swing_c_from_b;
   /* c_from_b: out of reach */
   if (!(fabs(cos_swing_c_from_b) <= k->bound_of_cos_swing_c_from_b)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "c_from_b: out of reach", "u",
@@ -305,7 +305,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!(rest_of_motor_s2 >= -1e-12*fabs(rest_of_motor_s2))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "S2: its loop does not close", "", 0.0, 0);
   }
-  if (!(k->across_of_b*cos_b - k->along_of_b*sin_b >= -k->shared_product_3)) {
+  if (!(k->across_of_b*cos_b - k->along_of_b*sin_b >= -k->shared_product)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE,
         "S2: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
   }
@@ -336,7 +336,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* M3: in the other assembly mode, or too close to a type 2 singularity */
   if (!((k->crank_length_times_lever_length_times_2*sin_motor_m3 - k->crank_base_z_times_lever_length_times_2)
       *cos_c - (k->crank_base_x_times_lever_length_times_2
-      + k->crank_length_times_lever_length_times_2*cos_motor_m3)*sin_c >= -k->shared_product_4)) {
+      + k->crank_length_times_lever_length_times_2*cos_motor_m3)*sin_c >= -k->shared_product_2)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE,
         "M3: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
   }
@@ -456,7 +456,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double motor_s2 = axis_s2 - k->offset_s2;
   const double level_of_b = motor_s2*motor_s2 - k->sum_in_level_of_b;
   /* S2: its loop does not close */
-  if (!(fabs(level_of_b) <= k->shared_product)) {
+  if (!(fabs(level_of_b) <= k->product_in_pose_is_met)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S2: its loop does not close", "", 0.0, 0);
   }
   if (!(2.0*motor_s2 >= -k->machine_scale_times_rounding)) {
@@ -490,7 +490,7 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
       + (k->crank_base_x_times_crank_length_times_2 - k->crank_length_times_lever_length_times_2*cos_c)
       *sin_motor_m3;
   /* M3: in the other assembly mode, or too close to a type 2 singularity */
-  if (!(-shared_sum >= -k->shared_product_2)) {
+  if (!(-shared_sum >= -k->product_in_pose_is_met_2)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
         "M3: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
   }
@@ -526,7 +526,7 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double motor_s2 = axis_s2 - k->offset_s2;
   const double level_of_b = motor_s2*motor_s2 - k->sum_in_level_of_b;
   /* S2: its loop does not close */
-  if (!(fabs(level_of_b) <= k->shared_product)) {
+  if (!(fabs(level_of_b) <= k->product_in_pose_is_met)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S2: its loop does not close", "", 0.0, 0);
   }
   if (!(2.0*motor_s2 >= -k->machine_scale_times_rounding)) {
@@ -560,7 +560,7 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
       + (k->crank_base_x_times_crank_length_times_2 - k->crank_length_times_lever_length_times_2*cos_c)
       *sin_motor_m3;
   /* M3: in the other assembly mode, or too close to a type 2 singularity */
-  if (!(-shared_sum >= -k->shared_product_2)) {
+  if (!(-shared_sum >= -k->product_in_pose_is_met_2)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
         "M3: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
   }
@@ -619,8 +619,8 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   rows[8] = 0.0;
   rows[9] = rate_b*((x_at_a4_minus_x_at_b_c + x_at_b - x_at_a4)*cos_a1
       + (y_at_a4_minus_y_at_b_c + y_at_b - y_at_a4)*sin_a1);
-  rows[10] = -rate_c*((x_at_a4_minus_x_at_b_c + x_at_c - x_at_a4)*cos_a1
-      + (y_at_a4_minus_y_at_b_c + y_at_c - y_at_a4)*sin_a1);
+  rows[10] = rate_c*((x_at_a4 - x_at_a4_minus_x_at_b_c - x_at_c)*cos_a1
+      + (y_at_a4 - y_at_a4_minus_y_at_b_c - y_at_c)*sin_a1);
   rows[11] = 0.0;
   rows[12] = 1.0;
   rows[13] = 0.0;
@@ -665,7 +665,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_plus_cos_c_from_b_front = (k->link_length_1_plus_link_length_2 + reach_front)
       *(k->link_length_1_plus_link_length_2 - reach_front);
   const double cos_swing_c_from_b_front = (one_plus_cos_c_from_b_front - one_less_cos_c_from_b_front)
-      *k->quotient_in_cos_swing_c_from_b;
+      *k->quotient_in_closed_cos_swing_c_from_b;
   /* sine squared, times the squared scale */
   const double sine_square_c_from_b_front = one_less_cos_c_from_b_front*one_plus_cos_c_from_b_front;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
@@ -777,7 +777,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         - k->crank_base_z_times_lever_length_times_2)*cos_c_front_up
         - (k->crank_base_x_times_lever_length_times_2
         + k->crank_length_times_lever_length_times_2*cos_motor_m3_front_up)
-        *sin_c_front_up >= -k->shared_product_4) ? 0 : 3;
+        *sin_c_front_up >= -k->shared_product_2) ? 0 : 3;
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * M3: its loop does not close, M3: in the other assembly mode, or too close to a type 2 singularity */
     refusal_front_down = (rest_of_motor_s2_front_down >= -1e-12*fabs(rest_of_motor_s2_front_down))
@@ -787,7 +787,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         - k->crank_base_z_times_lever_length_times_2)*cos_c_front_down
         - (k->crank_base_x_times_lever_length_times_2
         + k->crank_length_times_lever_length_times_2*cos_motor_m3_front_down)
-        *sin_c_front_down >= -k->shared_product_4) ? 0 : 3;
+        *sin_c_front_down >= -k->shared_product_2) ? 0 : 3;
   } else {
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * M3: its loop does not close, M3: in the other assembly mode, or too close to a type 2 singularity */
@@ -837,7 +837,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_plus_cos_c_from_b_back = (k->link_length_1_plus_link_length_2 + reach_back)
       *(k->link_length_1_plus_link_length_2 - reach_back);
   const double cos_swing_c_from_b_back = (one_plus_cos_c_from_b_back - one_less_cos_c_from_b_back)
-      *k->quotient_in_cos_swing_c_from_b;
+      *k->quotient_in_closed_cos_swing_c_from_b;
   /* sine squared, times the squared scale */
   const double sine_square_c_from_b_back = one_less_cos_c_from_b_back*one_plus_cos_c_from_b_back;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
@@ -946,7 +946,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         - k->crank_base_z_times_lever_length_times_2)*cos_c_back_up
         - (k->crank_base_x_times_lever_length_times_2
         + k->crank_length_times_lever_length_times_2*cos_motor_m3_back_up)
-        *sin_c_back_up >= -k->shared_product_4) ? 0 : 3;
+        *sin_c_back_up >= -k->shared_product_2) ? 0 : 3;
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * M3: its loop does not close, M3: in the other assembly mode, or too close to a type 2 singularity */
     refusal_back_down = (rest_of_motor_s2_back_down >= -1e-12*fabs(rest_of_motor_s2_back_down))
@@ -956,7 +956,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         - k->crank_base_z_times_lever_length_times_2)*cos_c_back_down
         - (k->crank_base_x_times_lever_length_times_2
         + k->crank_length_times_lever_length_times_2*cos_motor_m3_back_down)
-        *sin_c_back_down >= -k->shared_product_4) ? 0 : 3;
+        *sin_c_back_down >= -k->shared_product_2) ? 0 : 3;
   } else {
     /* S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
      * M3: its loop does not close, M3: in the other assembly mode, or too close to a type 2 singularity */
@@ -1044,36 +1044,36 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* largest cosine within reach: 1, and the rounding of squared lengths */
   const double bound_of_cos_swing_c_from_b = 1.0000000000005
       + 5e-16*machine_scale*machine_scale/(p->link_length_1*p->link_length_2);
-  const double shared_product = 1.000000000001*reach_of_b;
-  const double machine_scale_times_rounding = 1e-12*machine_scale;
   const double crank_base_x_times_lever_length_times_2 = 2.0*p->crank_base_x*p->lever_length;
   const double crank_base_z_times_lever_length_times_2 = 2.0*p->crank_base_z*p->lever_length;
+  const double product_in_pose_is_met = 1.000000000001*reach_of_b;
+  const double machine_scale_times_rounding = 1e-12*machine_scale;
   const double crank_base_z_times_crank_length_times_2 = 2.0*p->crank_base_z*p->crank_length;
   const double crank_base_x_times_crank_length_times_2 = 2.0*p->crank_base_x*p->crank_length;
-  const double shared_product_2 = 2e-12*p->crank_length*p->rod_length;
-  const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
-  const double machine_scale_times_free_angle = 2e-12*machine_scale;
+  const double product_in_pose_is_met_2 = 2e-12*p->crank_length*p->rod_length;
   const double cylinder_base_x_squared = p->cylinder_base_x*p->cylinder_base_x;
   const double cylinder_base_z_squared = p->cylinder_base_z*p->cylinder_base_z;
-  const double root_in_shared_product_3 = softkin_root(cylinder_base_x_squared + cylinder_base_z_squared);
-  const double shared_product_3 = 2e-12*p->cylinder_eye*root_in_shared_product_3;
-  const double shared_product_4 = 2e-12*p->lever_length*p->rod_length;
-  const double product_in_rate_b = 4e-12*p->cylinder_eye*root_in_shared_product_3;
+  const double root_in_rate_b = softkin_root(cylinder_base_x_squared + cylinder_base_z_squared);
+  const double product_in_rate_b = 4e-12*p->cylinder_eye*root_in_rate_b;
   const double product_in_rate_c = 4e-12*p->lever_length*p->rod_length;
+  const double link_length_1_minus_link_length_2 = p->link_length_1 - p->link_length_2;
+  const double machine_scale_times_free_angle = 2e-12*machine_scale;
+  const double shared_product = 2e-12*p->cylinder_eye*root_in_rate_b;
+  const double shared_product_2 = 2e-12*p->lever_length*p->rod_length;
   const double sum_in_level_of_b = cylinder_base_x_squared + cylinder_base_z_squared
       + p->cylinder_eye*p->cylinder_eye;
   const double sum_in_level_of_c = p->rod_length*p->rod_length - p->crank_base_x*p->crank_base_x
       - p->crank_base_z*p->crank_base_z - p->crank_length*p->crank_length - p->lever_length*p->lever_length;
   const double crank_length_times_lever_length_times_2 = 2.0*p->crank_length*p->lever_length;
   const double one_by_divisor_of_b = 1.0/divisor_of_b;
-  const double shoulder_offset_plus_wrist_offset_x = p->shoulder_offset + p->wrist_offset_x;
   const double one_by_machine_scale = 1.0/machine_scale;
-  const double base_height_plus_wrist_offset_z = p->base_height + p->wrist_offset_z;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
-  const double quotient_in_cos_swing_c_from_b = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);
+  const double quotient_in_closed_cos_swing_c_from_b = 0.25/(p->link_length_1*p->link_length_2);
+  const double shoulder_offset_plus_wrist_offset_x = p->shoulder_offset + p->wrist_offset_x;
+  const double base_height_plus_wrist_offset_z = p->base_height + p->wrist_offset_z;
   const double quotient_in_margin_crank_s2 = 2.0/machine_scale;
-  const double quotient_in_margin_lever_b = 0.5/(p->cylinder_eye*root_in_shared_product_3);
+  const double quotient_in_margin_lever_b = 0.5/(p->cylinder_eye*root_in_rate_b);
   const double half_by_crank_length_by_rod_length = 0.5/(p->crank_length*p->rod_length);
   const double half_by_lever_length_by_rod_length = 0.5/(p->lever_length*p->rod_length);
   made.lowest_a1 = window_of_a1.lowest;
@@ -1105,29 +1105,29 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.across_of_b = across_of_b;
   made.reach_of_b = reach_of_b;
   made.bound_of_cos_swing_c_from_b = bound_of_cos_swing_c_from_b;
-  made.shared_product = shared_product;
-  made.machine_scale_times_rounding = machine_scale_times_rounding;
   made.crank_base_x_times_lever_length_times_2 = crank_base_x_times_lever_length_times_2;
   made.crank_base_z_times_lever_length_times_2 = crank_base_z_times_lever_length_times_2;
+  made.product_in_pose_is_met = product_in_pose_is_met;
+  made.machine_scale_times_rounding = machine_scale_times_rounding;
   made.crank_base_z_times_crank_length_times_2 = crank_base_z_times_crank_length_times_2;
   made.crank_base_x_times_crank_length_times_2 = crank_base_x_times_crank_length_times_2;
-  made.shared_product_2 = shared_product_2;
-  made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
-  made.machine_scale_times_free_angle = machine_scale_times_free_angle;
-  made.shared_product_3 = shared_product_3;
-  made.shared_product_4 = shared_product_4;
+  made.product_in_pose_is_met_2 = product_in_pose_is_met_2;
   made.product_in_rate_b = product_in_rate_b;
   made.product_in_rate_c = product_in_rate_c;
+  made.link_length_1_minus_link_length_2 = link_length_1_minus_link_length_2;
+  made.machine_scale_times_free_angle = machine_scale_times_free_angle;
+  made.shared_product = shared_product;
+  made.shared_product_2 = shared_product_2;
   made.sum_in_level_of_b = sum_in_level_of_b;
   made.sum_in_level_of_c = sum_in_level_of_c;
   made.crank_length_times_lever_length_times_2 = crank_length_times_lever_length_times_2;
   made.one_by_divisor_of_b = one_by_divisor_of_b;
-  made.shoulder_offset_plus_wrist_offset_x = shoulder_offset_plus_wrist_offset_x;
   made.one_by_machine_scale = one_by_machine_scale;
-  made.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z;
   made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
-  made.quotient_in_cos_swing_c_from_b = quotient_in_cos_swing_c_from_b;
   made.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2;
+  made.quotient_in_closed_cos_swing_c_from_b = quotient_in_closed_cos_swing_c_from_b;
+  made.shoulder_offset_plus_wrist_offset_x = shoulder_offset_plus_wrist_offset_x;
+  made.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z;
   made.quotient_in_margin_crank_s2 = quotient_in_margin_crank_s2;
   made.quotient_in_margin_lever_b = quotient_in_margin_lever_b;
   made.half_by_crank_length_by_rod_length = half_by_crank_length_by_rod_length;

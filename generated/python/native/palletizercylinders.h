@@ -108,15 +108,16 @@ typedef struct {
   double lowest_a1, highest_a1, mid_a1, lowest_s2, highest_s2, lowest_m3, highest_m3, lowest_a4, highest_a4,
       mid_a4, base_height, shoulder_offset, link_length_1, link_length_2, wrist_offset_x, wrist_offset_z,
       cylinder_base_x, cylinder_base_z, cylinder_eye, offset_a1, offset_s2, offset_m3, offset_a4, along_of_b,
-      across_of_b, reach_of_b, bound_of_cos_swing_c_from_b, shared_product, machine_scale_times_rounding,
-      crank_base_x_times_lever_length_times_2, crank_base_z_times_lever_length_times_2,
-      crank_base_z_times_crank_length_times_2, crank_base_x_times_crank_length_times_2, shared_product_2,
-      link_length_1_minus_link_length_2, machine_scale_times_free_angle, shared_product_3, shared_product_4,
-      product_in_rate_b, product_in_rate_c, sum_in_level_of_b, sum_in_level_of_c,
-      crank_length_times_lever_length_times_2, one_by_divisor_of_b, shoulder_offset_plus_wrist_offset_x,
-      one_by_machine_scale, base_height_plus_wrist_offset_z, link_length_1_plus_link_length_2,
-      quotient_in_cos_swing_c_from_b, half_by_link_length_1_by_link_length_2, quotient_in_margin_crank_s2,
-      quotient_in_margin_lever_b, half_by_crank_length_by_rod_length, half_by_lever_length_by_rod_length;
+      across_of_b, reach_of_b, bound_of_cos_swing_c_from_b, crank_base_x_times_lever_length_times_2,
+      crank_base_z_times_lever_length_times_2, product_in_pose_is_met, machine_scale_times_rounding,
+      crank_base_z_times_crank_length_times_2, crank_base_x_times_crank_length_times_2,
+      product_in_pose_is_met_2, product_in_rate_b, product_in_rate_c, link_length_1_minus_link_length_2,
+      machine_scale_times_free_angle, shared_product, shared_product_2, sum_in_level_of_b, sum_in_level_of_c,
+      crank_length_times_lever_length_times_2, one_by_divisor_of_b, one_by_machine_scale,
+      link_length_1_plus_link_length_2, half_by_link_length_1_by_link_length_2,
+      quotient_in_closed_cos_swing_c_from_b, shoulder_offset_plus_wrist_offset_x,
+      base_height_plus_wrist_offset_z, quotient_in_margin_crank_s2, quotient_in_margin_lever_b,
+      half_by_crank_length_by_rod_length, half_by_lever_length_by_rod_length;
   bool single_a1, single_a4;
 } palletizercylinders_machine;
 

@@ -10,13 +10,13 @@ Axes:
     S4 (linear, u): Cylinder of the bucket: its length
 
 Configuration:
-    shoulder_1: 1 = positive, 2 = negative, 0 = automatic, 3 = both coincide
-    elbow_1: 1 = positive, 2 = negative, 0 = automatic, 3 = both coincide
+    shoulder: 1 = front, 2 = back, 0 = automatic, 3 = both coincide
+    elbow: 1 = stick_down, 2 = stick_up, 0 = automatic, 3 = both coincide
     period of A1: signed number of the turn, 0 = automatic: see `inverse`
 
 Singularities:
-    shoulder_1: type 1
-    elbow_1: type 1
+    teeth_on_a1: type 1
+    elbow: type 1
     crank_s2: type 1
     lever_b: type 2
     crank_s3: type 1
@@ -34,16 +34,6 @@ counted together):
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 6 additions, 3 multiplications, 0 divisions, 1 square roots, 6
     sines
-
-The description does not name the branch shoulder_1. In positive boom_foot_x + boom_length*cos(B) -
-bucket_length*sin(B)*sin(C)*cos(D) - bucket_length*sin(B)*sin(D)*cos(C) - bucket_length*sin(C)*sin(D)*cos(B) +
-bucket_length*cos(B)*cos(C)*cos(D) - stick_length*sin(B)*sin(C) + stick_length*cos(B)*cos(C) > 0; in negative
-boom_foot_x + boom_length*cos(B) - bucket_length*sin(B)*sin(C)*cos(D) - bucket_length*sin(B)*sin(D)*cos(C) -
-bucket_length*sin(C)*sin(D)*cos(B) + bucket_length*cos(B)*cos(C)*cos(D) - stick_length*sin(B)*sin(C) +
-stick_length*cos(B)*cos(C) < 0.
-
-The description does not name the branch elbow_1. In positive C is between 0 and 180 degrees; in negative C is
-between -180 and 0 degrees.
 
 Verified at 118 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -278,7 +268,7 @@ class Excavator(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Excavator"
-    KEY = "excavator 5ff3acc2afd2fd65"
+    KEY = "excavator 773e626c3783d511"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Swing about Z", multi_turn=True),
         Axis(name="S2", kind="linear", unit="u", meaning="Cylinder of the boom: its length", multi_turn=False),
@@ -345,15 +335,15 @@ class Excavator(Mechanism):
         ),
     )
     CONFIGURATION = (
-        ConfigurationByte(name="shoulder_1", kind="branch", branches=("positive", "negative"), default=1),
-        ConfigurationByte(name="elbow_1", kind="branch", branches=("positive", "negative"), default=1),
+        ConfigurationByte(name="shoulder", kind="branch", branches=("front", "back"), default=1),
+        ConfigurationByte(name="elbow", kind="branch", branches=("stick_down", "stick_up"), default=1),
         ConfigurationByte(name="A1", kind="period", branches=(), default=0),
     )
     DEFAULT_CONFIGURATION = (1, 1, 0)
     JACOBIAN_ROWS = ("x", "y", "z", "pitch")
     MARGINS = (
-        "shoulder_1",
-        "elbow_1",
+        "teeth_on_a1",
+        "elbow",
         "crank_s2",
         "lever_b",
         "crank_s3",
@@ -605,12 +595,12 @@ class Excavator(Mechanism):
         z = z_at_d - bucket_length * sin_b_c_d
         r13_at_b_c_d = cos_a1 * sin_b_c_d
         r23_at_b_c_d = sin_a1 * sin_b_c_d
-        branch_shoulder_1 = one_by_machine_scale * (x * cos_a1 + y * sin_a1)
+        branch_shoulder = one_by_machine_scale * (x * cos_a1 + y * sin_a1)
         sin_c = sin(c)
         return (
             (x, y, z),
             ((r11_at_b_c_d, -sin_a1, r13_at_b_c_d), (r21_at_b_c_d, cos_a1, r23_at_b_c_d), (-sin_b_c_d, 0.0, cos_b_c_d)),
-            (branch_shoulder_1, sin_c),
+            (branch_shoulder, sin_c),
         )
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
@@ -720,7 +710,7 @@ class Excavator(Mechanism):
         """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
-        sigma_shoulder_1, sigma_elbow_1 = signs
+        sigma_shoulder, sigma_elbow = signs
         (turn_a1,) = turns
         ref_a1, ref_s2, _, _ = reference
         k = self._constants
@@ -748,15 +738,15 @@ class Excavator(Mechanism):
         distance_a1 = sqrt(x * x + y * y)  # distance of the point from the axis of a1
         # at a singularity: the angle of the reference
         if distance_a1 > machine_scale_times_free_angle:
-            along_a1 = sigma_shoulder_1 * x  # rotation by a1 that points the arm at the point
+            along_a1 = sigma_shoulder * x  # rotation by a1 that points the arm at the point
             cos_a1 = along_a1 / distance_a1
-            across_a1 = sigma_shoulder_1 * y
+            across_a1 = sigma_shoulder * y
             sin_a1 = across_a1 / distance_a1
         else:
             reference_a1 = (ref_a1 - offset_a1) * DEGREE
             heading_length = sqrt(r13 * r13 + r23 * r23)
             free_a1 = (
-                arctan2(-sigma_shoulder_1 * r23 + 0.0, -sigma_shoulder_1 * r13 + 0.0)
+                arctan2(-sigma_shoulder * r23 + 0.0, -sigma_shoulder * r13 + 0.0)
                 if heading_length > 2e-12
                 else reference_a1
             )
@@ -768,7 +758,7 @@ class Excavator(Mechanism):
         # the tool points across the plane in which the arm can turn it
         if not (in_plane > 2e-12):
             return Diagnosis(Status.UNREACHABLE, "the tool points across the plane in which the arm can turn it", 0.0)
-        ahead_a1 = sigma_shoulder_1 * distance_a1  # how far ahead of the axis the point is; negative: behind it
+        ahead_a1 = sigma_shoulder * distance_a1  # how far ahead of the axis the point is; negative: behind it
         tool_z = r33 / in_plane
         # coordinate of the point that the remaining links must reach
         wrist_x_from_a1 = ahead_a1 - boom_foot_x - bucket_length * tool_z
@@ -788,7 +778,7 @@ class Excavator(Mechanism):
             return Diagnosis(Status.UNREACHABLE, "C: out of reach [u]", missing)
         sine_square_c = one_less_cos_c * one_plus_cos_c  # sine squared, times the squared scale
         sin_c = (
-            (sqrt(sine_square_c) if sine_square_c > 0.0 else 0.0) * sigma_elbow_1 * half_by_boom_length_by_stick_length
+            (sqrt(sine_square_c) if sine_square_c > 0.0 else 0.0) * sigma_elbow * half_by_boom_length_by_stick_length
         )
         # at a singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
@@ -1022,7 +1012,7 @@ class Excavator(Mechanism):
         y_at_d = y_at_c + r21_at_b_c * stick_length
         r21_at_b_c_d = cos_b_c_d * sin_a1
         y = y_at_d + bucket_length * r21_at_b_c_d
-        margin_shoulder_1 = one_by_machine_scale * (x * cos_a1 + y * sin_a1)
+        margin_teeth_on_a1 = one_by_machine_scale * (x * cos_a1 + y * sin_a1)
         sin_c = sin(c)
         margin_crank_s2 = -motor_s2 * quotient_in_margin_crank_s2
         margin_lever_b = (across_of_b * cos_b - along_of_b * sin(b)) * quotient_in_margin_lever_b
@@ -1033,7 +1023,7 @@ class Excavator(Mechanism):
         margin_crank_r = half_by_rocker_length_by_rod_length * shared_sum
         margin_lever_d = (across_of_d * cos_of_d - along_of_d * sin_of_d) * quotient_in_margin_lever_d
         return (
-            margin_shoulder_1,
+            margin_teeth_on_a1,
             sin_c,
             margin_crank_s2,
             margin_lever_b,

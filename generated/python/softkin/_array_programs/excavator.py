@@ -113,7 +113,7 @@ class ArrayPrograms(Programs):
         z = z_at_d - k.bucket_length * sin_b_c_d
         r13_at_b_c_d = cos_a1 * sin_b_c_d
         r23_at_b_c_d = sin_a1 * sin_b_c_d
-        branch_shoulder_1 = k.one_by_machine_scale * (x * cos_a1 + y * sin_a1)
+        branch_shoulder = k.one_by_machine_scale * (x * cos_a1 + y * sin_a1)
         sin_c = sin(c)
         # S2: its loop does not close
         # S2: in the other assembly mode, or too close to a type 2 singularity
@@ -155,7 +155,7 @@ class ArrayPrograms(Programs):
         return (
             (x, y, z),
             ((r11_at_b_c_d, -sin_a1, r13_at_b_c_d), (r21_at_b_c_d, cos_a1, r23_at_b_c_d), (-sin_b_c_d, 0.0, cos_b_c_d)),
-            (branch_shoulder_1, sin_c),
+            (branch_shoulder, sin_c),
         ), status
 
     def branch(
@@ -164,7 +164,7 @@ class ArrayPrograms(Programs):
         """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation
-        sigma_shoulder_1, sigma_elbow_1 = signs
+        sigma_shoulder, sigma_elbow = signs
         (turn_a1,) = turns
         ref_a1, ref_s2, _, _ = reference
         k = self.constants
@@ -173,31 +173,29 @@ class ArrayPrograms(Programs):
         require(status, reasonable(ref_a1, ref_s2, x, y, z), Status.BAD_INPUT)
         distance_a1 = sqrt(x * x + y * y)  # distance of the point from the axis of a1
 
-        def elsewhere_cos_a1(r13: Real, r23: Real, ref_a1: Real, sigma_shoulder_1: Whole) -> Reals:
+        def elsewhere_cos_a1(r13: Real, r23: Real, ref_a1: Real, sigma_shoulder: Whole) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
             heading_length = sqrt(r13 * r13 + r23 * r23)
-            free_a1 = select(
-                heading_length > 2e-12, atan2(-sigma_shoulder_1 * r23, -sigma_shoulder_1 * r13), reference_a1
-            )
+            free_a1 = select(heading_length > 2e-12, atan2(-sigma_shoulder * r23, -sigma_shoulder * r13), reference_a1)
             cos_a1 = cos(free_a1)
             sin_a1 = sin(free_a1)
             return (cos_a1, sin_a1)
 
-        along_a1 = sigma_shoulder_1 * x  # rotation by a1 that points the arm at the point
+        along_a1 = sigma_shoulder * x  # rotation by a1 that points the arm at the point
         cos_a1 = along_a1 / distance_a1
-        across_a1 = sigma_shoulder_1 * y
+        across_a1 = sigma_shoulder * y
         sin_a1 = across_a1 / distance_a1
         # at a singularity: the angle of the reference
         cos_a1, sin_a1 = elsewhere(
             distance_a1 > k.machine_scale_times_free_angle,
             (cos_a1, sin_a1),
             elsewhere_cos_a1,
-            (r13, r23, ref_a1, sigma_shoulder_1),
+            (r13, r23, ref_a1, sigma_shoulder),
         )
         r13_from_a1 = r13 * cos_a1 + r23 * sin_a1
         # length of the commanded direction in the plane in which the arm turns the tool
         in_plane = sqrt(r13_from_a1 * r13_from_a1 + r33 * r33)
-        ahead_a1 = sigma_shoulder_1 * distance_a1  # how far ahead of the axis the point is; negative: behind it
+        ahead_a1 = sigma_shoulder * distance_a1  # how far ahead of the axis the point is; negative: behind it
         in_plane_divisor = select(in_plane > 2e-12, in_plane, 1.0)
         tool_z = r33 / in_plane_divisor
         # coordinate of the point that the remaining links must reach
@@ -213,7 +211,7 @@ class ArrayPrograms(Programs):
         one_plus_cos_c = (reach - k.boom_length_minus_stick_length) * (k.boom_length_minus_stick_length + reach)
         cos_c = (one_plus_cos_c - one_less_cos_c) * k.quotient_in_cos_c
         sine_square_c = one_less_cos_c * one_plus_cos_c  # sine squared, times the squared scale
-        sin_c = root(sine_square_c) * sigma_elbow_1 * k.half_by_boom_length_by_stick_length
+        sin_c = root(sine_square_c) * sigma_elbow * k.half_by_boom_length_by_stick_length
 
         def elsewhere_cos_b(ref_s2: Real) -> Reals:
             ref_motor_s2 = ref_s2 - k.offset_s2
@@ -412,7 +410,7 @@ class ArrayPrograms(Programs):
         y_at_d = y_at_c + r21_at_b_c * k.stick_length
         r21_at_b_c_d = cos_b_c_d * sin_a1
         y = y_at_d + k.bucket_length * r21_at_b_c_d
-        margin_shoulder_1 = k.one_by_machine_scale * (x * cos_a1 + y * sin_a1)
+        margin_teeth_on_a1 = k.one_by_machine_scale * (x * cos_a1 + y * sin_a1)
         sin_c = sin(c)
         margin_crank_s2 = -motor_s2 * k.quotient_in_margin_crank_s2
         margin_lever_b = (k.across_of_b * cos_b - k.along_of_b * sin(b)) * k.quotient_in_margin_lever_b
@@ -447,7 +445,7 @@ class ArrayPrograms(Programs):
             Status.IMPOSSIBLE,
         )
         return (
-            margin_shoulder_1,
+            margin_teeth_on_a1,
             sin_c,
             margin_crank_s2,
             margin_lever_b,

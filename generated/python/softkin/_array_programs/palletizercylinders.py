@@ -9,22 +9,27 @@ from softkin._array import (
     DEGREE,
     Programs,
     absolute,
+    advanced,
     atan2,
     cos,
     elsewhere,
+    initial,
     nearest_period,
+    opposite,
     passed,
     reasonable,
     require,
     root,
     select,
+    settled,
     sin,
+    solve,
     sqrt,
 )
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Values, Vector
     from softkin.palletizercylinders import Constants
 
 
@@ -32,8 +37,400 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 97
+    VALUES = 317
     JACOBIAN_ROWS = (0, 1, 2, 5)
+
+    def meet_point(self, given: Values, status: Codes) -> Values:
+        """The axes that meet a point, found by steps on the closure, and whether they do."""
+        (
+            given_point_x,
+            given_point_y,
+            given_point_z,
+            given_ref_a1,
+            given_ref_a4,
+            given_ref_s2,
+            given_sigma_elbow,
+            given_sigma_shoulder,
+            given_turn_a1,
+            goal_x,
+            goal_y,
+            goal_z,
+            start_a1,
+            start_a4,
+            start_m3,
+            start_s2,
+        ) = given
+        k = self.constants
+        closed_distance_a1 = sqrt(goal_x * goal_x + goal_y * goal_y)  # distance of the point from the axis of a1
+        closed_tool_z = given_point_z + k.wrist_offset_z  # commanded point, in the frame of the last moving joint
+        # coordinate of the point that the remaining links must reach
+        closed_wrist_z_from_a1 = goal_z - k.base_height - closed_tool_z
+        # A1: without a commanded turn, the value nearest to this
+        closed_open_a1 = select(k.single_a1, k.mid_a1, given_ref_a1)
+        closed_near_a1 = select(
+            given_turn_a1 != 0, 360.0 * select(given_turn_a1 > 0, given_turn_a1 - 1, given_turn_a1), closed_open_a1
+        )
+        closed_ref_motor_s2 = given_ref_s2 - k.offset_s2
+        closed_reference_level_of_b = closed_ref_motor_s2 * closed_ref_motor_s2 - k.sum_in_level_of_b
+        closed_reference_root_of_b = root(
+            (k.reach_of_b - closed_reference_level_of_b) * (closed_reference_level_of_b + k.reach_of_b)
+        )
+        closed_reference_s2 = atan2(
+            (k.across_of_b * closed_reference_level_of_b - k.along_of_b * closed_reference_root_of_b)
+            * k.one_by_divisor_of_b,
+            (k.across_of_b * closed_reference_root_of_b + k.along_of_b * closed_reference_level_of_b)
+            * k.one_by_divisor_of_b,
+        )
+        # steps of damped least squares on the closure, from one start after the other
+        (
+            tried_a1,
+            tried_s2,
+            tried_m3,
+            tried_a4,
+            passes_left,
+            attempt,
+            error_before,
+            least_error_left,
+            nearest_turn,
+            turn_of_attempt,
+            turn_beside,
+        ) = initial(start_a1, start_s2, start_m3, start_a4, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
+        for _ in range(308):
+            motor_s2 = tried_s2 - k.offset_s2
+            level_of_b = motor_s2 * motor_s2 - k.sum_in_level_of_b
+            motor_m3 = (tried_m3 - k.offset_m3) * DEGREE
+            cos_motor_m3 = cos(motor_m3)
+            sin_motor_m3 = sin(motor_m3)
+            level_of_c = (
+                k.sum_in_level_of_c
+                + k.crank_base_z_times_crank_length_times_2 * sin_motor_m3
+                - k.crank_base_x_times_crank_length_times_2 * cos_motor_m3
+            )
+            # the loop of C, solved for C
+            along_of_c = (
+                -k.crank_base_x_times_lever_length_times_2 - k.crank_length_times_lever_length_times_2 * cos_motor_m3
+            )
+            across_of_c = (
+                k.crank_base_z_times_lever_length_times_2 - k.crank_length_times_lever_length_times_2 * sin_motor_m3
+            )
+            sum_in_reach_of_c = across_of_c * across_of_c + along_of_c * along_of_c
+            reach_of_c = root(sum_in_reach_of_c)
+            root_of_c = -root((reach_of_c - level_of_c) * (level_of_c + reach_of_c))
+            divisor_of_c = select(sum_in_reach_of_c > 1e-12, sum_in_reach_of_c, 1.0)
+            c = atan2(
+                (across_of_c * level_of_c - along_of_c * root_of_c) / divisor_of_c,
+                (across_of_c * root_of_c + along_of_c * level_of_c) / divisor_of_c,
+            )
+            a1 = (tried_a1 - k.offset_a1) * DEGREE
+            sin_a1 = sin(a1)
+            cos_a1 = cos(a1)
+            x_at_b = k.shoulder_offset * cos_a1
+            root_of_b = root((k.reach_of_b - level_of_b) * (level_of_b + k.reach_of_b))
+            b = atan2(
+                (k.across_of_b * level_of_b - k.along_of_b * root_of_b) * k.one_by_divisor_of_b,
+                (k.across_of_b * root_of_b + k.along_of_b * level_of_b) * k.one_by_divisor_of_b,
+            )
+            sin_b = sin(b)
+            r13_at_b = cos_a1 * sin_b
+            x_at_b_c = x_at_b + k.link_length_1 * r13_at_b
+            cos_c = cos(c)
+            r11_at_c = cos_a1 * cos_c
+            x_at_c = x_at_b_c + k.link_length_2 * r11_at_c
+            x_at_a4 = x_at_c + k.wrist_offset_x * cos_a1
+            a4 = (tried_a4 - k.offset_a4) * DEGREE
+            sin_a4 = sin(a4)
+            cos_a4 = cos(a4)
+            r11_at_a4 = cos_a1 * cos_a4 - sin_a1 * sin_a4
+            r12_at_a4 = -cos_a1 * sin_a4 - cos_a4 * sin_a1
+            x = x_at_a4 + given_point_x * r11_at_a4 + given_point_y * r12_at_a4
+            y_at_b = k.shoulder_offset * sin_a1
+            r23_at_b = sin_a1 * sin_b
+            y_at_b_c = y_at_b + k.link_length_1 * r23_at_b
+            r21_at_c = cos_c * sin_a1
+            y_at_c = y_at_b_c + k.link_length_2 * r21_at_c
+            y_at_a4 = y_at_c + k.wrist_offset_x * sin_a1
+            y = y_at_a4 + given_point_y * r11_at_a4 - given_point_x * r12_at_a4
+            branch_shoulder = k.one_by_machine_scale * (x * cos_a1 + y * sin_a1)
+            beside_shoulder = given_sigma_shoulder * branch_shoulder < -2e-6
+            cos_c_from_b = cos(b - c)
+            beside_elbow = given_sigma_elbow * cos_c_from_b < -2e-6
+            error_1 = (goal_x - x) * k.one_by_machine_scale
+            error_2 = (goal_y - y) * k.one_by_machine_scale
+            cos_b = cos(b)
+            z_at_b_c = k.base_height + k.link_length_1 * cos_b
+            sin_c = sin(c)
+            z_at_c = z_at_b_c - k.link_length_2 * sin_c
+            flange_z = k.wrist_offset_z + z_at_c
+            z = flange_z + given_point_z
+            error_3 = (goal_z - z) * k.one_by_machine_scale
+            # error of the pose, in characteristic lengths and radians
+            error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
+            another = passes_left <= 0
+            # the error is rounding, and steps make it no smaller
+            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
+            sum_in_pose_is_met = (
+                k.crank_base_z_times_crank_length_times_2 + k.crank_length_times_lever_length_times_2 * sin_c
+            ) * cos_motor_m3 + (
+                k.crank_base_x_times_crank_length_times_2 - k.crank_length_times_lever_length_times_2 * cos_c
+            ) * sin_motor_m3
+            pose_is_met = (
+                pose_is_close
+                & (opposite(beside_elbow))
+                & (opposite(beside_shoulder))
+                & (absolute(level_of_b) <= k.product_in_pose_is_met)
+                & (absolute(level_of_c) <= 1.000000000001 * reach_of_c)
+                & (2.0 * motor_s2 >= -k.machine_scale_times_rounding)
+                & (-sum_in_pose_is_met >= -k.product_in_pose_is_met_2)
+            )
+            next_attempt = attempt + select(another, 1, 0)
+            mirrors = pose_is_close & (beside_elbow | beside_shoulder)
+            from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
+            free_angle = select(
+                from_the_met_pose, 0.01, select(next_attempt > 0, select(next_attempt > 62, 1e-5, 0.01), 2e-12)
+            )
+            product_in_damping = 0.001 * error
+            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
+            rate_1_1 = -k.one_by_machine_scale * y
+            slope_b = k.across_of_b * cos_b - k.along_of_b * sin_b  # the loop of S2: its equation by what it moves
+            rate_b = 2.0 * motor_s2 / select(absolute(slope_b) > k.product_in_rate_b, slope_b, 1.0)
+            z_minus_z_at_b_c = z - z_at_b_c
+            sum_in_rate_1_2 = k.base_height + z_minus_z_at_b_c - z
+            rate_1_2 = -rate_b * sum_in_rate_1_2 * cos_a1
+            slope_c = across_of_c * cos_c - along_of_c * sin_c  # the loop of M3: its equation by what it moves
+            rate_c = sum_in_pose_is_met / select(absolute(slope_c) > k.product_in_rate_c, slope_c, 1.0)
+            sum_in_rate_1_3 = z_at_c + z_minus_z_at_b_c - z
+            one_by_machine_scale_times_rate_c = k.one_by_machine_scale * rate_c
+            rate_1_3 = one_by_machine_scale_times_rate_c * sum_in_rate_1_3 * cos_a1
+            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            rate_2_1 = k.one_by_machine_scale * x
+            rate_2_2 = -rate_b * sum_in_rate_1_2 * sin_a1
+            rate_2_3 = one_by_machine_scale_times_rate_c * sum_in_rate_1_3 * sin_a1
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            y_minus_y_at_b_c = y - y_at_b_c
+            x_minus_x_at_b_c = x - x_at_b_c
+            rate_3_2 = rate_b * ((x_at_b + x_minus_x_at_b_c - x) * cos_a1 + (y_at_b + y_minus_y_at_b_c - y) * sin_a1)
+            rate_3_3 = -one_by_machine_scale_times_rate_c * (
+                (x_at_c + x_minus_x_at_b_c - x) * cos_a1 + (y_at_c + y_minus_y_at_b_c - y) * sin_a1
+            )
+            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
+            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
+            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            _, multiplier_1, multiplier_2, multiplier_3 = solve(
+                (
+                    (product_1_1, product_1_2, product_1_3),
+                    (product_1_2, product_2_2, product_2_3),
+                    (product_1_3, product_2_3, product_3_3),
+                ),
+                ((error_1,), (error_2,), (error_3,)),
+            )
+            step_a1 = multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            step_s2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_m3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_length = sqrt(step_a1 * step_a1 + step_m3 * step_m3 + step_s2 * step_s2)
+            # error that a step leaves: what it does not reach, and its curvature
+            error_left = (
+                sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
+                + step_length * step_length
+            )
+            is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
+            nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
+            # how far free angles are turned
+            free_turn = select(
+                next_attempt > 62,
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
+                -360.0 * (1 - next_attempt) / 61.0,
+            )
+            closed_reference_a4 = (
+                select(from_the_met_pose, tried_a4, 33.0 * free_turn + given_ref_a4) - k.offset_a4
+            ) * DEGREE
+            closed_cos_a4 = cos(closed_reference_a4)
+            closed_sin_a4 = sin(closed_reference_a4)
+            # commanded point, in the frame of the last moving joint
+            closed_tool_x = k.wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
+            # commanded point, in the frame of the last moving joint
+            closed_tool_y = closed_cos_a4 * given_point_y + closed_sin_a4 * given_point_x
+            # Pythagoras: square of the distance ahead of the axis
+            closed_ahead_squared_a1 = (closed_distance_a1 + closed_tool_y) * (closed_distance_a1 - closed_tool_y)
+            # how far ahead of the axis the point is; negative: behind it
+            closed_ahead_a1 = root(closed_ahead_squared_a1) * given_sigma_shoulder
+            # coordinate of the point that the remaining links must reach
+            closed_wrist_x_from_a1 = closed_ahead_a1 - closed_tool_x - k.shoulder_offset
+            # distance that the remaining links must span
+            closed_reach = sqrt(
+                closed_wrist_x_from_a1 * closed_wrist_x_from_a1 + closed_wrist_z_from_a1 * closed_wrist_z_from_a1
+            )
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            no_start_is_left = (
+                another
+                & (closed_distance_a1 > free_angle_times_machine_scale)
+                & (closed_reach > free_angle_times_machine_scale)
+            )
+            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+            closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
+            closed_divisor_a1 = select(
+                closed_distance_a1 > free_angle_times_machine_scale, closed_distance_a1 * closed_distance_a1, 1.0
+            )
+            # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
+            closed_cos_a1 = select(
+                closed_distance_a1 > free_angle_times_machine_scale,
+                (closed_ahead_a1 * goal_x + closed_tool_y * goal_y) / closed_divisor_a1,
+                cos(closed_reference_a1),
+            )
+            closed_sin_a1 = select(
+                closed_distance_a1 > free_angle_times_machine_scale,
+                (closed_ahead_a1 * goal_y - closed_tool_y * goal_x) / closed_divisor_a1,
+                sin(closed_reference_a1),
+            )
+            closed_axis_a1 = nearest_period(k.offset_a1 + atan2(closed_sin_a1, closed_cos_a1) / DEGREE, closed_near_a1)
+            # law of cosines for c_from_b (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
+            closed_one_less_cos_c_from_b = (closed_reach + k.link_length_1_minus_link_length_2) * (
+                closed_reach - k.link_length_1_minus_link_length_2
+            )
+            # 1 + cosine, times the scale
+            closed_one_plus_cos_c_from_b = (k.link_length_1_plus_link_length_2 - closed_reach) * (
+                closed_reach + k.link_length_1_plus_link_length_2
+            )
+            # sine squared, times the squared scale
+            closed_sine_square_c_from_b = closed_one_less_cos_c_from_b * closed_one_plus_cos_c_from_b
+            # addition theorem: plus the angle of the direction from which the cosine is measured
+            closed_cos_c_from_b = (
+                root(closed_sine_square_c_from_b) * given_sigma_elbow * k.half_by_link_length_1_by_link_length_2
+            )
+            closed_arm_along_b = closed_cos_c_from_b * k.link_length_2
+            closed_cos_swing_c_from_b = (
+                closed_one_plus_cos_c_from_b - closed_one_less_cos_c_from_b
+            ) * k.quotient_in_closed_cos_swing_c_from_b
+            closed_arm_across_b = k.link_length_1 - closed_cos_swing_c_from_b * k.link_length_2
+            # rotation by b that takes the arm to its target point
+            closed_along_b = closed_arm_across_b * closed_wrist_z_from_a1 + closed_arm_along_b * closed_wrist_x_from_a1
+            closed_across_b = closed_arm_across_b * closed_wrist_x_from_a1 - closed_arm_along_b * closed_wrist_z_from_a1
+            sum_in_closed_length_b = closed_across_b * closed_across_b + closed_along_b * closed_along_b
+            closed_length_b = select(
+                (closed_reach > free_angle_times_machine_scale) & (sum_in_closed_length_b > 0.0),
+                root(sum_in_closed_length_b),
+                1.0,
+            )
+            # at a singularity: the angle of the reference
+            closed_cos_b = select(
+                (closed_reach > free_angle_times_machine_scale) & (sum_in_closed_length_b > 0.0),
+                closed_along_b / closed_length_b,
+                cos(closed_reference_s2),
+            )
+            closed_sin_b = select(
+                (closed_reach > free_angle_times_machine_scale) & (sum_in_closed_length_b > 0.0),
+                closed_across_b / closed_length_b,
+                sin(closed_reference_s2),
+            )
+            closed_rest_of_motor_s2 = k.sum_in_level_of_b + k.across_of_b * closed_sin_b + k.along_of_b * closed_cos_b
+            closed_motor_s2 = root(closed_rest_of_motor_s2)
+            closed_axis_s2 = closed_motor_s2 + k.offset_s2
+            # c from the sum c_from_b of angles about parallel axes
+            closed_cos_c = closed_cos_b * closed_cos_c_from_b - closed_cos_swing_c_from_b * closed_sin_b
+            closed_sin_c = closed_cos_b * closed_cos_swing_c_from_b + closed_cos_c_from_b * closed_sin_b
+            closed_level_of_motor_m3 = (
+                k.sum_in_level_of_c
+                + closed_cos_c * k.crank_base_x_times_lever_length_times_2
+                - closed_sin_c * k.crank_base_z_times_lever_length_times_2
+            )
+            # the loop of C, solved for MOTOR_M3
+            closed_along_of_motor_m3 = (
+                k.crank_base_x_times_crank_length_times_2 - closed_cos_c * k.crank_length_times_lever_length_times_2
+            )
+            closed_across_of_motor_m3 = (
+                -k.crank_base_z_times_crank_length_times_2 - closed_sin_c * k.crank_length_times_lever_length_times_2
+            )
+            sum_in_closed_reach_of_motor_m3 = (
+                closed_across_of_motor_m3 * closed_across_of_motor_m3
+                + closed_along_of_motor_m3 * closed_along_of_motor_m3
+            )
+            closed_reach_of_motor_m3 = root(sum_in_closed_reach_of_motor_m3)
+            closed_root_of_motor_m3 = root(
+                (closed_reach_of_motor_m3 - closed_level_of_motor_m3)
+                * (closed_level_of_motor_m3 + closed_reach_of_motor_m3)
+            )
+            closed_divisor_of_motor_m3 = select(
+                sum_in_closed_reach_of_motor_m3 > 1e-12, sum_in_closed_reach_of_motor_m3, 1.0
+            )
+            closed_cos_motor_m3 = (
+                closed_across_of_motor_m3 * closed_root_of_motor_m3
+                + closed_along_of_motor_m3 * closed_level_of_motor_m3
+            ) / closed_divisor_of_motor_m3
+            closed_sin_motor_m3 = (
+                closed_across_of_motor_m3 * closed_level_of_motor_m3
+                - closed_along_of_motor_m3 * closed_root_of_motor_m3
+            ) / closed_divisor_of_motor_m3
+            closed_motor_m3 = atan2(closed_sin_motor_m3, closed_cos_motor_m3)
+            closed_axis_m3 = k.offset_m3 + closed_motor_m3 / DEGREE
+            passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
+            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            shared_quotient = shrinking / DEGREE
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
+            if settled(done, status):
+                break
+            (
+                tried_a1,
+                tried_s2,
+                tried_m3,
+                tried_a4,
+                passes_left,
+                attempt,
+                error_before,
+                least_error_left,
+                nearest_turn,
+                turn_of_attempt,
+                turn_beside,
+            ) = advanced(
+                done,
+                (
+                    tried_a1,
+                    tried_s2,
+                    tried_m3,
+                    tried_a4,
+                    passes_left,
+                    attempt,
+                    error_before,
+                    least_error_left,
+                    nearest_turn,
+                    turn_of_attempt,
+                    turn_beside,
+                ),
+                (
+                    select(
+                        another | from_the_met_pose,
+                        closed_axis_a1,
+                        select(
+                            mirrors,
+                            select(beside_shoulder, 2.0 * closed_axis_a1 - tried_a1, tried_a1),
+                            tried_a1 + shared_quotient * step_a1,
+                        ),
+                    ),
+                    select(
+                        another | from_the_met_pose,
+                        closed_axis_s2,
+                        select(mirrors, tried_s2, tried_s2 + k.machine_scale * shrinking * step_s2),
+                    ),
+                    select(
+                        another | from_the_met_pose,
+                        closed_axis_m3,
+                        select(mirrors, tried_m3, tried_m3 + shared_quotient * step_m3),
+                    ),
+                    select(another | from_the_met_pose, given_ref_a4, tried_a4),
+                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
+                    select(no_start_is_left, 116, next_attempt),
+                    select(another | mirrors, 9.0, error),
+                    least_error_left_now,
+                    nearest_turn_now,
+                    free_turn,
+                    select(
+                        (next_attempt > 62) & (next_attempt < 115),
+                        -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
+                        turn_beside,
+                    ),
+                ),
+            )
+        chosen_a1 = nearest_period(tried_a1, closed_near_a1)
+        return (pose_is_met, chosen_a1, tried_s2, tried_m3, tried_a4)
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -107,7 +504,7 @@ class ArrayPrograms(Programs):
         # S2: in the other assembly mode, or too close to a type 2 singularity
         require(
             status,
-            (absolute(level_of_b) <= k.shared_product) & (2.0 * motor_s2 >= -k.machine_scale_times_rounding),
+            (absolute(level_of_b) <= k.product_in_pose_is_met) & (2.0 * motor_s2 >= -k.machine_scale_times_rounding),
             Status.IMPOSSIBLE,
         )
         # M3: its loop does not close
@@ -120,7 +517,7 @@ class ArrayPrograms(Programs):
                 * sin_motor_m3
                 - (k.crank_base_z_times_crank_length_times_2 + k.crank_length_times_lever_length_times_2 * sin_c)
                 * cos_motor_m3
-                >= -k.shared_product_2
+                >= -k.product_in_pose_is_met_2
             ),
             Status.IMPOSSIBLE,
         )
@@ -162,7 +559,7 @@ class ArrayPrograms(Programs):
         one_plus_cos_c_from_b = (k.link_length_1_plus_link_length_2 + reach) * (
             k.link_length_1_plus_link_length_2 - reach
         )
-        cos_swing_c_from_b = (one_plus_cos_c_from_b - one_less_cos_c_from_b) * k.quotient_in_cos_swing_c_from_b
+        cos_swing_c_from_b = (one_plus_cos_c_from_b - one_less_cos_c_from_b) * k.quotient_in_closed_cos_swing_c_from_b
         # sine squared, times the squared scale
         sine_square_c_from_b = one_less_cos_c_from_b * one_plus_cos_c_from_b
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -256,7 +653,7 @@ class ArrayPrograms(Programs):
         require(
             status,
             (rest_of_motor_s2 >= -1e-12 * absolute(rest_of_motor_s2))
-            & (k.across_of_b * cos_b - k.along_of_b * sin_b >= -k.shared_product_3),
+            & (k.across_of_b * cos_b - k.along_of_b * sin_b >= -k.shared_product),
             Status.UNREACHABLE,
         )
         # M3: its loop does not close
@@ -269,7 +666,7 @@ class ArrayPrograms(Programs):
                 * cos_c
                 - (k.crank_base_x_times_lever_length_times_2 + k.crank_length_times_lever_length_times_2 * cos_motor_m3)
                 * sin_c
-                >= -k.shared_product_4
+                >= -k.shared_product_2
             ),
             Status.UNREACHABLE,
         )
@@ -347,14 +744,14 @@ class ArrayPrograms(Programs):
         # S2: in the other assembly mode, or too close to a type 2 singularity
         require(
             status,
-            (absolute(level_of_b) <= k.shared_product) & (2.0 * motor_s2 >= -k.machine_scale_times_rounding),
+            (absolute(level_of_b) <= k.product_in_pose_is_met) & (2.0 * motor_s2 >= -k.machine_scale_times_rounding),
             Status.IMPOSSIBLE,
         )
         # M3: its loop does not close
         # M3: in the other assembly mode, or too close to a type 2 singularity
         require(
             status,
-            (absolute(level_of_c) <= 1.000000000001 * reach_of_c) & (-shared_sum >= -k.shared_product_2),
+            (absolute(level_of_c) <= 1.000000000001 * reach_of_c) & (-shared_sum >= -k.product_in_pose_is_met_2),
             Status.IMPOSSIBLE,
         )
         return (
@@ -443,14 +840,14 @@ class ArrayPrograms(Programs):
         # S2: in the other assembly mode, or too close to a type 2 singularity
         require(
             status,
-            (absolute(level_of_b) <= k.shared_product) & (2.0 * motor_s2 >= -k.machine_scale_times_rounding),
+            (absolute(level_of_b) <= k.product_in_pose_is_met) & (2.0 * motor_s2 >= -k.machine_scale_times_rounding),
             Status.IMPOSSIBLE,
         )
         # M3: its loop does not close
         # M3: in the other assembly mode, or too close to a type 2 singularity
         require(
             status,
-            (absolute(level_of_c) <= 1.000000000001 * reach_of_c) & (-shared_sum >= -k.shared_product_2),
+            (absolute(level_of_c) <= 1.000000000001 * reach_of_c) & (-shared_sum >= -k.product_in_pose_is_met_2),
             Status.IMPOSSIBLE,
         )
         # S2: in the other assembly mode, or too close to a type 2 singularity
@@ -467,10 +864,10 @@ class ArrayPrograms(Programs):
                     (x_at_a4_minus_x_at_b_c + x_at_b - x_at_a4) * cos_a1
                     + (y_at_a4_minus_y_at_b_c + y_at_b - y_at_a4) * sin_a1
                 ),
-                -rate_c
+                rate_c
                 * (
-                    (x_at_a4_minus_x_at_b_c + x_at_c - x_at_a4) * cos_a1
-                    + (y_at_a4_minus_y_at_b_c + y_at_c - y_at_a4) * sin_a1
+                    (x_at_a4 - x_at_a4_minus_x_at_b_c - x_at_c) * cos_a1
+                    + (y_at_a4 - y_at_a4_minus_y_at_b_c - y_at_c) * sin_a1
                 ),
                 0.0,
             ),

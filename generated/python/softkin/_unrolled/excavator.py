@@ -47,7 +47,7 @@ def unrolled(k: Constants) -> Unrolled:
     boom_cylinder_base_z_squared = boom_cylinder_base_z * boom_cylinder_base_z
     boom_cylinder_eye_x_squared = boom_cylinder_eye_x * boom_cylinder_eye_x
     boom_cylinder_eye_z_squared = boom_cylinder_eye_z * boom_cylinder_eye_z
-    product_in_refusal_positive_positive = (
+    product_in_refusal_front_stick_down = (
         2e-12
         * root(boom_cylinder_base_x_squared + boom_cylinder_base_z_squared)
         * root(boom_cylinder_eye_x_squared + boom_cylinder_eye_z_squared)
@@ -56,25 +56,25 @@ def unrolled(k: Constants) -> Unrolled:
     stick_cylinder_base_z_squared = stick_cylinder_base_z * stick_cylinder_base_z
     stick_cylinder_eye_x_squared = stick_cylinder_eye_x * stick_cylinder_eye_x
     stick_cylinder_eye_z_squared = stick_cylinder_eye_z * stick_cylinder_eye_z
-    product_in_refusal_positive_positive_2 = (
+    product_in_refusal_front_stick_down_2 = (
         2e-12
         * root(stick_cylinder_base_x_squared + stick_cylinder_base_z_squared)
         * root(stick_cylinder_eye_x_squared + stick_cylinder_eye_z_squared)
     )
     bucket_ear_x_squared = bucket_ear_x * bucket_ear_x
     bucket_ear_z_squared = bucket_ear_z * bucket_ear_z
-    product_in_refusal_positive_positive_3 = 2e-12 * root(bucket_ear_x_squared + bucket_ear_z_squared) * rod_length
+    product_in_refusal_front_stick_down_3 = 2e-12 * root(bucket_ear_x_squared + bucket_ear_z_squared) * rod_length
     rocker_pivot_x_squared = rocker_pivot_x * rocker_pivot_x
     bucket_cylinder_base_x_squared = bucket_cylinder_base_x * bucket_cylinder_base_x
     bucket_cylinder_base_z_squared = bucket_cylinder_base_z * bucket_cylinder_base_z
-    product_in_refusal_positive_positive_4_2 = 2.0 * bucket_cylinder_base_x * rocker_pivot_x
-    product_in_refusal_positive_positive_4 = (
+    product_in_refusal_front_stick_down_4_2 = 2.0 * bucket_cylinder_base_x * rocker_pivot_x
+    product_in_refusal_front_stick_down_4 = (
         2e-12
         * root(
             bucket_cylinder_base_x_squared
             + bucket_cylinder_base_z_squared
             + rocker_pivot_x_squared
-            - product_in_refusal_positive_positive_4_2
+            - product_in_refusal_front_stick_down_4_2
         )
         * rocker_length
     )
@@ -84,26 +84,26 @@ def unrolled(k: Constants) -> Unrolled:
         + boom_cylinder_eye_x_squared
         + boom_cylinder_eye_z_squared
     )
-    sum_in_rest_of_motor_s3_positive_positive = (
+    sum_in_rest_of_motor_s3_front_stick_down = (
         stick_cylinder_base_x_squared
         + stick_cylinder_base_z_squared
         + stick_cylinder_eye_x_squared
         + stick_cylinder_eye_z_squared
     )
     rocker_length_squared = rocker_length * rocker_length
-    sum_in_level_of_r_positive_positive = (
+    sum_in_level_of_r_front_stick_down = (
         rod_length * rod_length
         - bucket_ear_x_squared
         - bucket_ear_z_squared
         - rocker_length_squared
         - rocker_pivot_x_squared
     )
-    sum_in_rest_of_motor_s4_positive_positive = (
+    sum_in_rest_of_motor_s4_front_stick_down = (
         bucket_cylinder_base_x_squared
         + bucket_cylinder_base_z_squared
         + rocker_length_squared
         + rocker_pivot_x_squared
-        - product_in_refusal_positive_positive_4_2
+        - product_in_refusal_front_stick_down_4_2
     )
     no_offsets = not any((offset_a1, offset_s2, offset_s3, offset_s4))
 
@@ -118,19 +118,18 @@ def unrolled(k: Constants) -> Unrolled:
         # length of the commanded direction in the plane in which the arm turns the tool
         # the nearest direction that the arm can reach
         if distance_a1 > machine_scale_times_free_angle:
-            cos_a1_positive = x / distance_a1  # at a singularity: the angle of the reference
-            sin_a1_positive = y / distance_a1
-            r13_from_a1_positive = r13 * cos_a1_positive + r23 * sin_a1_positive
+            cos_a1_front = x / distance_a1  # at a singularity: the angle of the reference
+            sin_a1_front = y / distance_a1
+            r13_from_a1_front = r13 * cos_a1_front + r23 * sin_a1_front
             # length of the commanded direction in the plane in which the arm turns the tool
-            in_plane_positive = sqrt(r13_from_a1_positive * r13_from_a1_positive + r33 * r33)
-            in_plane_divisor_positive = in_plane_positive if in_plane_positive > 2e-12 else 1.0
-            tool_z_positive = r33 / in_plane_divisor_positive
+            in_plane_front = sqrt(r13_from_a1_front * r13_from_a1_front + r33 * r33)
+            in_plane_divisor_front = in_plane_front if in_plane_front > 2e-12 else 1.0
+            tool_z_front = r33 / in_plane_divisor_front
             # coordinate of the point that the remaining links must reach
-            wrist_x_from_a1 = distance_a1 - boom_foot_x - bucket_length * tool_z_positive
-            # the nearest direction that the arm can reach
-            tool_x_positive = r13_from_a1_positive / in_plane_divisor_positive
+            wrist_x_from_a1 = distance_a1 - boom_foot_x - bucket_length * tool_z_front
+            tool_x_front = r13_from_a1_front / in_plane_divisor_front  # the nearest direction that the arm can reach
             # coordinate of the point that the remaining links must reach
-            wrist_z_from_a1 = z_minus_boom_foot_z + bucket_length * tool_x_positive
+            wrist_z_from_a1 = z_minus_boom_foot_z + bucket_length * tool_x_front
             # distance that the remaining links must span
             reach = sqrt(wrist_x_from_a1 * wrist_x_from_a1 + wrist_z_from_a1 * wrist_z_from_a1)
             # law of cosines for c (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
@@ -145,23 +144,25 @@ def unrolled(k: Constants) -> Unrolled:
                 arm_across_b = stick_length * sin_c
                 product_in_along_b = arm_across_b * wrist_z_from_a1
                 arm_along_b = boom_length + stick_length * cos_c
-                product_in_along_b_positive_positive_2 = arm_along_b * wrist_x_from_a1
+                product_in_along_b_front_stick_down_2 = arm_along_b * wrist_x_from_a1
                 # rotation by b that takes the arm to its target point
-                along_b_positive = product_in_along_b_positive_positive_2 - product_in_along_b
+                along_b_stick_down = product_in_along_b_front_stick_down_2 - product_in_along_b
                 product_in_across_b = arm_along_b * wrist_z_from_a1
-                product_in_across_b_positive_positive_2 = arm_across_b * wrist_x_from_a1
-                across_b_positive = -product_in_across_b - product_in_across_b_positive_positive_2
-                sum_in_length_b_positive = across_b_positive * across_b_positive + along_b_positive * along_b_positive
-                length_b_positive = sqrt(sum_in_length_b_positive) if sum_in_length_b_positive > 0.0 else 1.0
-                cos_b_positive = along_b_positive / length_b_positive
-                sin_b_positive = across_b_positive / length_b_positive
+                product_in_across_b_front_stick_down_2 = arm_across_b * wrist_x_from_a1
+                across_b_stick_down = -product_in_across_b - product_in_across_b_front_stick_down_2
+                sum_in_length_b_stick_down = (
+                    across_b_stick_down * across_b_stick_down + along_b_stick_down * along_b_stick_down
+                )
+                length_b_stick_down = sqrt(sum_in_length_b_stick_down) if sum_in_length_b_stick_down > 0.0 else 1.0
+                cos_b_stick_down = along_b_stick_down / length_b_stick_down
+                sin_b_stick_down = across_b_stick_down / length_b_stick_down
                 # rotation by b that takes the arm to its target point
-                along_b_negative = product_in_along_b + product_in_along_b_positive_positive_2
-                across_b_negative = product_in_across_b_positive_positive_2 - product_in_across_b
-                sum_in_length_b_negative = across_b_negative * across_b_negative + along_b_negative * along_b_negative
-                length_b_negative = sqrt(sum_in_length_b_negative) if sum_in_length_b_negative > 0.0 else 1.0
-                cos_b_negative = along_b_negative / length_b_negative
-                sin_b_negative = across_b_negative / length_b_negative
+                along_b_stick_up = product_in_along_b + product_in_along_b_front_stick_down_2
+                across_b_stick_up = product_in_across_b_front_stick_down_2 - product_in_across_b
+                sum_in_length_b_stick_up = across_b_stick_up * across_b_stick_up + along_b_stick_up * along_b_stick_up
+                length_b_stick_up = sqrt(sum_in_length_b_stick_up) if sum_in_length_b_stick_up > 0.0 else 1.0
+                cos_b_stick_up = along_b_stick_up / length_b_stick_up
+                sin_b_stick_up = across_b_stick_up / length_b_stick_up
             else:
                 ref_motor_s2 = ref_s2 - offset_s2
                 reference_level_of_b = ref_motor_s2 * ref_motor_s2 - sum_in_reference_level_of_b
@@ -172,229 +173,228 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_of_reference_s2 = cos(reference_s2)
                 sin_of_reference_s2 = sin(reference_s2)
-                cos_b_positive = cos_of_reference_s2
-                sin_b_positive = sin_of_reference_s2
-                cos_b_negative = cos_of_reference_s2
-                sin_b_negative = sin_of_reference_s2
-            rest_of_motor_s2_positive = (
+                cos_b_stick_down = cos_of_reference_s2
+                sin_b_stick_down = sin_of_reference_s2
+                cos_b_stick_up = cos_of_reference_s2
+                sin_b_stick_up = sin_of_reference_s2
+            rest_of_motor_s2_stick_down = (
                 sum_in_reference_level_of_b
-                - 2.0 * sum_in_rest_of_motor_s2 * cos_b_positive
-                - 2.0 * sum_in_rest_of_motor_s2_2 * sin_b_positive
+                - 2.0 * sum_in_rest_of_motor_s2 * cos_b_stick_down
+                - 2.0 * sum_in_rest_of_motor_s2_2 * sin_b_stick_down
             )
-            cos_b_c_positive = cos_b_positive * cos_c - sin_b_positive * sin_c
-            sin_b_c_positive = cos_b_positive * sin_c + cos_c * sin_b_positive
+            cos_b_c_stick_down = cos_b_stick_down * cos_c - sin_b_stick_down * sin_c
+            sin_b_c_stick_down = cos_b_stick_down * sin_c + cos_c * sin_b_stick_down
             # d from the sum b_c_d of angles about parallel axes
-            cos_d_positive = tool_z_positive * cos_b_c_positive + tool_x_positive * sin_b_c_positive
-            sin_d_positive = tool_x_positive * cos_b_c_positive - tool_z_positive * sin_b_c_positive
-            level_of_r_positive = (
-                sum_in_level_of_r_positive_positive
-                + product_in_along_of_d * cos_d_positive
-                + product_in_across_of_d * sin_d_positive
+            cos_d_stick_down = tool_z_front * cos_b_c_stick_down + tool_x_front * sin_b_c_stick_down
+            sin_d_stick_down = tool_x_front * cos_b_c_stick_down - tool_z_front * sin_b_c_stick_down
+            level_of_r_stick_down = (
+                sum_in_level_of_r_front_stick_down
+                + product_in_along_of_d * cos_d_stick_down
+                + product_in_across_of_d * sin_d_stick_down
             )
             # the loop of D, solved for R
-            along_of_r_positive = (
+            along_of_r_stick_down = (
                 product_in_level_of_d
-                - bucket_ear_x_times_rocker_length_times_2 * cos_d_positive
-                - bucket_ear_z_times_rocker_length_times_2 * sin_d_positive
+                - bucket_ear_x_times_rocker_length_times_2 * cos_d_stick_down
+                - bucket_ear_z_times_rocker_length_times_2 * sin_d_stick_down
             )
-            across_of_r_positive = (
-                bucket_ear_z_times_rocker_length_times_2 * cos_d_positive
-                - bucket_ear_x_times_rocker_length_times_2 * sin_d_positive
+            across_of_r_stick_down = (
+                bucket_ear_z_times_rocker_length_times_2 * cos_d_stick_down
+                - bucket_ear_x_times_rocker_length_times_2 * sin_d_stick_down
             )
-            sum_in_reach_of_r_positive = (
-                across_of_r_positive * across_of_r_positive + along_of_r_positive * along_of_r_positive
+            sum_in_reach_of_r_stick_down = (
+                across_of_r_stick_down * across_of_r_stick_down + along_of_r_stick_down * along_of_r_stick_down
             )
-            reach_of_r_positive = sqrt(sum_in_reach_of_r_positive) if sum_in_reach_of_r_positive > 0.0 else 0.0
-            root_of_r_positive = -root(
-                (reach_of_r_positive - level_of_r_positive) * (level_of_r_positive + reach_of_r_positive)
+            reach_of_r_stick_down = sqrt(sum_in_reach_of_r_stick_down) if sum_in_reach_of_r_stick_down > 0.0 else 0.0
+            root_of_r_stick_down = -root(
+                (reach_of_r_stick_down - level_of_r_stick_down) * (level_of_r_stick_down + reach_of_r_stick_down)
             )
-            divisor_of_r_positive = sum_in_reach_of_r_positive if sum_in_reach_of_r_positive > 1e-12 else 1.0
-            cos_r_positive = (
-                across_of_r_positive * root_of_r_positive + along_of_r_positive * level_of_r_positive
-            ) / divisor_of_r_positive
-            sin_r_positive = (
-                across_of_r_positive * level_of_r_positive - along_of_r_positive * root_of_r_positive
-            ) / divisor_of_r_positive
+            divisor_of_r_stick_down = sum_in_reach_of_r_stick_down if sum_in_reach_of_r_stick_down > 1e-12 else 1.0
+            cos_r_stick_down = (
+                across_of_r_stick_down * root_of_r_stick_down + along_of_r_stick_down * level_of_r_stick_down
+            ) / divisor_of_r_stick_down
+            sin_r_stick_down = (
+                across_of_r_stick_down * level_of_r_stick_down - along_of_r_stick_down * root_of_r_stick_down
+            ) / divisor_of_r_stick_down
             product_in_rest_of_motor_s3 = sum_in_rest_of_motor_s3 * cos_c
-            product_in_rest_of_motor_s3_positive_positive_2 = sum_in_rest_of_motor_s3_2 * sin_c
-            rest_of_motor_s3_positive = (
-                sum_in_rest_of_motor_s3_positive_positive
+            product_in_rest_of_motor_s3_front_stick_down_2 = sum_in_rest_of_motor_s3_2 * sin_c
+            rest_of_motor_s3_stick_down = (
+                sum_in_rest_of_motor_s3_front_stick_down
                 - 2.0 * product_in_rest_of_motor_s3
-                - 2.0 * product_in_rest_of_motor_s3_positive_positive_2
+                - 2.0 * product_in_rest_of_motor_s3_front_stick_down_2
             )
-            rest_of_motor_s4_positive = (
-                sum_in_rest_of_motor_s4_positive_positive
-                + across_of_r_2 * sin_r_positive
-                - product_in_rest_of_motor_s4 * cos_r_positive
+            rest_of_motor_s4_stick_down = (
+                sum_in_rest_of_motor_s4_front_stick_down
+                + across_of_r_2 * sin_r_stick_down
+                - product_in_rest_of_motor_s4 * cos_r_stick_down
             )
-            rest_of_motor_s2_negative = (
+            rest_of_motor_s2_stick_up = (
                 sum_in_reference_level_of_b
-                - 2.0 * sum_in_rest_of_motor_s2 * cos_b_negative
-                - 2.0 * sum_in_rest_of_motor_s2_2 * sin_b_negative
+                - 2.0 * sum_in_rest_of_motor_s2 * cos_b_stick_up
+                - 2.0 * sum_in_rest_of_motor_s2_2 * sin_b_stick_up
             )
-            cos_b_c_negative = cos_b_negative * cos_c + sin_b_negative * sin_c
-            sin_b_c_negative = cos_c * sin_b_negative - cos_b_negative * sin_c
+            cos_b_c_stick_up = cos_b_stick_up * cos_c + sin_b_stick_up * sin_c
+            sin_b_c_stick_up = cos_c * sin_b_stick_up - cos_b_stick_up * sin_c
             # d from the sum b_c_d of angles about parallel axes
-            cos_d_negative = tool_z_positive * cos_b_c_negative + tool_x_positive * sin_b_c_negative
-            sin_d_negative = tool_x_positive * cos_b_c_negative - tool_z_positive * sin_b_c_negative
-            level_of_r_negative = (
-                sum_in_level_of_r_positive_positive
-                + product_in_along_of_d * cos_d_negative
-                + product_in_across_of_d * sin_d_negative
+            cos_d_stick_up = tool_z_front * cos_b_c_stick_up + tool_x_front * sin_b_c_stick_up
+            sin_d_stick_up = tool_x_front * cos_b_c_stick_up - tool_z_front * sin_b_c_stick_up
+            level_of_r_stick_up = (
+                sum_in_level_of_r_front_stick_down
+                + product_in_along_of_d * cos_d_stick_up
+                + product_in_across_of_d * sin_d_stick_up
             )
             # the loop of D, solved for R
-            along_of_r_negative = (
+            along_of_r_stick_up = (
                 product_in_level_of_d
-                - bucket_ear_x_times_rocker_length_times_2 * cos_d_negative
-                - bucket_ear_z_times_rocker_length_times_2 * sin_d_negative
+                - bucket_ear_x_times_rocker_length_times_2 * cos_d_stick_up
+                - bucket_ear_z_times_rocker_length_times_2 * sin_d_stick_up
             )
-            across_of_r_negative = (
-                bucket_ear_z_times_rocker_length_times_2 * cos_d_negative
-                - bucket_ear_x_times_rocker_length_times_2 * sin_d_negative
+            across_of_r_stick_up = (
+                bucket_ear_z_times_rocker_length_times_2 * cos_d_stick_up
+                - bucket_ear_x_times_rocker_length_times_2 * sin_d_stick_up
             )
-            sum_in_reach_of_r_negative = (
-                across_of_r_negative * across_of_r_negative + along_of_r_negative * along_of_r_negative
+            sum_in_reach_of_r_stick_up = (
+                across_of_r_stick_up * across_of_r_stick_up + along_of_r_stick_up * along_of_r_stick_up
             )
-            reach_of_r_negative = sqrt(sum_in_reach_of_r_negative) if sum_in_reach_of_r_negative > 0.0 else 0.0
-            root_of_r_negative = -root(
-                (reach_of_r_negative - level_of_r_negative) * (level_of_r_negative + reach_of_r_negative)
+            reach_of_r_stick_up = sqrt(sum_in_reach_of_r_stick_up) if sum_in_reach_of_r_stick_up > 0.0 else 0.0
+            root_of_r_stick_up = -root(
+                (reach_of_r_stick_up - level_of_r_stick_up) * (level_of_r_stick_up + reach_of_r_stick_up)
             )
-            divisor_of_r_negative = sum_in_reach_of_r_negative if sum_in_reach_of_r_negative > 1e-12 else 1.0
-            cos_r_negative = (
-                across_of_r_negative * root_of_r_negative + along_of_r_negative * level_of_r_negative
-            ) / divisor_of_r_negative
-            sin_r_negative = (
-                across_of_r_negative * level_of_r_negative - along_of_r_negative * root_of_r_negative
-            ) / divisor_of_r_negative
-            rest_of_motor_s3_negative = (
-                2.0 * product_in_rest_of_motor_s3_positive_positive_2
-                + sum_in_rest_of_motor_s3_positive_positive
+            divisor_of_r_stick_up = sum_in_reach_of_r_stick_up if sum_in_reach_of_r_stick_up > 1e-12 else 1.0
+            cos_r_stick_up = (
+                across_of_r_stick_up * root_of_r_stick_up + along_of_r_stick_up * level_of_r_stick_up
+            ) / divisor_of_r_stick_up
+            sin_r_stick_up = (
+                across_of_r_stick_up * level_of_r_stick_up - along_of_r_stick_up * root_of_r_stick_up
+            ) / divisor_of_r_stick_up
+            rest_of_motor_s3_stick_up = (
+                2.0 * product_in_rest_of_motor_s3_front_stick_down_2
+                + sum_in_rest_of_motor_s3_front_stick_down
                 - 2.0 * product_in_rest_of_motor_s3
             )
-            rest_of_motor_s4_negative = (
-                sum_in_rest_of_motor_s4_positive_positive
-                + across_of_r_2 * sin_r_negative
-                - product_in_rest_of_motor_s4 * cos_r_negative
+            rest_of_motor_s4_stick_up = (
+                sum_in_rest_of_motor_s4_front_stick_down
+                + across_of_r_2 * sin_r_stick_up
+                - product_in_rest_of_motor_s4 * cos_r_stick_up
             )
             # S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
             # S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
             # S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity
-            if in_plane_positive > 2e-12 and abs(cos_c) <= bound_of_cos_c:
-                product_in_refusal_positive_positive_5 = (
+            if in_plane_front > 2e-12 and abs(cos_c) <= bound_of_cos_c:
+                product_in_refusal_front_stick_down_5 = (
                     product_in_across_of_d
-                    + bucket_ear_x_times_rocker_length_times_2 * sin_r_positive
-                    + bucket_ear_z_times_rocker_length_times_2 * cos_r_positive
-                ) * cos_d_positive
-                sin_c_positive_positive_times_along_of_c = along_of_c * sin_c
-                cos_c_positive_times_across_of_c = across_of_c * cos_c
-                refusal_positive_positive = (
+                    + bucket_ear_x_times_rocker_length_times_2 * sin_r_stick_down
+                    + bucket_ear_z_times_rocker_length_times_2 * cos_r_stick_down
+                ) * cos_d_stick_down
+                sin_c_front_stick_down_times_along_of_c = along_of_c * sin_c
+                cos_c_front_times_across_of_c = across_of_c * cos_c
+                refusal_front_stick_down = (
                     0
-                    if (rest_of_motor_s2_positive >= -1e-12 * abs(rest_of_motor_s2_positive))
-                    and (rest_of_motor_s3_positive >= -1e-12 * abs(rest_of_motor_s3_positive))
-                    and (rest_of_motor_s4_positive >= -1e-12 * abs(rest_of_motor_s4_positive))
-                    and (abs(level_of_r_positive) <= 1.000000000001 * reach_of_r_positive)
+                    if (rest_of_motor_s2_stick_down >= -1e-12 * abs(rest_of_motor_s2_stick_down))
+                    and (rest_of_motor_s3_stick_down >= -1e-12 * abs(rest_of_motor_s3_stick_down))
+                    and (rest_of_motor_s4_stick_down >= -1e-12 * abs(rest_of_motor_s4_stick_down))
+                    and (abs(level_of_r_stick_down) <= 1.000000000001 * reach_of_r_stick_down)
                     and (
-                        cos_c_positive_times_across_of_c - sin_c_positive_positive_times_along_of_c
-                        >= -product_in_refusal_positive_positive_2
+                        cos_c_front_times_across_of_c - sin_c_front_stick_down_times_along_of_c
+                        >= -product_in_refusal_front_stick_down_2
                     )
                     and (
-                        along_of_b * sin_b_positive - across_of_b * cos_b_positive
-                        >= -product_in_refusal_positive_positive
+                        along_of_b * sin_b_stick_down - across_of_b * cos_b_stick_down
+                        >= -product_in_refusal_front_stick_down
                     )
                     and (
-                        across_of_r_2 * cos_r_positive - along_of_r_2 * sin_r_positive
-                        >= -product_in_refusal_positive_positive_4
+                        across_of_r_2 * cos_r_stick_down - along_of_r_2 * sin_r_stick_down
+                        >= -product_in_refusal_front_stick_down_4
                     )
                     and (
                         (
                             product_in_along_of_d
-                            + bucket_ear_x_times_rocker_length_times_2 * cos_r_positive
-                            - bucket_ear_z_times_rocker_length_times_2 * sin_r_positive
+                            + bucket_ear_x_times_rocker_length_times_2 * cos_r_stick_down
+                            - bucket_ear_z_times_rocker_length_times_2 * sin_r_stick_down
                         )
-                        * sin_d_positive
-                        - product_in_refusal_positive_positive_5
-                        >= -product_in_refusal_positive_positive_3
+                        * sin_d_stick_down
+                        - product_in_refusal_front_stick_down_5
+                        >= -product_in_refusal_front_stick_down_3
                     )
                     else 3
                 )
-                product_in_refusal_negative = (
+                product_in_refusal_stick_up = (
                     product_in_across_of_d
-                    + bucket_ear_x_times_rocker_length_times_2 * sin_r_negative
-                    + bucket_ear_z_times_rocker_length_times_2 * cos_r_negative
-                ) * cos_d_negative
-                refusal_positive_negative = (
+                    + bucket_ear_x_times_rocker_length_times_2 * sin_r_stick_up
+                    + bucket_ear_z_times_rocker_length_times_2 * cos_r_stick_up
+                ) * cos_d_stick_up
+                refusal_front_stick_up = (
                     0
-                    if (rest_of_motor_s2_negative >= -1e-12 * abs(rest_of_motor_s2_negative))
-                    and (rest_of_motor_s3_negative >= -1e-12 * abs(rest_of_motor_s3_negative))
-                    and (rest_of_motor_s4_negative >= -1e-12 * abs(rest_of_motor_s4_negative))
-                    and (abs(level_of_r_negative) <= 1.000000000001 * reach_of_r_negative)
+                    if (rest_of_motor_s2_stick_up >= -1e-12 * abs(rest_of_motor_s2_stick_up))
+                    and (rest_of_motor_s3_stick_up >= -1e-12 * abs(rest_of_motor_s3_stick_up))
+                    and (rest_of_motor_s4_stick_up >= -1e-12 * abs(rest_of_motor_s4_stick_up))
+                    and (abs(level_of_r_stick_up) <= 1.000000000001 * reach_of_r_stick_up)
                     and (
-                        cos_c_positive_times_across_of_c + sin_c_positive_positive_times_along_of_c
-                        >= -product_in_refusal_positive_positive_2
+                        cos_c_front_times_across_of_c + sin_c_front_stick_down_times_along_of_c
+                        >= -product_in_refusal_front_stick_down_2
                     )
                     and (
-                        along_of_b * sin_b_negative - across_of_b * cos_b_negative
-                        >= -product_in_refusal_positive_positive
+                        along_of_b * sin_b_stick_up - across_of_b * cos_b_stick_up
+                        >= -product_in_refusal_front_stick_down
                     )
                     and (
-                        across_of_r_2 * cos_r_negative - along_of_r_2 * sin_r_negative
-                        >= -product_in_refusal_positive_positive_4
+                        across_of_r_2 * cos_r_stick_up - along_of_r_2 * sin_r_stick_up
+                        >= -product_in_refusal_front_stick_down_4
                     )
                     and (
                         (
                             product_in_along_of_d
-                            + bucket_ear_x_times_rocker_length_times_2 * cos_r_negative
-                            - bucket_ear_z_times_rocker_length_times_2 * sin_r_negative
+                            + bucket_ear_x_times_rocker_length_times_2 * cos_r_stick_up
+                            - bucket_ear_z_times_rocker_length_times_2 * sin_r_stick_up
                         )
-                        * sin_d_negative
-                        - product_in_refusal_negative
-                        >= -product_in_refusal_positive_positive_3
+                        * sin_d_stick_up
+                        - product_in_refusal_stick_up
+                        >= -product_in_refusal_front_stick_down_3
                     )
                     else 3
                 )
             else:
-                refusal_positive_positive = 3
-                refusal_positive_negative = 3
-            axis_a1_positive = offset_a1 + arctan2(sin_a1_positive, cos_a1_positive) * RADIAN
-            motor_s2_positive = sqrt(rest_of_motor_s2_positive) if rest_of_motor_s2_positive > 0.0 else 0.0
-            axis_s2_positive = motor_s2_positive + offset_s2
-            motor_s3_positive = sqrt(rest_of_motor_s3_positive) if rest_of_motor_s3_positive > 0.0 else 0.0
-            axis_s3_positive = motor_s3_positive + offset_s3
-            motor_s4_positive = sqrt(rest_of_motor_s4_positive) if rest_of_motor_s4_positive > 0.0 else 0.0
-            axis_s4_positive = motor_s4_positive + offset_s4
-            motor_s2_negative = sqrt(rest_of_motor_s2_negative) if rest_of_motor_s2_negative > 0.0 else 0.0
-            axis_s2_negative = motor_s2_negative + offset_s2
-            motor_s3_negative = sqrt(rest_of_motor_s3_negative) if rest_of_motor_s3_negative > 0.0 else 0.0
-            axis_s3_negative = motor_s3_negative + offset_s3
-            motor_s4_negative = sqrt(rest_of_motor_s4_negative) if rest_of_motor_s4_negative > 0.0 else 0.0
-            axis_s4_negative = motor_s4_negative + offset_s4
-            in_plane_negative = in_plane_positive
-            tool_z_negative = tool_z_positive
-            tool_x_negative = -tool_x_positive
-            axis_a1_negative = 180.0 + axis_a1_positive
+                refusal_front_stick_down = 3
+                refusal_front_stick_up = 3
+            axis_a1_front = offset_a1 + arctan2(sin_a1_front, cos_a1_front) * RADIAN
+            motor_s2_stick_down = sqrt(rest_of_motor_s2_stick_down) if rest_of_motor_s2_stick_down > 0.0 else 0.0
+            axis_s2_stick_down = motor_s2_stick_down + offset_s2
+            motor_s3_stick_down = sqrt(rest_of_motor_s3_stick_down) if rest_of_motor_s3_stick_down > 0.0 else 0.0
+            axis_s3_stick_down = motor_s3_stick_down + offset_s3
+            motor_s4_stick_down = sqrt(rest_of_motor_s4_stick_down) if rest_of_motor_s4_stick_down > 0.0 else 0.0
+            axis_s4_stick_down = motor_s4_stick_down + offset_s4
+            motor_s2_stick_up = sqrt(rest_of_motor_s2_stick_up) if rest_of_motor_s2_stick_up > 0.0 else 0.0
+            axis_s2_stick_up = motor_s2_stick_up + offset_s2
+            motor_s3_stick_up = sqrt(rest_of_motor_s3_stick_up) if rest_of_motor_s3_stick_up > 0.0 else 0.0
+            axis_s3_stick_up = motor_s3_stick_up + offset_s3
+            motor_s4_stick_up = sqrt(rest_of_motor_s4_stick_up) if rest_of_motor_s4_stick_up > 0.0 else 0.0
+            axis_s4_stick_up = motor_s4_stick_up + offset_s4
+            in_plane_back = in_plane_front
+            tool_z_back = tool_z_front
+            tool_x_back = -tool_x_front
+            axis_a1_back = 180.0 + axis_a1_front
         else:
             heading_length = sqrt(r13 * r13 + r23 * r23)
             if heading_length > 2e-12:
-                free_a1_positive = -arctan2(r23, -r13)
-                free_a1_negative = arctan2(r23, r13)
+                free_a1_front = -arctan2(r23, -r13)
+                free_a1_back = arctan2(r23, r13)
             else:
-                free_a1_positive = (ref_a1 - offset_a1) * DEGREE
-                free_a1_negative = free_a1_positive
-            cos_a1_positive = cos(free_a1_positive)  # at a singularity: the angle of the reference
-            sin_a1_positive = sin(free_a1_positive)
-            cos_a1_negative = cos(free_a1_negative)  # at a singularity: the angle of the reference
-            sin_a1_negative = sin(free_a1_negative)
-            r13_from_a1_positive = r13 * cos_a1_positive + r23 * sin_a1_positive
+                free_a1_front = (ref_a1 - offset_a1) * DEGREE
+                free_a1_back = free_a1_front
+            cos_a1_front = cos(free_a1_front)  # at a singularity: the angle of the reference
+            sin_a1_front = sin(free_a1_front)
+            cos_a1_back = cos(free_a1_back)  # at a singularity: the angle of the reference
+            sin_a1_back = sin(free_a1_back)
+            r13_from_a1_front = r13 * cos_a1_front + r23 * sin_a1_front
             # length of the commanded direction in the plane in which the arm turns the tool
-            in_plane_positive = sqrt(r13_from_a1_positive * r13_from_a1_positive + r33 * r33)
-            in_plane_divisor_positive = in_plane_positive if in_plane_positive > 2e-12 else 1.0
-            tool_z_positive = r33 / in_plane_divisor_positive
+            in_plane_front = sqrt(r13_from_a1_front * r13_from_a1_front + r33 * r33)
+            in_plane_divisor_front = in_plane_front if in_plane_front > 2e-12 else 1.0
+            tool_z_front = r33 / in_plane_divisor_front
             # coordinate of the point that the remaining links must reach
-            wrist_x_from_a1 = distance_a1 - boom_foot_x - bucket_length * tool_z_positive
-            # the nearest direction that the arm can reach
-            tool_x_positive = r13_from_a1_positive / in_plane_divisor_positive
+            wrist_x_from_a1 = distance_a1 - boom_foot_x - bucket_length * tool_z_front
+            tool_x_front = r13_from_a1_front / in_plane_divisor_front  # the nearest direction that the arm can reach
             # coordinate of the point that the remaining links must reach
-            wrist_z_from_a1 = z_minus_boom_foot_z + bucket_length * tool_x_positive
+            wrist_z_from_a1 = z_minus_boom_foot_z + bucket_length * tool_x_front
             # distance that the remaining links must span
             reach = sqrt(wrist_x_from_a1 * wrist_x_from_a1 + wrist_z_from_a1 * wrist_z_from_a1)
             # law of cosines for c (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
@@ -409,23 +409,25 @@ def unrolled(k: Constants) -> Unrolled:
                 arm_across_b = stick_length * sin_c
                 product_in_along_b = arm_across_b * wrist_z_from_a1
                 arm_along_b = boom_length + stick_length * cos_c
-                product_in_along_b_positive_positive_2 = arm_along_b * wrist_x_from_a1
+                product_in_along_b_front_stick_down_2 = arm_along_b * wrist_x_from_a1
                 # rotation by b that takes the arm to its target point
-                along_b_positive = product_in_along_b_positive_positive_2 - product_in_along_b
+                along_b_stick_down = product_in_along_b_front_stick_down_2 - product_in_along_b
                 product_in_across_b = arm_along_b * wrist_z_from_a1
-                product_in_across_b_positive_positive_2 = arm_across_b * wrist_x_from_a1
-                across_b_positive = -product_in_across_b - product_in_across_b_positive_positive_2
-                sum_in_length_b_positive = across_b_positive * across_b_positive + along_b_positive * along_b_positive
-                length_b_positive = sqrt(sum_in_length_b_positive) if sum_in_length_b_positive > 0.0 else 1.0
-                cos_b_positive = along_b_positive / length_b_positive
-                sin_b_positive = across_b_positive / length_b_positive
+                product_in_across_b_front_stick_down_2 = arm_across_b * wrist_x_from_a1
+                across_b_stick_down = -product_in_across_b - product_in_across_b_front_stick_down_2
+                sum_in_length_b_stick_down = (
+                    across_b_stick_down * across_b_stick_down + along_b_stick_down * along_b_stick_down
+                )
+                length_b_stick_down = sqrt(sum_in_length_b_stick_down) if sum_in_length_b_stick_down > 0.0 else 1.0
+                cos_b_stick_down = along_b_stick_down / length_b_stick_down
+                sin_b_stick_down = across_b_stick_down / length_b_stick_down
                 # rotation by b that takes the arm to its target point
-                along_b_negative = product_in_along_b + product_in_along_b_positive_positive_2
-                across_b_negative = product_in_across_b_positive_positive_2 - product_in_across_b
-                sum_in_length_b_negative = across_b_negative * across_b_negative + along_b_negative * along_b_negative
-                length_b_negative = sqrt(sum_in_length_b_negative) if sum_in_length_b_negative > 0.0 else 1.0
-                cos_b_negative = along_b_negative / length_b_negative
-                sin_b_negative = across_b_negative / length_b_negative
+                along_b_stick_up = product_in_along_b + product_in_along_b_front_stick_down_2
+                across_b_stick_up = product_in_across_b_front_stick_down_2 - product_in_across_b
+                sum_in_length_b_stick_up = across_b_stick_up * across_b_stick_up + along_b_stick_up * along_b_stick_up
+                length_b_stick_up = sqrt(sum_in_length_b_stick_up) if sum_in_length_b_stick_up > 0.0 else 1.0
+                cos_b_stick_up = along_b_stick_up / length_b_stick_up
+                sin_b_stick_up = across_b_stick_up / length_b_stick_up
             else:
                 ref_motor_s2 = ref_s2 - offset_s2
                 reference_level_of_b = ref_motor_s2 * ref_motor_s2 - sum_in_reference_level_of_b
@@ -436,212 +438,212 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 cos_of_reference_s2 = cos(reference_s2)
                 sin_of_reference_s2 = sin(reference_s2)
-                cos_b_positive = cos_of_reference_s2
-                sin_b_positive = sin_of_reference_s2
-                cos_b_negative = cos_of_reference_s2
-                sin_b_negative = sin_of_reference_s2
-            rest_of_motor_s2_positive = (
+                cos_b_stick_down = cos_of_reference_s2
+                sin_b_stick_down = sin_of_reference_s2
+                cos_b_stick_up = cos_of_reference_s2
+                sin_b_stick_up = sin_of_reference_s2
+            rest_of_motor_s2_stick_down = (
                 sum_in_reference_level_of_b
-                - 2.0 * sum_in_rest_of_motor_s2 * cos_b_positive
-                - 2.0 * sum_in_rest_of_motor_s2_2 * sin_b_positive
+                - 2.0 * sum_in_rest_of_motor_s2 * cos_b_stick_down
+                - 2.0 * sum_in_rest_of_motor_s2_2 * sin_b_stick_down
             )
-            cos_b_c_positive = cos_b_positive * cos_c - sin_b_positive * sin_c
-            sin_b_c_positive = cos_b_positive * sin_c + cos_c * sin_b_positive
+            cos_b_c_stick_down = cos_b_stick_down * cos_c - sin_b_stick_down * sin_c
+            sin_b_c_stick_down = cos_b_stick_down * sin_c + cos_c * sin_b_stick_down
             # d from the sum b_c_d of angles about parallel axes
-            cos_d_positive = tool_z_positive * cos_b_c_positive + tool_x_positive * sin_b_c_positive
-            sin_d_positive = tool_x_positive * cos_b_c_positive - tool_z_positive * sin_b_c_positive
-            level_of_r_positive = (
-                sum_in_level_of_r_positive_positive
-                + product_in_along_of_d * cos_d_positive
-                + product_in_across_of_d * sin_d_positive
+            cos_d_stick_down = tool_z_front * cos_b_c_stick_down + tool_x_front * sin_b_c_stick_down
+            sin_d_stick_down = tool_x_front * cos_b_c_stick_down - tool_z_front * sin_b_c_stick_down
+            level_of_r_stick_down = (
+                sum_in_level_of_r_front_stick_down
+                + product_in_along_of_d * cos_d_stick_down
+                + product_in_across_of_d * sin_d_stick_down
             )
             # the loop of D, solved for R
-            along_of_r_positive = (
+            along_of_r_stick_down = (
                 product_in_level_of_d
-                - bucket_ear_x_times_rocker_length_times_2 * cos_d_positive
-                - bucket_ear_z_times_rocker_length_times_2 * sin_d_positive
+                - bucket_ear_x_times_rocker_length_times_2 * cos_d_stick_down
+                - bucket_ear_z_times_rocker_length_times_2 * sin_d_stick_down
             )
-            across_of_r_positive = (
-                bucket_ear_z_times_rocker_length_times_2 * cos_d_positive
-                - bucket_ear_x_times_rocker_length_times_2 * sin_d_positive
+            across_of_r_stick_down = (
+                bucket_ear_z_times_rocker_length_times_2 * cos_d_stick_down
+                - bucket_ear_x_times_rocker_length_times_2 * sin_d_stick_down
             )
-            sum_in_reach_of_r_positive = (
-                across_of_r_positive * across_of_r_positive + along_of_r_positive * along_of_r_positive
+            sum_in_reach_of_r_stick_down = (
+                across_of_r_stick_down * across_of_r_stick_down + along_of_r_stick_down * along_of_r_stick_down
             )
-            reach_of_r_positive = sqrt(sum_in_reach_of_r_positive) if sum_in_reach_of_r_positive > 0.0 else 0.0
-            root_of_r_positive = -root(
-                (reach_of_r_positive - level_of_r_positive) * (level_of_r_positive + reach_of_r_positive)
+            reach_of_r_stick_down = sqrt(sum_in_reach_of_r_stick_down) if sum_in_reach_of_r_stick_down > 0.0 else 0.0
+            root_of_r_stick_down = -root(
+                (reach_of_r_stick_down - level_of_r_stick_down) * (level_of_r_stick_down + reach_of_r_stick_down)
             )
-            divisor_of_r_positive = sum_in_reach_of_r_positive if sum_in_reach_of_r_positive > 1e-12 else 1.0
-            cos_r_positive = (
-                across_of_r_positive * root_of_r_positive + along_of_r_positive * level_of_r_positive
-            ) / divisor_of_r_positive
-            sin_r_positive = (
-                across_of_r_positive * level_of_r_positive - along_of_r_positive * root_of_r_positive
-            ) / divisor_of_r_positive
+            divisor_of_r_stick_down = sum_in_reach_of_r_stick_down if sum_in_reach_of_r_stick_down > 1e-12 else 1.0
+            cos_r_stick_down = (
+                across_of_r_stick_down * root_of_r_stick_down + along_of_r_stick_down * level_of_r_stick_down
+            ) / divisor_of_r_stick_down
+            sin_r_stick_down = (
+                across_of_r_stick_down * level_of_r_stick_down - along_of_r_stick_down * root_of_r_stick_down
+            ) / divisor_of_r_stick_down
             product_in_rest_of_motor_s3 = sum_in_rest_of_motor_s3 * cos_c
-            product_in_rest_of_motor_s3_positive_positive_2 = sum_in_rest_of_motor_s3_2 * sin_c
-            rest_of_motor_s3_positive = (
-                sum_in_rest_of_motor_s3_positive_positive
+            product_in_rest_of_motor_s3_front_stick_down_2 = sum_in_rest_of_motor_s3_2 * sin_c
+            rest_of_motor_s3_stick_down = (
+                sum_in_rest_of_motor_s3_front_stick_down
                 - 2.0 * product_in_rest_of_motor_s3
-                - 2.0 * product_in_rest_of_motor_s3_positive_positive_2
+                - 2.0 * product_in_rest_of_motor_s3_front_stick_down_2
             )
-            rest_of_motor_s4_positive = (
-                sum_in_rest_of_motor_s4_positive_positive
-                + across_of_r_2 * sin_r_positive
-                - product_in_rest_of_motor_s4 * cos_r_positive
+            rest_of_motor_s4_stick_down = (
+                sum_in_rest_of_motor_s4_front_stick_down
+                + across_of_r_2 * sin_r_stick_down
+                - product_in_rest_of_motor_s4 * cos_r_stick_down
             )
-            rest_of_motor_s2_negative = (
+            rest_of_motor_s2_stick_up = (
                 sum_in_reference_level_of_b
-                - 2.0 * sum_in_rest_of_motor_s2 * cos_b_negative
-                - 2.0 * sum_in_rest_of_motor_s2_2 * sin_b_negative
+                - 2.0 * sum_in_rest_of_motor_s2 * cos_b_stick_up
+                - 2.0 * sum_in_rest_of_motor_s2_2 * sin_b_stick_up
             )
-            cos_b_c_negative = cos_b_negative * cos_c + sin_b_negative * sin_c
-            sin_b_c_negative = cos_c * sin_b_negative - cos_b_negative * sin_c
+            cos_b_c_stick_up = cos_b_stick_up * cos_c + sin_b_stick_up * sin_c
+            sin_b_c_stick_up = cos_c * sin_b_stick_up - cos_b_stick_up * sin_c
             # d from the sum b_c_d of angles about parallel axes
-            cos_d_negative = tool_z_positive * cos_b_c_negative + tool_x_positive * sin_b_c_negative
-            sin_d_negative = tool_x_positive * cos_b_c_negative - tool_z_positive * sin_b_c_negative
-            level_of_r_negative = (
-                sum_in_level_of_r_positive_positive
-                + product_in_along_of_d * cos_d_negative
-                + product_in_across_of_d * sin_d_negative
+            cos_d_stick_up = tool_z_front * cos_b_c_stick_up + tool_x_front * sin_b_c_stick_up
+            sin_d_stick_up = tool_x_front * cos_b_c_stick_up - tool_z_front * sin_b_c_stick_up
+            level_of_r_stick_up = (
+                sum_in_level_of_r_front_stick_down
+                + product_in_along_of_d * cos_d_stick_up
+                + product_in_across_of_d * sin_d_stick_up
             )
             # the loop of D, solved for R
-            along_of_r_negative = (
+            along_of_r_stick_up = (
                 product_in_level_of_d
-                - bucket_ear_x_times_rocker_length_times_2 * cos_d_negative
-                - bucket_ear_z_times_rocker_length_times_2 * sin_d_negative
+                - bucket_ear_x_times_rocker_length_times_2 * cos_d_stick_up
+                - bucket_ear_z_times_rocker_length_times_2 * sin_d_stick_up
             )
-            across_of_r_negative = (
-                bucket_ear_z_times_rocker_length_times_2 * cos_d_negative
-                - bucket_ear_x_times_rocker_length_times_2 * sin_d_negative
+            across_of_r_stick_up = (
+                bucket_ear_z_times_rocker_length_times_2 * cos_d_stick_up
+                - bucket_ear_x_times_rocker_length_times_2 * sin_d_stick_up
             )
-            sum_in_reach_of_r_negative = (
-                across_of_r_negative * across_of_r_negative + along_of_r_negative * along_of_r_negative
+            sum_in_reach_of_r_stick_up = (
+                across_of_r_stick_up * across_of_r_stick_up + along_of_r_stick_up * along_of_r_stick_up
             )
-            reach_of_r_negative = sqrt(sum_in_reach_of_r_negative) if sum_in_reach_of_r_negative > 0.0 else 0.0
-            root_of_r_negative = -root(
-                (reach_of_r_negative - level_of_r_negative) * (level_of_r_negative + reach_of_r_negative)
+            reach_of_r_stick_up = sqrt(sum_in_reach_of_r_stick_up) if sum_in_reach_of_r_stick_up > 0.0 else 0.0
+            root_of_r_stick_up = -root(
+                (reach_of_r_stick_up - level_of_r_stick_up) * (level_of_r_stick_up + reach_of_r_stick_up)
             )
-            divisor_of_r_negative = sum_in_reach_of_r_negative if sum_in_reach_of_r_negative > 1e-12 else 1.0
-            cos_r_negative = (
-                across_of_r_negative * root_of_r_negative + along_of_r_negative * level_of_r_negative
-            ) / divisor_of_r_negative
-            sin_r_negative = (
-                across_of_r_negative * level_of_r_negative - along_of_r_negative * root_of_r_negative
-            ) / divisor_of_r_negative
-            rest_of_motor_s3_negative = (
-                2.0 * product_in_rest_of_motor_s3_positive_positive_2
-                + sum_in_rest_of_motor_s3_positive_positive
+            divisor_of_r_stick_up = sum_in_reach_of_r_stick_up if sum_in_reach_of_r_stick_up > 1e-12 else 1.0
+            cos_r_stick_up = (
+                across_of_r_stick_up * root_of_r_stick_up + along_of_r_stick_up * level_of_r_stick_up
+            ) / divisor_of_r_stick_up
+            sin_r_stick_up = (
+                across_of_r_stick_up * level_of_r_stick_up - along_of_r_stick_up * root_of_r_stick_up
+            ) / divisor_of_r_stick_up
+            rest_of_motor_s3_stick_up = (
+                2.0 * product_in_rest_of_motor_s3_front_stick_down_2
+                + sum_in_rest_of_motor_s3_front_stick_down
                 - 2.0 * product_in_rest_of_motor_s3
             )
-            rest_of_motor_s4_negative = (
-                sum_in_rest_of_motor_s4_positive_positive
-                + across_of_r_2 * sin_r_negative
-                - product_in_rest_of_motor_s4 * cos_r_negative
+            rest_of_motor_s4_stick_up = (
+                sum_in_rest_of_motor_s4_front_stick_down
+                + across_of_r_2 * sin_r_stick_up
+                - product_in_rest_of_motor_s4 * cos_r_stick_up
             )
             # S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
             # S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
             # S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity
-            if in_plane_positive > 2e-12 and abs(cos_c) <= bound_of_cos_c:
-                product_in_refusal_positive_positive_5 = (
+            if in_plane_front > 2e-12 and abs(cos_c) <= bound_of_cos_c:
+                product_in_refusal_front_stick_down_5 = (
                     product_in_across_of_d
-                    + bucket_ear_x_times_rocker_length_times_2 * sin_r_positive
-                    + bucket_ear_z_times_rocker_length_times_2 * cos_r_positive
-                ) * cos_d_positive
-                sin_c_positive_positive_times_along_of_c = along_of_c * sin_c
-                cos_c_positive_times_across_of_c = across_of_c * cos_c
-                refusal_positive_positive = (
+                    + bucket_ear_x_times_rocker_length_times_2 * sin_r_stick_down
+                    + bucket_ear_z_times_rocker_length_times_2 * cos_r_stick_down
+                ) * cos_d_stick_down
+                sin_c_front_stick_down_times_along_of_c = along_of_c * sin_c
+                cos_c_front_times_across_of_c = across_of_c * cos_c
+                refusal_front_stick_down = (
                     0
-                    if (rest_of_motor_s2_positive >= -1e-12 * abs(rest_of_motor_s2_positive))
-                    and (rest_of_motor_s3_positive >= -1e-12 * abs(rest_of_motor_s3_positive))
-                    and (rest_of_motor_s4_positive >= -1e-12 * abs(rest_of_motor_s4_positive))
-                    and (abs(level_of_r_positive) <= 1.000000000001 * reach_of_r_positive)
+                    if (rest_of_motor_s2_stick_down >= -1e-12 * abs(rest_of_motor_s2_stick_down))
+                    and (rest_of_motor_s3_stick_down >= -1e-12 * abs(rest_of_motor_s3_stick_down))
+                    and (rest_of_motor_s4_stick_down >= -1e-12 * abs(rest_of_motor_s4_stick_down))
+                    and (abs(level_of_r_stick_down) <= 1.000000000001 * reach_of_r_stick_down)
                     and (
-                        cos_c_positive_times_across_of_c - sin_c_positive_positive_times_along_of_c
-                        >= -product_in_refusal_positive_positive_2
+                        cos_c_front_times_across_of_c - sin_c_front_stick_down_times_along_of_c
+                        >= -product_in_refusal_front_stick_down_2
                     )
                     and (
-                        along_of_b * sin_b_positive - across_of_b * cos_b_positive
-                        >= -product_in_refusal_positive_positive
+                        along_of_b * sin_b_stick_down - across_of_b * cos_b_stick_down
+                        >= -product_in_refusal_front_stick_down
                     )
                     and (
-                        across_of_r_2 * cos_r_positive - along_of_r_2 * sin_r_positive
-                        >= -product_in_refusal_positive_positive_4
+                        across_of_r_2 * cos_r_stick_down - along_of_r_2 * sin_r_stick_down
+                        >= -product_in_refusal_front_stick_down_4
                     )
                     and (
                         (
                             product_in_along_of_d
-                            + bucket_ear_x_times_rocker_length_times_2 * cos_r_positive
-                            - bucket_ear_z_times_rocker_length_times_2 * sin_r_positive
+                            + bucket_ear_x_times_rocker_length_times_2 * cos_r_stick_down
+                            - bucket_ear_z_times_rocker_length_times_2 * sin_r_stick_down
                         )
-                        * sin_d_positive
-                        - product_in_refusal_positive_positive_5
-                        >= -product_in_refusal_positive_positive_3
+                        * sin_d_stick_down
+                        - product_in_refusal_front_stick_down_5
+                        >= -product_in_refusal_front_stick_down_3
                     )
                     else 3
                 )
-                product_in_refusal_negative = (
+                product_in_refusal_stick_up = (
                     product_in_across_of_d
-                    + bucket_ear_x_times_rocker_length_times_2 * sin_r_negative
-                    + bucket_ear_z_times_rocker_length_times_2 * cos_r_negative
-                ) * cos_d_negative
-                refusal_positive_negative = (
+                    + bucket_ear_x_times_rocker_length_times_2 * sin_r_stick_up
+                    + bucket_ear_z_times_rocker_length_times_2 * cos_r_stick_up
+                ) * cos_d_stick_up
+                refusal_front_stick_up = (
                     0
-                    if (rest_of_motor_s2_negative >= -1e-12 * abs(rest_of_motor_s2_negative))
-                    and (rest_of_motor_s3_negative >= -1e-12 * abs(rest_of_motor_s3_negative))
-                    and (rest_of_motor_s4_negative >= -1e-12 * abs(rest_of_motor_s4_negative))
-                    and (abs(level_of_r_negative) <= 1.000000000001 * reach_of_r_negative)
+                    if (rest_of_motor_s2_stick_up >= -1e-12 * abs(rest_of_motor_s2_stick_up))
+                    and (rest_of_motor_s3_stick_up >= -1e-12 * abs(rest_of_motor_s3_stick_up))
+                    and (rest_of_motor_s4_stick_up >= -1e-12 * abs(rest_of_motor_s4_stick_up))
+                    and (abs(level_of_r_stick_up) <= 1.000000000001 * reach_of_r_stick_up)
                     and (
-                        cos_c_positive_times_across_of_c + sin_c_positive_positive_times_along_of_c
-                        >= -product_in_refusal_positive_positive_2
+                        cos_c_front_times_across_of_c + sin_c_front_stick_down_times_along_of_c
+                        >= -product_in_refusal_front_stick_down_2
                     )
                     and (
-                        along_of_b * sin_b_negative - across_of_b * cos_b_negative
-                        >= -product_in_refusal_positive_positive
+                        along_of_b * sin_b_stick_up - across_of_b * cos_b_stick_up
+                        >= -product_in_refusal_front_stick_down
                     )
                     and (
-                        across_of_r_2 * cos_r_negative - along_of_r_2 * sin_r_negative
-                        >= -product_in_refusal_positive_positive_4
+                        across_of_r_2 * cos_r_stick_up - along_of_r_2 * sin_r_stick_up
+                        >= -product_in_refusal_front_stick_down_4
                     )
                     and (
                         (
                             product_in_along_of_d
-                            + bucket_ear_x_times_rocker_length_times_2 * cos_r_negative
-                            - bucket_ear_z_times_rocker_length_times_2 * sin_r_negative
+                            + bucket_ear_x_times_rocker_length_times_2 * cos_r_stick_up
+                            - bucket_ear_z_times_rocker_length_times_2 * sin_r_stick_up
                         )
-                        * sin_d_negative
-                        - product_in_refusal_negative
-                        >= -product_in_refusal_positive_positive_3
+                        * sin_d_stick_up
+                        - product_in_refusal_stick_up
+                        >= -product_in_refusal_front_stick_down_3
                     )
                     else 3
                 )
             else:
-                refusal_positive_positive = 3
-                refusal_positive_negative = 3
-            axis_a1_positive = offset_a1 + arctan2(sin_a1_positive, cos_a1_positive) * RADIAN
-            motor_s2_positive = sqrt(rest_of_motor_s2_positive) if rest_of_motor_s2_positive > 0.0 else 0.0
-            axis_s2_positive = motor_s2_positive + offset_s2
-            motor_s3_positive = sqrt(rest_of_motor_s3_positive) if rest_of_motor_s3_positive > 0.0 else 0.0
-            axis_s3_positive = motor_s3_positive + offset_s3
-            motor_s4_positive = sqrt(rest_of_motor_s4_positive) if rest_of_motor_s4_positive > 0.0 else 0.0
-            axis_s4_positive = motor_s4_positive + offset_s4
-            motor_s2_negative = sqrt(rest_of_motor_s2_negative) if rest_of_motor_s2_negative > 0.0 else 0.0
-            axis_s2_negative = motor_s2_negative + offset_s2
-            motor_s3_negative = sqrt(rest_of_motor_s3_negative) if rest_of_motor_s3_negative > 0.0 else 0.0
-            axis_s3_negative = motor_s3_negative + offset_s3
-            motor_s4_negative = sqrt(rest_of_motor_s4_negative) if rest_of_motor_s4_negative > 0.0 else 0.0
-            axis_s4_negative = motor_s4_negative + offset_s4
-            r13_from_a1_negative = r13 * cos_a1_negative + r23 * sin_a1_negative
-            in_plane_negative = sqrt(r13_from_a1_negative * r13_from_a1_negative + r33 * r33)
-            in_plane_divisor_negative = in_plane_negative if in_plane_negative > 2e-12 else 1.0
-            tool_z_negative = r33 / in_plane_divisor_negative
-            tool_x_negative = r13_from_a1_negative / in_plane_divisor_negative
-            axis_a1_negative = offset_a1 + arctan2(sin_a1_negative, cos_a1_negative) * RADIAN
+                refusal_front_stick_down = 3
+                refusal_front_stick_up = 3
+            axis_a1_front = offset_a1 + arctan2(sin_a1_front, cos_a1_front) * RADIAN
+            motor_s2_stick_down = sqrt(rest_of_motor_s2_stick_down) if rest_of_motor_s2_stick_down > 0.0 else 0.0
+            axis_s2_stick_down = motor_s2_stick_down + offset_s2
+            motor_s3_stick_down = sqrt(rest_of_motor_s3_stick_down) if rest_of_motor_s3_stick_down > 0.0 else 0.0
+            axis_s3_stick_down = motor_s3_stick_down + offset_s3
+            motor_s4_stick_down = sqrt(rest_of_motor_s4_stick_down) if rest_of_motor_s4_stick_down > 0.0 else 0.0
+            axis_s4_stick_down = motor_s4_stick_down + offset_s4
+            motor_s2_stick_up = sqrt(rest_of_motor_s2_stick_up) if rest_of_motor_s2_stick_up > 0.0 else 0.0
+            axis_s2_stick_up = motor_s2_stick_up + offset_s2
+            motor_s3_stick_up = sqrt(rest_of_motor_s3_stick_up) if rest_of_motor_s3_stick_up > 0.0 else 0.0
+            axis_s3_stick_up = motor_s3_stick_up + offset_s3
+            motor_s4_stick_up = sqrt(rest_of_motor_s4_stick_up) if rest_of_motor_s4_stick_up > 0.0 else 0.0
+            axis_s4_stick_up = motor_s4_stick_up + offset_s4
+            r13_from_a1_back = r13 * cos_a1_back + r23 * sin_a1_back
+            in_plane_back = sqrt(r13_from_a1_back * r13_from_a1_back + r33 * r33)
+            in_plane_divisor_back = in_plane_back if in_plane_back > 2e-12 else 1.0
+            tool_z_back = r33 / in_plane_divisor_back
+            tool_x_back = r13_from_a1_back / in_plane_divisor_back
+            axis_a1_back = offset_a1 + arctan2(sin_a1_back, cos_a1_back) * RADIAN
         # coordinate of the point that the remaining links must reach
-        wrist_x_from_a1 = -boom_foot_x - distance_a1 - bucket_length * tool_z_negative
+        wrist_x_from_a1 = -boom_foot_x - distance_a1 - bucket_length * tool_z_back
         # coordinate of the point that the remaining links must reach
-        wrist_z_from_a1 = z_minus_boom_foot_z + bucket_length * tool_x_negative
+        wrist_z_from_a1 = z_minus_boom_foot_z + bucket_length * tool_x_back
         # distance that the remaining links must span
         reach = sqrt(wrist_x_from_a1 * wrist_x_from_a1 + wrist_z_from_a1 * wrist_z_from_a1)
         # law of cosines for c (x_from_a1² + z_from_a1²): 1 - cosine, times a scale
@@ -656,23 +658,25 @@ def unrolled(k: Constants) -> Unrolled:
             arm_across_b = stick_length * sin_c
             product_in_along_b = arm_across_b * wrist_z_from_a1
             arm_along_b = boom_length + stick_length * cos_c
-            product_in_along_b_negative_positive_2 = arm_along_b * wrist_x_from_a1
+            product_in_along_b_back_stick_down_2 = arm_along_b * wrist_x_from_a1
             # rotation by b that takes the arm to its target point
-            along_b_positive = product_in_along_b_negative_positive_2 - product_in_along_b
+            along_b_stick_down = product_in_along_b_back_stick_down_2 - product_in_along_b
             product_in_across_b = arm_along_b * wrist_z_from_a1
-            product_in_across_b_negative_positive_2 = arm_across_b * wrist_x_from_a1
-            across_b_positive = -product_in_across_b - product_in_across_b_negative_positive_2
-            sum_in_length_b_positive = across_b_positive * across_b_positive + along_b_positive * along_b_positive
-            length_b_positive = sqrt(sum_in_length_b_positive) if sum_in_length_b_positive > 0.0 else 1.0
-            cos_b_positive = along_b_positive / length_b_positive
-            sin_b_positive = across_b_positive / length_b_positive
+            product_in_across_b_back_stick_down_2 = arm_across_b * wrist_x_from_a1
+            across_b_stick_down = -product_in_across_b - product_in_across_b_back_stick_down_2
+            sum_in_length_b_stick_down = (
+                across_b_stick_down * across_b_stick_down + along_b_stick_down * along_b_stick_down
+            )
+            length_b_stick_down = sqrt(sum_in_length_b_stick_down) if sum_in_length_b_stick_down > 0.0 else 1.0
+            cos_b_stick_down = along_b_stick_down / length_b_stick_down
+            sin_b_stick_down = across_b_stick_down / length_b_stick_down
             # rotation by b that takes the arm to its target point
-            along_b_negative = product_in_along_b + product_in_along_b_negative_positive_2
-            across_b_negative = product_in_across_b_negative_positive_2 - product_in_across_b
-            sum_in_length_b_negative = across_b_negative * across_b_negative + along_b_negative * along_b_negative
-            length_b_negative = sqrt(sum_in_length_b_negative) if sum_in_length_b_negative > 0.0 else 1.0
-            cos_b_negative = along_b_negative / length_b_negative
-            sin_b_negative = across_b_negative / length_b_negative
+            along_b_stick_up = product_in_along_b + product_in_along_b_back_stick_down_2
+            across_b_stick_up = product_in_across_b_back_stick_down_2 - product_in_across_b
+            sum_in_length_b_stick_up = across_b_stick_up * across_b_stick_up + along_b_stick_up * along_b_stick_up
+            length_b_stick_up = sqrt(sum_in_length_b_stick_up) if sum_in_length_b_stick_up > 0.0 else 1.0
+            cos_b_stick_up = along_b_stick_up / length_b_stick_up
+            sin_b_stick_up = across_b_stick_up / length_b_stick_up
         else:
             ref_motor_s2 = ref_s2 - offset_s2
             reference_level_of_b = ref_motor_s2 * ref_motor_s2 - sum_in_reference_level_of_b
@@ -683,233 +687,227 @@ def unrolled(k: Constants) -> Unrolled:
             )
             cos_of_reference_s2 = cos(reference_s2)
             sin_of_reference_s2 = sin(reference_s2)
-            cos_b_positive = cos_of_reference_s2
-            sin_b_positive = sin_of_reference_s2
-            cos_b_negative = cos_of_reference_s2
-            sin_b_negative = sin_of_reference_s2
-        rest_of_motor_s2_positive = (
+            cos_b_stick_down = cos_of_reference_s2
+            sin_b_stick_down = sin_of_reference_s2
+            cos_b_stick_up = cos_of_reference_s2
+            sin_b_stick_up = sin_of_reference_s2
+        rest_of_motor_s2_stick_down = (
             sum_in_reference_level_of_b
-            - 2.0 * sum_in_rest_of_motor_s2 * cos_b_positive
-            - 2.0 * sum_in_rest_of_motor_s2_2 * sin_b_positive
+            - 2.0 * sum_in_rest_of_motor_s2 * cos_b_stick_down
+            - 2.0 * sum_in_rest_of_motor_s2_2 * sin_b_stick_down
         )
-        cos_b_c_positive = cos_b_positive * cos_c - sin_b_positive * sin_c
-        sin_b_c_positive = cos_b_positive * sin_c + cos_c * sin_b_positive
+        cos_b_c_stick_down = cos_b_stick_down * cos_c - sin_b_stick_down * sin_c
+        sin_b_c_stick_down = cos_b_stick_down * sin_c + cos_c * sin_b_stick_down
         # d from the sum b_c_d of angles about parallel axes
-        cos_d_positive = tool_z_negative * cos_b_c_positive + tool_x_negative * sin_b_c_positive
-        sin_d_positive = tool_x_negative * cos_b_c_positive - tool_z_negative * sin_b_c_positive
-        level_of_r_positive = (
-            sum_in_level_of_r_positive_positive
-            + product_in_along_of_d * cos_d_positive
-            + product_in_across_of_d * sin_d_positive
+        cos_d_stick_down = tool_z_back * cos_b_c_stick_down + tool_x_back * sin_b_c_stick_down
+        sin_d_stick_down = tool_x_back * cos_b_c_stick_down - tool_z_back * sin_b_c_stick_down
+        level_of_r_stick_down = (
+            sum_in_level_of_r_front_stick_down
+            + product_in_along_of_d * cos_d_stick_down
+            + product_in_across_of_d * sin_d_stick_down
         )
         # the loop of D, solved for R
-        along_of_r_positive = (
+        along_of_r_stick_down = (
             product_in_level_of_d
-            - bucket_ear_x_times_rocker_length_times_2 * cos_d_positive
-            - bucket_ear_z_times_rocker_length_times_2 * sin_d_positive
+            - bucket_ear_x_times_rocker_length_times_2 * cos_d_stick_down
+            - bucket_ear_z_times_rocker_length_times_2 * sin_d_stick_down
         )
-        across_of_r_positive = (
-            bucket_ear_z_times_rocker_length_times_2 * cos_d_positive
-            - bucket_ear_x_times_rocker_length_times_2 * sin_d_positive
+        across_of_r_stick_down = (
+            bucket_ear_z_times_rocker_length_times_2 * cos_d_stick_down
+            - bucket_ear_x_times_rocker_length_times_2 * sin_d_stick_down
         )
-        sum_in_reach_of_r_positive = (
-            across_of_r_positive * across_of_r_positive + along_of_r_positive * along_of_r_positive
+        sum_in_reach_of_r_stick_down = (
+            across_of_r_stick_down * across_of_r_stick_down + along_of_r_stick_down * along_of_r_stick_down
         )
-        reach_of_r_positive = sqrt(sum_in_reach_of_r_positive) if sum_in_reach_of_r_positive > 0.0 else 0.0
-        root_of_r_positive = -root(
-            (reach_of_r_positive - level_of_r_positive) * (level_of_r_positive + reach_of_r_positive)
+        reach_of_r_stick_down = sqrt(sum_in_reach_of_r_stick_down) if sum_in_reach_of_r_stick_down > 0.0 else 0.0
+        root_of_r_stick_down = -root(
+            (reach_of_r_stick_down - level_of_r_stick_down) * (level_of_r_stick_down + reach_of_r_stick_down)
         )
-        divisor_of_r_positive = sum_in_reach_of_r_positive if sum_in_reach_of_r_positive > 1e-12 else 1.0
-        cos_r_positive = (
-            across_of_r_positive * root_of_r_positive + along_of_r_positive * level_of_r_positive
-        ) / divisor_of_r_positive
-        sin_r_positive = (
-            across_of_r_positive * level_of_r_positive - along_of_r_positive * root_of_r_positive
-        ) / divisor_of_r_positive
-        product_in_rest_of_motor_s3 = sum_in_rest_of_motor_s3 * cos_c
-        product_in_rest_of_motor_s3_negative_positive_2 = sum_in_rest_of_motor_s3_2 * sin_c
-        rest_of_motor_s3_positive = (
-            sum_in_rest_of_motor_s3_positive_positive
+        divisor_of_r_stick_down = sum_in_reach_of_r_stick_down if sum_in_reach_of_r_stick_down > 1e-12 else 1.0
+        cos_r_stick_down = (
+            across_of_r_stick_down * root_of_r_stick_down + along_of_r_stick_down * level_of_r_stick_down
+        ) / divisor_of_r_stick_down
+        sin_r_stick_down = (
+            across_of_r_stick_down * level_of_r_stick_down - along_of_r_stick_down * root_of_r_stick_down
+        ) / divisor_of_r_stick_down
+        sum_in_rest_of_motor_s3_times_cos_c = sum_in_rest_of_motor_s3 * cos_c
+        product_in_rest_of_motor_s3 = sum_in_rest_of_motor_s3_2 * sin_c
+        rest_of_motor_s3_stick_down = (
+            sum_in_rest_of_motor_s3_front_stick_down
             - 2.0 * product_in_rest_of_motor_s3
-            - 2.0 * product_in_rest_of_motor_s3_negative_positive_2
+            - 2.0 * sum_in_rest_of_motor_s3_times_cos_c
         )
-        rest_of_motor_s4_positive = (
-            sum_in_rest_of_motor_s4_positive_positive
-            + across_of_r_2 * sin_r_positive
-            - product_in_rest_of_motor_s4 * cos_r_positive
+        rest_of_motor_s4_stick_down = (
+            sum_in_rest_of_motor_s4_front_stick_down
+            + across_of_r_2 * sin_r_stick_down
+            - product_in_rest_of_motor_s4 * cos_r_stick_down
         )
-        rest_of_motor_s2_negative = (
+        rest_of_motor_s2_stick_up = (
             sum_in_reference_level_of_b
-            - 2.0 * sum_in_rest_of_motor_s2 * cos_b_negative
-            - 2.0 * sum_in_rest_of_motor_s2_2 * sin_b_negative
+            - 2.0 * sum_in_rest_of_motor_s2 * cos_b_stick_up
+            - 2.0 * sum_in_rest_of_motor_s2_2 * sin_b_stick_up
         )
-        cos_b_c_negative = cos_b_negative * cos_c + sin_b_negative * sin_c
-        sin_b_c_negative = cos_c * sin_b_negative - cos_b_negative * sin_c
+        cos_b_c_stick_up = cos_b_stick_up * cos_c + sin_b_stick_up * sin_c
+        sin_b_c_stick_up = cos_c * sin_b_stick_up - cos_b_stick_up * sin_c
         # d from the sum b_c_d of angles about parallel axes
-        cos_d_negative = tool_z_negative * cos_b_c_negative + tool_x_negative * sin_b_c_negative
-        sin_d_negative = tool_x_negative * cos_b_c_negative - tool_z_negative * sin_b_c_negative
-        level_of_r_negative = (
-            sum_in_level_of_r_positive_positive
-            + product_in_along_of_d * cos_d_negative
-            + product_in_across_of_d * sin_d_negative
+        cos_d_stick_up = tool_z_back * cos_b_c_stick_up + tool_x_back * sin_b_c_stick_up
+        sin_d_stick_up = tool_x_back * cos_b_c_stick_up - tool_z_back * sin_b_c_stick_up
+        level_of_r_stick_up = (
+            sum_in_level_of_r_front_stick_down
+            + product_in_along_of_d * cos_d_stick_up
+            + product_in_across_of_d * sin_d_stick_up
         )
         # the loop of D, solved for R
-        along_of_r_negative = (
+        along_of_r_stick_up = (
             product_in_level_of_d
-            - bucket_ear_x_times_rocker_length_times_2 * cos_d_negative
-            - bucket_ear_z_times_rocker_length_times_2 * sin_d_negative
+            - bucket_ear_x_times_rocker_length_times_2 * cos_d_stick_up
+            - bucket_ear_z_times_rocker_length_times_2 * sin_d_stick_up
         )
-        across_of_r_negative = (
-            bucket_ear_z_times_rocker_length_times_2 * cos_d_negative
-            - bucket_ear_x_times_rocker_length_times_2 * sin_d_negative
+        across_of_r_stick_up = (
+            bucket_ear_z_times_rocker_length_times_2 * cos_d_stick_up
+            - bucket_ear_x_times_rocker_length_times_2 * sin_d_stick_up
         )
-        sum_in_reach_of_r_negative = (
-            across_of_r_negative * across_of_r_negative + along_of_r_negative * along_of_r_negative
+        sum_in_reach_of_r_stick_up = (
+            across_of_r_stick_up * across_of_r_stick_up + along_of_r_stick_up * along_of_r_stick_up
         )
-        reach_of_r_negative = sqrt(sum_in_reach_of_r_negative) if sum_in_reach_of_r_negative > 0.0 else 0.0
-        root_of_r_negative = -root(
-            (reach_of_r_negative - level_of_r_negative) * (level_of_r_negative + reach_of_r_negative)
+        reach_of_r_stick_up = sqrt(sum_in_reach_of_r_stick_up) if sum_in_reach_of_r_stick_up > 0.0 else 0.0
+        root_of_r_stick_up = -root(
+            (reach_of_r_stick_up - level_of_r_stick_up) * (level_of_r_stick_up + reach_of_r_stick_up)
         )
-        divisor_of_r_negative = sum_in_reach_of_r_negative if sum_in_reach_of_r_negative > 1e-12 else 1.0
-        cos_r_negative = (
-            across_of_r_negative * root_of_r_negative + along_of_r_negative * level_of_r_negative
-        ) / divisor_of_r_negative
-        sin_r_negative = (
-            across_of_r_negative * level_of_r_negative - along_of_r_negative * root_of_r_negative
-        ) / divisor_of_r_negative
-        rest_of_motor_s3_negative = (
-            2.0 * product_in_rest_of_motor_s3_negative_positive_2
-            + sum_in_rest_of_motor_s3_positive_positive
-            - 2.0 * product_in_rest_of_motor_s3
+        divisor_of_r_stick_up = sum_in_reach_of_r_stick_up if sum_in_reach_of_r_stick_up > 1e-12 else 1.0
+        cos_r_stick_up = (
+            across_of_r_stick_up * root_of_r_stick_up + along_of_r_stick_up * level_of_r_stick_up
+        ) / divisor_of_r_stick_up
+        sin_r_stick_up = (
+            across_of_r_stick_up * level_of_r_stick_up - along_of_r_stick_up * root_of_r_stick_up
+        ) / divisor_of_r_stick_up
+        rest_of_motor_s3_stick_up = (
+            2.0 * product_in_rest_of_motor_s3
+            + sum_in_rest_of_motor_s3_front_stick_down
+            - 2.0 * sum_in_rest_of_motor_s3_times_cos_c
         )
-        rest_of_motor_s4_negative = (
-            sum_in_rest_of_motor_s4_positive_positive
-            + across_of_r_2 * sin_r_negative
-            - product_in_rest_of_motor_s4 * cos_r_negative
+        rest_of_motor_s4_stick_up = (
+            sum_in_rest_of_motor_s4_front_stick_down
+            + across_of_r_2 * sin_r_stick_up
+            - product_in_rest_of_motor_s4 * cos_r_stick_up
         )
         # S2: its loop does not close, S2: in the other assembly mode, or too close to a type 2 singularity,
         # S3: its loop does not close, S3: in the other assembly mode, or too close to a type 2 singularity,
         # S4: its loop does not close, S4: in the other assembly mode, or too close to a type 2 singularity
-        if in_plane_negative > 2e-12 and abs(cos_c) <= bound_of_cos_c:
-            product_in_refusal_positive = (
+        if in_plane_back > 2e-12 and abs(cos_c) <= bound_of_cos_c:
+            product_in_refusal_stick_down = (
                 product_in_across_of_d
-                + bucket_ear_x_times_rocker_length_times_2 * sin_r_positive
-                + bucket_ear_z_times_rocker_length_times_2 * cos_r_positive
-            ) * cos_d_positive
-            sin_c_negative_positive_times_along_of_c = along_of_c * sin_c
-            cos_c_negative_times_across_of_c = across_of_c * cos_c
-            refusal_negative_positive = (
+                + bucket_ear_x_times_rocker_length_times_2 * sin_r_stick_down
+                + bucket_ear_z_times_rocker_length_times_2 * cos_r_stick_down
+            ) * cos_d_stick_down
+            sin_c_back_stick_down_times_along_of_c = along_of_c * sin_c
+            cos_c_back_times_across_of_c = across_of_c * cos_c
+            refusal_back_stick_down = (
                 0
-                if (rest_of_motor_s2_positive >= -1e-12 * abs(rest_of_motor_s2_positive))
-                and (rest_of_motor_s3_positive >= -1e-12 * abs(rest_of_motor_s3_positive))
-                and (rest_of_motor_s4_positive >= -1e-12 * abs(rest_of_motor_s4_positive))
-                and (abs(level_of_r_positive) <= 1.000000000001 * reach_of_r_positive)
+                if (rest_of_motor_s2_stick_down >= -1e-12 * abs(rest_of_motor_s2_stick_down))
+                and (rest_of_motor_s3_stick_down >= -1e-12 * abs(rest_of_motor_s3_stick_down))
+                and (rest_of_motor_s4_stick_down >= -1e-12 * abs(rest_of_motor_s4_stick_down))
+                and (abs(level_of_r_stick_down) <= 1.000000000001 * reach_of_r_stick_down)
                 and (
-                    cos_c_negative_times_across_of_c - sin_c_negative_positive_times_along_of_c
-                    >= -product_in_refusal_positive_positive_2
+                    cos_c_back_times_across_of_c - sin_c_back_stick_down_times_along_of_c
+                    >= -product_in_refusal_front_stick_down_2
                 )
                 and (
-                    along_of_b * sin_b_positive - across_of_b * cos_b_positive >= -product_in_refusal_positive_positive
+                    along_of_b * sin_b_stick_down - across_of_b * cos_b_stick_down
+                    >= -product_in_refusal_front_stick_down
                 )
                 and (
-                    across_of_r_2 * cos_r_positive - along_of_r_2 * sin_r_positive
-                    >= -product_in_refusal_positive_positive_4
+                    across_of_r_2 * cos_r_stick_down - along_of_r_2 * sin_r_stick_down
+                    >= -product_in_refusal_front_stick_down_4
                 )
                 and (
                     (
                         product_in_along_of_d
-                        + bucket_ear_x_times_rocker_length_times_2 * cos_r_positive
-                        - bucket_ear_z_times_rocker_length_times_2 * sin_r_positive
+                        + bucket_ear_x_times_rocker_length_times_2 * cos_r_stick_down
+                        - bucket_ear_z_times_rocker_length_times_2 * sin_r_stick_down
                     )
-                    * sin_d_positive
-                    - product_in_refusal_positive
-                    >= -product_in_refusal_positive_positive_3
+                    * sin_d_stick_down
+                    - product_in_refusal_stick_down
+                    >= -product_in_refusal_front_stick_down_3
                 )
                 else 3
             )
-            product_in_refusal_negative = (
+            product_in_refusal_stick_up = (
                 product_in_across_of_d
-                + bucket_ear_x_times_rocker_length_times_2 * sin_r_negative
-                + bucket_ear_z_times_rocker_length_times_2 * cos_r_negative
-            ) * cos_d_negative
-            refusal_negative_negative = (
+                + bucket_ear_x_times_rocker_length_times_2 * sin_r_stick_up
+                + bucket_ear_z_times_rocker_length_times_2 * cos_r_stick_up
+            ) * cos_d_stick_up
+            refusal_back_stick_up = (
                 0
-                if (rest_of_motor_s2_negative >= -1e-12 * abs(rest_of_motor_s2_negative))
-                and (rest_of_motor_s3_negative >= -1e-12 * abs(rest_of_motor_s3_negative))
-                and (rest_of_motor_s4_negative >= -1e-12 * abs(rest_of_motor_s4_negative))
-                and (abs(level_of_r_negative) <= 1.000000000001 * reach_of_r_negative)
+                if (rest_of_motor_s2_stick_up >= -1e-12 * abs(rest_of_motor_s2_stick_up))
+                and (rest_of_motor_s3_stick_up >= -1e-12 * abs(rest_of_motor_s3_stick_up))
+                and (rest_of_motor_s4_stick_up >= -1e-12 * abs(rest_of_motor_s4_stick_up))
+                and (abs(level_of_r_stick_up) <= 1.000000000001 * reach_of_r_stick_up)
                 and (
-                    cos_c_negative_times_across_of_c + sin_c_negative_positive_times_along_of_c
-                    >= -product_in_refusal_positive_positive_2
+                    cos_c_back_times_across_of_c + sin_c_back_stick_down_times_along_of_c
+                    >= -product_in_refusal_front_stick_down_2
                 )
+                and (along_of_b * sin_b_stick_up - across_of_b * cos_b_stick_up >= -product_in_refusal_front_stick_down)
                 and (
-                    along_of_b * sin_b_negative - across_of_b * cos_b_negative >= -product_in_refusal_positive_positive
-                )
-                and (
-                    across_of_r_2 * cos_r_negative - along_of_r_2 * sin_r_negative
-                    >= -product_in_refusal_positive_positive_4
+                    across_of_r_2 * cos_r_stick_up - along_of_r_2 * sin_r_stick_up
+                    >= -product_in_refusal_front_stick_down_4
                 )
                 and (
                     (
                         product_in_along_of_d
-                        + bucket_ear_x_times_rocker_length_times_2 * cos_r_negative
-                        - bucket_ear_z_times_rocker_length_times_2 * sin_r_negative
+                        + bucket_ear_x_times_rocker_length_times_2 * cos_r_stick_up
+                        - bucket_ear_z_times_rocker_length_times_2 * sin_r_stick_up
                     )
-                    * sin_d_negative
-                    - product_in_refusal_negative
-                    >= -product_in_refusal_positive_positive_3
+                    * sin_d_stick_up
+                    - product_in_refusal_stick_up
+                    >= -product_in_refusal_front_stick_down_3
                 )
                 else 3
             )
         else:
-            refusal_negative_positive = 3
-            refusal_negative_negative = 3
-        motor_s2_positive = sqrt(rest_of_motor_s2_positive) if rest_of_motor_s2_positive > 0.0 else 0.0
-        motor_s3_positive = sqrt(rest_of_motor_s3_positive) if rest_of_motor_s3_positive > 0.0 else 0.0
-        motor_s4_positive = sqrt(rest_of_motor_s4_positive) if rest_of_motor_s4_positive > 0.0 else 0.0
-        motor_s2_negative = sqrt(rest_of_motor_s2_negative) if rest_of_motor_s2_negative > 0.0 else 0.0
-        motor_s3_negative = sqrt(rest_of_motor_s3_negative) if rest_of_motor_s3_negative > 0.0 else 0.0
-        motor_s4_negative = sqrt(rest_of_motor_s4_negative) if rest_of_motor_s4_negative > 0.0 else 0.0
+            refusal_back_stick_down = 3
+            refusal_back_stick_up = 3
+        motor_s2_stick_down = sqrt(rest_of_motor_s2_stick_down) if rest_of_motor_s2_stick_down > 0.0 else 0.0
+        motor_s3_stick_down = sqrt(rest_of_motor_s3_stick_down) if rest_of_motor_s3_stick_down > 0.0 else 0.0
+        motor_s4_stick_down = sqrt(rest_of_motor_s4_stick_down) if rest_of_motor_s4_stick_down > 0.0 else 0.0
+        motor_s2_stick_up = sqrt(rest_of_motor_s2_stick_up) if rest_of_motor_s2_stick_up > 0.0 else 0.0
+        motor_s3_stick_up = sqrt(rest_of_motor_s3_stick_up) if rest_of_motor_s3_stick_up > 0.0 else 0.0
+        motor_s4_stick_up = sqrt(rest_of_motor_s4_stick_up) if rest_of_motor_s4_stick_up > 0.0 else 0.0
         return (
-            (axis_a1_positive, axis_s2_positive, axis_s3_positive, axis_s4_positive)
-            if refusal_positive_positive == 0
-            else refused[refusal_positive_positive],
+            (axis_a1_front, axis_s2_stick_down, axis_s3_stick_down, axis_s4_stick_down)
+            if refusal_front_stick_down == 0
+            else refused[refusal_front_stick_down],
             (
-                axis_a1_negative,
-                motor_s2_positive + offset_s2,
-                motor_s3_positive + offset_s3,
-                motor_s4_positive + offset_s4,
+                axis_a1_back,
+                motor_s2_stick_down + offset_s2,
+                motor_s3_stick_down + offset_s3,
+                motor_s4_stick_down + offset_s4,
             )
-            if refusal_negative_positive == 0
-            else refused[refusal_negative_positive],
-            (axis_a1_positive, axis_s2_negative, axis_s3_negative, axis_s4_negative)
-            if refusal_positive_negative == 0
-            else refused[refusal_positive_negative],
-            (
-                axis_a1_negative,
-                motor_s2_negative + offset_s2,
-                motor_s3_negative + offset_s3,
-                motor_s4_negative + offset_s4,
-            )
-            if refusal_negative_negative == 0
-            else refused[refusal_negative_negative],
+            if refusal_back_stick_down == 0
+            else refused[refusal_back_stick_down],
+            (axis_a1_front, axis_s2_stick_up, axis_s3_stick_up, axis_s4_stick_up)
+            if refusal_front_stick_up == 0
+            else refused[refusal_front_stick_up],
+            (axis_a1_back, motor_s2_stick_up + offset_s2, motor_s3_stick_up + offset_s3, motor_s4_stick_up + offset_s4)
+            if refusal_back_stick_up == 0
+            else refused[refusal_back_stick_up],
         )
 
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
-        sigma_shoulder_1, sigma_elbow_1 = signs
+        sigma_shoulder, sigma_elbow = signs
         ref_a1, ref_s2, _, _ = 4 * (0.0,) if reference is None else reference
         distance_a1 = sqrt(x * x + y * y)  # distance of the point from the axis of a1
         # at a singularity: the angle of the reference
         if distance_a1 > machine_scale_times_free_angle:
-            along_a1 = sigma_shoulder_1 * x  # rotation by a1 that points the arm at the point
+            along_a1 = sigma_shoulder * x  # rotation by a1 that points the arm at the point
             cos_a1 = along_a1 / distance_a1
-            sin_a1 = (sigma_shoulder_1 * y) / distance_a1
+            sin_a1 = (sigma_shoulder * y) / distance_a1
         else:
             heading_length = sqrt(r13 * r13 + r23 * r23)
             free_a1 = (
-                -arctan2(sigma_shoulder_1 * r23, -sigma_shoulder_1 * r13)
+                -arctan2(sigma_shoulder * r23, -sigma_shoulder * r13)
                 if heading_length > 2e-12
                 else (ref_a1 - offset_a1) * DEGREE
             )
@@ -921,7 +919,7 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points across the plane in which the arm can turn it
         if not (in_plane > 2e-12):
             return None
-        ahead_a1 = sigma_shoulder_1 * distance_a1  # how far ahead of the axis the point is; negative: behind it
+        ahead_a1 = sigma_shoulder * distance_a1  # how far ahead of the axis the point is; negative: behind it
         in_plane_divisor = in_plane if in_plane > 2e-12 else 1.0
         tool_z = r33 / in_plane_divisor
         # coordinate of the point that the remaining links must reach
@@ -941,7 +939,7 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         sine_square_c = one_less_cos_c * one_plus_cos_c  # sine squared, times the squared scale
         sin_c = (
-            (sqrt(sine_square_c) if sine_square_c > 0.0 else 0.0) * sigma_elbow_1 * half_by_boom_length_by_stick_length
+            (sqrt(sine_square_c) if sine_square_c > 0.0 else 0.0) * sigma_elbow * half_by_boom_length_by_stick_length
         )
         # at a singularity: the angle of the reference
         if reach > machine_scale_times_free_angle:
@@ -972,25 +970,23 @@ def unrolled(k: Constants) -> Unrolled:
         # S2: its loop does not close
         if not (
             rest_of_motor_s2 >= -1e-12 * abs(rest_of_motor_s2)
-            and along_of_b * sin_b - across_of_b * cos_b >= -product_in_refusal_positive_positive
+            and along_of_b * sin_b - across_of_b * cos_b >= -product_in_refusal_front_stick_down
         ):
             return None
-        rest_of_motor_s3 = sum_in_rest_of_motor_s3_positive_positive - 2.0 * (
+        rest_of_motor_s3 = sum_in_rest_of_motor_s3_front_stick_down - 2.0 * (
             sum_in_rest_of_motor_s3 * cos_c + sum_in_rest_of_motor_s3_2 * sin_c
         )
         # S3: its loop does not close
         if not (
             rest_of_motor_s3 >= -1e-12 * abs(rest_of_motor_s3)
-            and across_of_c * cos_c - along_of_c * sin_c >= -product_in_refusal_positive_positive_2
+            and across_of_c * cos_c - along_of_c * sin_c >= -product_in_refusal_front_stick_down_2
         ):
             return None
         cos_b_c = cos_b * cos_c - sin_b * sin_c
         sin_b_c = cos_b * sin_c + cos_c * sin_b
         cos_d = tool_z * cos_b_c + tool_x * sin_b_c  # d from the sum b_c_d of angles about parallel axes
         sin_d = tool_x * cos_b_c - tool_z * sin_b_c
-        level_of_r = (
-            sum_in_level_of_r_positive_positive + product_in_along_of_d * cos_d + product_in_across_of_d * sin_d
-        )
+        level_of_r = sum_in_level_of_r_front_stick_down + product_in_along_of_d * cos_d + product_in_across_of_d * sin_d
         # the loop of D, solved for R
         along_of_r = (
             product_in_level_of_d
@@ -1023,16 +1019,16 @@ def unrolled(k: Constants) -> Unrolled:
                 + bucket_ear_z_times_rocker_length_times_2 * cos_r
             )
             * cos_d
-            >= -product_in_refusal_positive_positive_3
+            >= -product_in_refusal_front_stick_down_3
         ):
             return None
         rest_of_motor_s4 = (
-            sum_in_rest_of_motor_s4_positive_positive + across_of_r_2 * sin_r - product_in_rest_of_motor_s4 * cos_r
+            sum_in_rest_of_motor_s4_front_stick_down + across_of_r_2 * sin_r - product_in_rest_of_motor_s4 * cos_r
         )
         # S4: its loop does not close
         if not (
             rest_of_motor_s4 >= -1e-12 * abs(rest_of_motor_s4)
-            and across_of_r_2 * cos_r - along_of_r_2 * sin_r >= -product_in_refusal_positive_positive_4
+            and across_of_r_2 * cos_r - along_of_r_2 * sin_r >= -product_in_refusal_front_stick_down_4
         ):
             return None
         motor_s2 = sqrt(rest_of_motor_s2) if rest_of_motor_s2 > 0.0 else 0.0

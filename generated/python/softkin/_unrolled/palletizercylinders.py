@@ -34,8 +34,9 @@ def unrolled(k: Constants) -> Unrolled:
     lowest_a1, lowest_a4, lowest_m3, lowest_s2 = k.lowest_a1, k.lowest_a4, k.lowest_m3, k.lowest_s2
     machine_scale_times_free_angle, mid_a1, mid_a4 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a4
     offset_a1, offset_a4, offset_m3, offset_s2 = k.offset_a1, k.offset_a4, k.offset_m3, k.offset_s2
-    one_by_divisor_of_b, quotient_in_cos_swing_c_from_b = k.one_by_divisor_of_b, k.quotient_in_cos_swing_c_from_b
-    reach_of_b, shared_product_4 = k.reach_of_b, k.shared_product_4
+    one_by_divisor_of_b = k.one_by_divisor_of_b
+    quotient_in_closed_cos_swing_c_from_b, reach_of_b = k.quotient_in_closed_cos_swing_c_from_b, k.reach_of_b
+    shared_product_2 = k.shared_product_2
     shoulder_offset_plus_wrist_offset_x, single_a1 = k.shoulder_offset_plus_wrist_offset_x, k.single_a1
     single_a4, sum_in_level_of_c = k.single_a4, k.sum_in_level_of_c
     cylinder_base_x_squared = cylinder_base_x * cylinder_base_x
@@ -69,7 +70,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # 1 + cosine, times the scale
         one_plus_cos_c_from_b = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
-        cos_swing_c_from_b = (one_plus_cos_c_from_b - one_less_cos_c_from_b) * quotient_in_cos_swing_c_from_b
+        cos_swing_c_from_b = (one_plus_cos_c_from_b - one_less_cos_c_from_b) * quotient_in_closed_cos_swing_c_from_b
         # sine squared, times the squared scale
         sine_square_c_from_b = one_less_cos_c_from_b * one_plus_cos_c_from_b
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -191,7 +192,7 @@ def unrolled(k: Constants) -> Unrolled:
                         + crank_length_times_lever_length_times_2 * cos_motor_m3_front_up
                     )
                     * sin_c_up
-                    >= -shared_product_4
+                    >= -shared_product_2
                 )
                 else 3
             )
@@ -211,7 +212,7 @@ def unrolled(k: Constants) -> Unrolled:
                         + crank_length_times_lever_length_times_2 * cos_motor_m3_front_down
                     )
                     * sin_c_down
-                    >= -shared_product_4
+                    >= -shared_product_2
                 )
                 else 3
             )
@@ -231,7 +232,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # 1 + cosine, times the scale
         one_plus_cos_c_from_b = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
-        cos_swing_c_from_b = (one_plus_cos_c_from_b - one_less_cos_c_from_b) * quotient_in_cos_swing_c_from_b
+        cos_swing_c_from_b = (one_plus_cos_c_from_b - one_less_cos_c_from_b) * quotient_in_closed_cos_swing_c_from_b
         # sine squared, times the squared scale
         sine_square_c_from_b = one_less_cos_c_from_b * one_plus_cos_c_from_b
         # addition theorem: plus the angle of the direction from which the cosine is measured
@@ -362,7 +363,7 @@ def unrolled(k: Constants) -> Unrolled:
                             + crank_length_times_lever_length_times_2 * cos_motor_m3_back_up
                         )
                         * sin_c_up
-                        >= -shared_product_4
+                        >= -shared_product_2
                     )
                     else 3
                 )
@@ -382,7 +383,7 @@ def unrolled(k: Constants) -> Unrolled:
                             + crank_length_times_lever_length_times_2 * cos_motor_m3_back_down
                         )
                         * sin_c_down
-                        >= -shared_product_4
+                        >= -shared_product_2
                     )
                     else 3
                 )
@@ -518,7 +519,7 @@ def unrolled(k: Constants) -> Unrolled:
                             + crank_length_times_lever_length_times_2 * cos_motor_m3_back_up
                         )
                         * sin_c_up
-                        >= -shared_product_4
+                        >= -shared_product_2
                     )
                     else 3
                 )
@@ -538,7 +539,7 @@ def unrolled(k: Constants) -> Unrolled:
                             + crank_length_times_lever_length_times_2 * cos_motor_m3_back_down
                         )
                         * sin_c_down
-                        >= -shared_product_4
+                        >= -shared_product_2
                     )
                     else 3
                 )
@@ -609,7 +610,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # 1 + cosine, times the scale
         one_plus_cos_c_from_b = (link_length_1_plus_link_length_2 + reach) * (link_length_1_plus_link_length_2 - reach)
-        cos_swing_c_from_b = (one_plus_cos_c_from_b - one_less_cos_c_from_b) * quotient_in_cos_swing_c_from_b
+        cos_swing_c_from_b = (one_plus_cos_c_from_b - one_less_cos_c_from_b) * quotient_in_closed_cos_swing_c_from_b
         # c_from_b: out of reach
         if not (abs(cos_swing_c_from_b) <= bound_of_cos_swing_c_from_b):
             return None
@@ -679,7 +680,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (
             (crank_length_times_lever_length_times_2 * sin_motor_m3 - crank_base_z_times_lever_length_times_2) * cos_c
             - (crank_base_x_times_lever_length_times_2 + crank_length_times_lever_length_times_2 * cos_motor_m3) * sin_c
-            >= -shared_product_4
+            >= -shared_product_2
         ):
             return None
         # polar coordinates: angle a1 from the x and y equations; at a singularity: the angle of the
