@@ -17,6 +17,8 @@ from derive.equations.drives import size, slopes
 from derive.equations.pitch.chain import followed_of
 from derive.equations.problem import Conditioning
 from derive.form.machine import in_form
+from derive.ir.constants import LEAST
+from derive.ir.primitives import Root, Select
 from derive.kinematics.branches.assembly import Assembled, assembled, with_derived_assembly
 from derive.kinematics.branches.assignment import Assignment, assign
 from derive.kinematics.branches.derived import with_derived_branches
@@ -59,8 +61,15 @@ class Solved:
 
 
 def _of_loops(mechanism: Mechanism, joint: Joint) -> Iterator[Factor]:
-    """The dead points of the loops that move a joint: where its motor does not move it, and where it is free."""
+    """The dead points of the loops that move a joint: where its motor does not move it, and where it is free. A
+    cylinder always moves its lever: it has one margin, the lever arm over the mean of both arms.
+    """
     for loop, by_moved, by_motor in slopes(mechanism, joint, names=False):
+        if loop.by not in loop.vector.free_symbols:
+            arm = by_moved / Select(sp.Gt(sp.Abs(by_motor), LEAST), by_motor, sp.Integer(1))
+            longest = Root(size(mechanism, loop, loop.moved) / 2) if loop.turns[0] else sp.Integer(1)
+            yield Factor(f"lever_{loop.moved.name}", arm / longest)
+            continue
         yield Factor(f"crank_{loop.by.name.removeprefix(_MOTOR)}", by_motor / size(mechanism, loop, loop.by))
         yield Factor(f"lever_{loop.moved.name}", by_moved / size(mechanism, loop, loop.moved))
 

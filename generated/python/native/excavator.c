@@ -147,11 +147,8 @@ static const softkin_limit LIMITS[] = {
 static const softkin_margin MARGINS[] = {
   {"teeth_on_a1", "type 1"},
   {"elbow", "type 1"},
-  {"crank_s2", "type 1"},
   {"lever_b", "type 2"},
-  {"crank_s3", "type 1"},
   {"lever_c", "type 2"},
-  {"crank_s4", "type 1"},
   {"lever_r", "type 2"},
   {"crank_r", "type 1"},
   {"lever_d", "type 2"},
@@ -521,7 +518,9 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   if (!(fabs(level_of_b) <= k->shared_product)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S2: its loop does not close", "", 0.0, 0);
   }
-  if (!(2.0*motor_s2 >= -k->machine_scale_times_rounding)) {
+  const double twice_motor_s2 = 2.0*motor_s2;
+  /* S2: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(twice_motor_s2 >= -k->machine_scale_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
         "S2: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
   }
@@ -531,7 +530,9 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   if (!(fabs(level_of_c) <= k->shared_product_2)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S3: its loop does not close", "", 0.0, 0);
   }
-  if (!(2.0*motor_s3 >= -k->machine_scale_times_rounding)) {
+  const double twice_motor_s3 = 2.0*motor_s3;
+  /* S3: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(twice_motor_s3 >= -k->machine_scale_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
         "S3: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
   }
@@ -541,7 +542,9 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   if (!(fabs(level_of_r) <= k->shared_product_3)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S4: its loop does not close", "", 0.0, 0);
   }
-  if (!(2.0*motor_s4 >= -k->machine_scale_times_rounding)) {
+  const double twice_motor_s4 = 2.0*motor_s4;
+  /* S4: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(twice_motor_s4 >= -k->machine_scale_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
         "S4: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
   }
@@ -604,25 +607,21 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double y = y_at_d + k->bucket_length*r21_at_b_c_d;
   const double margin_teeth_on_a1 = k->one_by_machine_scale*(x*cos_a1 + y*sin_a1);
   const double sin_c = sin(c);
-  const double margin_crank_s2 = -motor_s2*k->quotient_in_margin_crank_s2;
-  const double margin_lever_b = (k->across_of_b*cos_b - k->along_of_b*sin(b))*k->quotient_in_margin_lever_b;
-  const double margin_crank_s3 = -motor_s3*k->quotient_in_margin_crank_s2;
-  const double margin_lever_c = (k->across_of_c*cos(c) - k->along_of_c*sin_c)*k->quotient_in_margin_lever_c;
-  const double margin_crank_s4 = -motor_s4*k->quotient_in_margin_crank_s2;
-  const double margin_lever_r = (k->across_of_r_2*cos_r - k->along_of_r_2*sin_r)
-      *k->quotient_in_margin_lever_r;
+  const double margin_lever_b = (k->across_of_b*cos_b - k->along_of_b*sin(b))*k->quotient_in_margin_lever_b
+      /(2.0*fabs(motor_s2) > 1e-12 ? -twice_motor_s2 : 1.0);
+  const double margin_lever_c = (k->across_of_c*cos(c) - k->along_of_c*sin_c)*k->quotient_in_margin_lever_c
+      /(2.0*fabs(motor_s3) > 1e-12 ? -twice_motor_s3 : 1.0);
+  const double margin_lever_r = (k->across_of_r_2*cos_r - k->along_of_r_2*sin_r)*k->quotient_in_margin_lever_r
+      /(2.0*fabs(motor_s4) > 1e-12 ? -twice_motor_s4 : 1.0);
   const double margin_crank_r = k->half_by_rocker_length_by_rod_length*shared_sum;
   const double margin_lever_d = (across_of_d*cos_of_d - along_of_d*sin_of_d)*k->quotient_in_margin_lever_d;
   margins[0] = margin_teeth_on_a1;
   margins[1] = sin_c;
-  margins[2] = margin_crank_s2;
-  margins[3] = margin_lever_b;
-  margins[4] = margin_crank_s3;
-  margins[5] = margin_lever_c;
-  margins[6] = margin_crank_s4;
-  margins[7] = margin_lever_r;
-  margins[8] = margin_crank_r;
-  margins[9] = margin_lever_d;
+  margins[2] = margin_lever_b;
+  margins[3] = margin_lever_c;
+  margins[4] = margin_lever_r;
+  margins[5] = margin_crank_r;
+  margins[6] = margin_lever_d;
   return SOFTKIN_OK;
 }
 
@@ -1429,10 +1428,11 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
       - p->stick_cylinder_base_z*p->stick_cylinder_eye_x;
   const double product_in_rest_of_motor_s4 = 2.0*(p->bucket_cylinder_base_x - p->rocker_pivot_x)
       *p->rocker_length;
-  const double quotient_in_margin_crank_s2 = 2.0/machine_scale;
-  const double quotient_in_margin_lever_b = 0.5/(root_in_shared_product_5*root_in_shared_product_5_2);
-  const double quotient_in_margin_lever_c = 0.5/(root_in_shared_product_6*root_in_shared_product_6_2);
-  const double quotient_in_margin_lever_r = 0.5/(p->rocker_length*root_in_shared_product_8);
+  const double quotient_in_margin_lever_b = 1.0
+      /softkin_root(root_in_shared_product_5*root_in_shared_product_5_2);
+  const double quotient_in_margin_lever_c = 1.0
+      /softkin_root(root_in_shared_product_6*root_in_shared_product_6_2);
+  const double quotient_in_margin_lever_r = 1.0/softkin_root(p->rocker_length*root_in_shared_product_8);
   const double half_by_rocker_length_by_rod_length = 0.5/(p->rocker_length*p->rod_length);
   const double quotient_in_margin_lever_d = 0.5/(p->rod_length*root_in_shared_product_7);
   made.lowest_a1 = window_of_a1.lowest;
@@ -1515,7 +1515,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.sum_in_rest_of_motor_s3 = sum_in_rest_of_motor_s3;
   made.sum_in_rest_of_motor_s3_2 = sum_in_rest_of_motor_s3_2;
   made.product_in_rest_of_motor_s4 = product_in_rest_of_motor_s4;
-  made.quotient_in_margin_crank_s2 = quotient_in_margin_crank_s2;
   made.quotient_in_margin_lever_b = quotient_in_margin_lever_b;
   made.quotient_in_margin_lever_c = quotient_in_margin_lever_c;
   made.quotient_in_margin_lever_r = quotient_in_margin_lever_r;
@@ -1534,7 +1533,7 @@ const softkin_mechanism excavator_mechanism = {
     .branch_count = 2,
     .period_count = 1,
     .row_count = 4,
-    .margin_count = 10,
+    .margin_count = 7,
     .limit_count = 4,
     .parameter_count = 34,
     .quantity_count = 0,

@@ -32,7 +32,7 @@ extern "C" {
 #define EXCAVATOR_CONFIGURATION 3 /* bytes: branches, then turns */
 #define EXCAVATOR_SLOTS 4
 #define EXCAVATOR_ROWS 4
-#define EXCAVATOR_MARGINS 10
+#define EXCAVATOR_MARGINS 7
 #define EXCAVATOR_LIMITS 4 /* axes, then other quantities */
 
 /** The parameters. Those that have a default get it by `excavator_defaults`, the others NaN. */
@@ -137,9 +137,8 @@ typedef struct {
       one_by_divisor_of_b, one_by_divisor_of_c, one_by_machine_scale, boom_length_plus_stick_length,
       quotient_in_cos_c, half_by_boom_length_by_stick_length, sum_in_rest_of_motor_s2,
       sum_in_rest_of_motor_s2_2, sum_in_rest_of_motor_s3, sum_in_rest_of_motor_s3_2,
-      product_in_rest_of_motor_s4, quotient_in_margin_crank_s2, quotient_in_margin_lever_b,
-      quotient_in_margin_lever_c, quotient_in_margin_lever_r, half_by_rocker_length_by_rod_length,
-      quotient_in_margin_lever_d;
+      product_in_rest_of_motor_s4, quotient_in_margin_lever_b, quotient_in_margin_lever_c,
+      quotient_in_margin_lever_r, half_by_rocker_length_by_rod_length, quotient_in_margin_lever_d;
   bool single_a1;
 } excavator_machine;
 
@@ -202,7 +201,7 @@ softkin_status excavator_branches(const excavator_machine *machine, const softki
 softkin_status excavator_jacobian(const excavator_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
 
-/** 10 margins, and whether the axis values are singular (NULL if not wanted). */
+/** 7 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status excavator_singularity(const excavator_machine *machine, const double *axes, double *margins,
     bool *is_singular, softkin_refusal *why);
 

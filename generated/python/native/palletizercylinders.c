@@ -122,7 +122,6 @@ static const softkin_limit LIMITS[] = {
 static const softkin_margin MARGINS[] = {
   {"axis_a4_on_a1", "type 1"},
   {"elbow", "type 1"},
-  {"crank_s2", "type 1"},
   {"lever_b", "type 2"},
   {"crank_m3", "type 1"},
   {"lever_c", "type 2"},
@@ -459,7 +458,9 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   if (!(fabs(level_of_b) <= k->product_in_pose_is_met)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S2: its loop does not close", "", 0.0, 0);
   }
-  if (!(2.0*motor_s2 >= -k->machine_scale_times_rounding)) {
+  const double twice_motor_s2 = 2.0*motor_s2;
+  /* S2: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(twice_motor_s2 >= -k->machine_scale_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
         "S2: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
   }
@@ -501,17 +502,16 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   const double margin_axis_a4_on_a1 = k->one_by_machine_scale
       *(k->shoulder_offset_plus_wrist_offset_x + k->link_length_2*cos_c + k->link_length_1*sin_b);
   const double cos_c_from_b = cos(b - c);
-  const double margin_crank_s2 = -motor_s2*k->quotient_in_margin_crank_s2;
-  const double margin_lever_b = (k->across_of_b*cos(b) - k->along_of_b*sin_b)*k->quotient_in_margin_lever_b;
+  const double margin_lever_b = (k->across_of_b*cos(b) - k->along_of_b*sin_b)*k->quotient_in_margin_lever_b
+      /(2.0*fabs(motor_s2) > 1e-12 ? -twice_motor_s2 : 1.0);
   const double margin_crank_m3 = -k->half_by_crank_length_by_rod_length*shared_sum;
   const double margin_lever_c = (across_of_c*cos_c - along_of_c*sin_of_c)
       *k->half_by_lever_length_by_rod_length;
   margins[0] = margin_axis_a4_on_a1;
   margins[1] = cos_c_from_b;
-  margins[2] = margin_crank_s2;
-  margins[3] = margin_lever_b;
-  margins[4] = margin_crank_m3;
-  margins[5] = margin_lever_c;
+  margins[2] = margin_lever_b;
+  margins[3] = margin_crank_m3;
+  margins[4] = margin_lever_c;
   return SOFTKIN_OK;
 }
 
@@ -1072,8 +1072,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double quotient_in_closed_cos_swing_c_from_b = 0.25/(p->link_length_1*p->link_length_2);
   const double shoulder_offset_plus_wrist_offset_x = p->shoulder_offset + p->wrist_offset_x;
   const double base_height_plus_wrist_offset_z = p->base_height + p->wrist_offset_z;
-  const double quotient_in_margin_crank_s2 = 2.0/machine_scale;
-  const double quotient_in_margin_lever_b = 0.5/(p->cylinder_eye*root_in_rate_b);
+  const double quotient_in_margin_lever_b = 1.0/softkin_root(p->cylinder_eye*root_in_rate_b);
   const double half_by_crank_length_by_rod_length = 0.5/(p->crank_length*p->rod_length);
   const double half_by_lever_length_by_rod_length = 0.5/(p->lever_length*p->rod_length);
   made.lowest_a1 = window_of_a1.lowest;
@@ -1128,7 +1127,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.quotient_in_closed_cos_swing_c_from_b = quotient_in_closed_cos_swing_c_from_b;
   made.shoulder_offset_plus_wrist_offset_x = shoulder_offset_plus_wrist_offset_x;
   made.base_height_plus_wrist_offset_z = base_height_plus_wrist_offset_z;
-  made.quotient_in_margin_crank_s2 = quotient_in_margin_crank_s2;
   made.quotient_in_margin_lever_b = quotient_in_margin_lever_b;
   made.half_by_crank_length_by_rod_length = half_by_crank_length_by_rod_length;
   made.half_by_lever_length_by_rod_length = half_by_lever_length_by_rod_length;
@@ -1139,13 +1137,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
 
 const softkin_mechanism palletizercylinders_mechanism = {
     .name = "Softkin_PalletizerCylinders",
-    .summary = "Palletizer with four axes: a cylinder moves the rear arm, a crank with a rod the" " forearm.",
+    .summary = "Palletizer: a cylinder moves the rear arm, a crank the forearm.",
     .source = "palletizing robots with linear drives and rods",
     .axis_count = 4,
     .branch_count = 2,
     .period_count = 2,
     .row_count = 4,
-    .margin_count = 6,
+    .margin_count = 5,
     .limit_count = 4,
     .parameter_count = 28,
     .quantity_count = 0,

@@ -17,11 +17,8 @@ Configuration:
 Singularities:
     teeth_on_a1: type 1
     elbow: type 1
-    crank_s2: type 1
     lever_b: type 2
-    crank_s3: type 1
     lever_c: type 2
-    crank_s4: type 1
     lever_r: type 2
     crank_r: type 1
     lever_d: type 2
@@ -209,10 +206,9 @@ class Constants:
             stick_cylinder_base_x * stick_cylinder_eye_z - stick_cylinder_base_z * stick_cylinder_eye_x
         )
         product_in_rest_of_motor_s4 = 2.0 * (bucket_cylinder_base_x - rocker_pivot_x) * rocker_length
-        quotient_in_margin_crank_s2 = 2.0 / machine_scale
-        quotient_in_margin_lever_b = 0.5 / (root_in_shared_product_5 * root_in_shared_product_5_2)
-        quotient_in_margin_lever_c = 0.5 / (root_in_shared_product_6 * root_in_shared_product_6_2)
-        quotient_in_margin_lever_r = 0.5 / (rocker_length * root_in_shared_product_8)
+        quotient_in_margin_lever_b = 1.0 / root(root_in_shared_product_5 * root_in_shared_product_5_2)
+        quotient_in_margin_lever_c = 1.0 / root(root_in_shared_product_6 * root_in_shared_product_6_2)
+        quotient_in_margin_lever_r = 1.0 / root(rocker_length * root_in_shared_product_8)
         half_by_rocker_length_by_rod_length = 0.5 / (rocker_length * rod_length)
         quotient_in_margin_lever_d = 0.5 / (rod_length * root_in_shared_product_7)
         self.boom_foot_x, self.boom_foot_z, self.boom_length = boom_foot_x, boom_foot_z, boom_length
@@ -251,7 +247,6 @@ class Constants:
         self.sum_in_rest_of_motor_s3 = sum_in_rest_of_motor_s3
         self.sum_in_rest_of_motor_s3_2 = sum_in_rest_of_motor_s3_2
         self.product_in_rest_of_motor_s4 = product_in_rest_of_motor_s4
-        self.quotient_in_margin_crank_s2 = quotient_in_margin_crank_s2
         self.quotient_in_margin_lever_b = quotient_in_margin_lever_b
         self.quotient_in_margin_lever_c = quotient_in_margin_lever_c
         self.quotient_in_margin_lever_r = quotient_in_margin_lever_r
@@ -268,7 +263,7 @@ class Excavator(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Excavator"
-    KEY = "excavator 773e626c3783d511"
+    KEY = "excavator 44b3b54254d2f9ef"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Swing about Z", multi_turn=True),
         Axis(name="S2", kind="linear", unit="u", meaning="Cylinder of the boom: its length", multi_turn=False),
@@ -341,18 +336,7 @@ class Excavator(Mechanism):
     )
     DEFAULT_CONFIGURATION = (1, 1, 0)
     JACOBIAN_ROWS = ("x", "y", "z", "pitch")
-    MARGINS = (
-        "teeth_on_a1",
-        "elbow",
-        "crank_s2",
-        "lever_b",
-        "crank_s3",
-        "lever_c",
-        "crank_s4",
-        "lever_r",
-        "crank_r",
-        "lever_d",
-    )
+    MARGINS = ("teeth_on_a1", "elbow", "lever_b", "lever_c", "lever_r", "crank_r", "lever_d")
     READS_ROTATION = True
     FREEDOM = "three"
     ROLE = "complete"
@@ -917,7 +901,6 @@ class Excavator(Mechanism):
         one_by_divisor_of_c, one_by_divisor_of_r_2 = k.one_by_divisor_of_c, k.one_by_divisor_of_r_2
         one_by_machine_scale, product_in_across_of_d = k.one_by_machine_scale, k.product_in_across_of_d
         product_in_along_of_d, product_in_level_of_d = k.product_in_along_of_d, k.product_in_level_of_d
-        quotient_in_margin_crank_s2 = k.quotient_in_margin_crank_s2
         quotient_in_margin_lever_b = k.quotient_in_margin_lever_b
         quotient_in_margin_lever_c = k.quotient_in_margin_lever_c
         quotient_in_margin_lever_d = k.quotient_in_margin_lever_d
@@ -931,17 +914,29 @@ class Excavator(Mechanism):
         motor_s2 = axis_s2 - offset_s2
         level_of_b = motor_s2 * motor_s2 - sum_in_level_of_b
         # S2: its loop does not close
-        if not (abs(level_of_b) <= shared_product and 2.0 * motor_s2 >= -machine_scale_times_rounding):
+        if not (abs(level_of_b) <= shared_product):
+            return Status.IMPOSSIBLE
+        twice_motor_s2 = 2.0 * motor_s2
+        # S2: in the other assembly mode, or too close to a type 2 singularity
+        if not (twice_motor_s2 >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
         motor_s3 = axis_s3 - offset_s3
         level_of_c = motor_s3 * motor_s3 - sum_in_level_of_c
         # S3: its loop does not close
-        if not (abs(level_of_c) <= shared_product_2 and 2.0 * motor_s3 >= -machine_scale_times_rounding):
+        if not (abs(level_of_c) <= shared_product_2):
+            return Status.IMPOSSIBLE
+        twice_motor_s3 = 2.0 * motor_s3
+        # S3: in the other assembly mode, or too close to a type 2 singularity
+        if not (twice_motor_s3 >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
         motor_s4 = axis_s4 - offset_s4
         level_of_r = motor_s4 * motor_s4 - sum_in_level_of_r
         # S4: its loop does not close
-        if not (abs(level_of_r) <= shared_product_3 and 2.0 * motor_s4 >= -machine_scale_times_rounding):
+        if not (abs(level_of_r) <= shared_product_3):
+            return Status.IMPOSSIBLE
+        twice_motor_s4 = 2.0 * motor_s4
+        # S4: in the other assembly mode, or too close to a type 2 singularity
+        if not (twice_motor_s4 >= -machine_scale_times_rounding):
             return Status.IMPOSSIBLE
         root_of_r = root((reach_of_r_2 - level_of_r) * (level_of_r + reach_of_r_2))
         cos_r = (across_of_r_2 * root_of_r + along_of_r_2 * level_of_r) * one_by_divisor_of_r_2
@@ -1014,22 +1009,28 @@ class Excavator(Mechanism):
         y = y_at_d + bucket_length * r21_at_b_c_d
         margin_teeth_on_a1 = one_by_machine_scale * (x * cos_a1 + y * sin_a1)
         sin_c = sin(c)
-        margin_crank_s2 = -motor_s2 * quotient_in_margin_crank_s2
-        margin_lever_b = (across_of_b * cos_b - along_of_b * sin(b)) * quotient_in_margin_lever_b
-        margin_crank_s3 = -motor_s3 * quotient_in_margin_crank_s2
-        margin_lever_c = (across_of_c * cos(c) - along_of_c * sin_c) * quotient_in_margin_lever_c
-        margin_crank_s4 = -motor_s4 * quotient_in_margin_crank_s2
-        margin_lever_r = (across_of_r_2 * cos_r - along_of_r_2 * sin_r) * quotient_in_margin_lever_r
+        margin_lever_b = (
+            (across_of_b * cos_b - along_of_b * sin(b))
+            * quotient_in_margin_lever_b
+            / (-twice_motor_s2 if 2.0 * abs(motor_s2) > 1e-12 else 1.0)
+        )
+        margin_lever_c = (
+            (across_of_c * cos(c) - along_of_c * sin_c)
+            * quotient_in_margin_lever_c
+            / (-twice_motor_s3 if 2.0 * abs(motor_s3) > 1e-12 else 1.0)
+        )
+        margin_lever_r = (
+            (across_of_r_2 * cos_r - along_of_r_2 * sin_r)
+            * quotient_in_margin_lever_r
+            / (-twice_motor_s4 if 2.0 * abs(motor_s4) > 1e-12 else 1.0)
+        )
         margin_crank_r = half_by_rocker_length_by_rod_length * shared_sum
         margin_lever_d = (across_of_d * cos_of_d - along_of_d * sin_of_d) * quotient_in_margin_lever_d
         return (
             margin_teeth_on_a1,
             sin_c,
-            margin_crank_s2,
             margin_lever_b,
-            margin_crank_s3,
             margin_lever_c,
-            margin_crank_s4,
             margin_lever_r,
             margin_crank_r,
             margin_lever_d,

@@ -342,10 +342,13 @@ class ArrayPrograms(Programs):
         require(status, reasonable(axis_a1, axis_s2, axis_s3, axis_s4), Status.BAD_INPUT)
         motor_s2 = axis_s2 - k.offset_s2
         level_of_b = motor_s2 * motor_s2 - k.sum_in_level_of_b
+        twice_motor_s2 = 2.0 * motor_s2
         motor_s3 = axis_s3 - k.offset_s3
         level_of_c = motor_s3 * motor_s3 - k.sum_in_level_of_c
+        twice_motor_s3 = 2.0 * motor_s3
         motor_s4 = axis_s4 - k.offset_s4
         level_of_r = motor_s4 * motor_s4 - k.sum_in_level_of_r
+        twice_motor_s4 = 2.0 * motor_s4
         root_of_r = root((k.reach_of_r_2 - level_of_r) * (level_of_r + k.reach_of_r_2))
         cos_r = (k.across_of_r_2 * root_of_r + k.along_of_r_2 * level_of_r) * k.one_by_divisor_of_r_2
         level_of_d = -k.sum_in_level_of_d - k.product_in_level_of_d * cos_r
@@ -412,26 +415,35 @@ class ArrayPrograms(Programs):
         y = y_at_d + k.bucket_length * r21_at_b_c_d
         margin_teeth_on_a1 = k.one_by_machine_scale * (x * cos_a1 + y * sin_a1)
         sin_c = sin(c)
-        margin_crank_s2 = -motor_s2 * k.quotient_in_margin_crank_s2
-        margin_lever_b = (k.across_of_b * cos_b - k.along_of_b * sin(b)) * k.quotient_in_margin_lever_b
-        margin_crank_s3 = -motor_s3 * k.quotient_in_margin_crank_s2
-        margin_lever_c = (k.across_of_c * cos(c) - k.along_of_c * sin_c) * k.quotient_in_margin_lever_c
-        margin_crank_s4 = -motor_s4 * k.quotient_in_margin_crank_s2
-        margin_lever_r = (k.across_of_r_2 * cos_r - k.along_of_r_2 * sin_r) * k.quotient_in_margin_lever_r
+        margin_lever_b = (
+            (k.across_of_b * cos_b - k.along_of_b * sin(b))
+            * k.quotient_in_margin_lever_b
+            / select(2.0 * absolute(motor_s2) > 1e-12, -twice_motor_s2, 1.0)
+        )
+        margin_lever_c = (
+            (k.across_of_c * cos(c) - k.along_of_c * sin_c)
+            * k.quotient_in_margin_lever_c
+            / select(2.0 * absolute(motor_s3) > 1e-12, -twice_motor_s3, 1.0)
+        )
+        margin_lever_r = (
+            (k.across_of_r_2 * cos_r - k.along_of_r_2 * sin_r)
+            * k.quotient_in_margin_lever_r
+            / select(2.0 * absolute(motor_s4) > 1e-12, -twice_motor_s4, 1.0)
+        )
         margin_crank_r = k.half_by_rocker_length_by_rod_length * shared_sum
         margin_lever_d = (across_of_d * cos_of_d - along_of_d * sin_of_d) * k.quotient_in_margin_lever_d
         # S2: its loop does not close
         # S2: in the other assembly mode, or too close to a type 2 singularity
         require(
             status,
-            (absolute(level_of_b) <= k.shared_product) & (2.0 * motor_s2 >= -k.machine_scale_times_rounding),
+            (absolute(level_of_b) <= k.shared_product) & (twice_motor_s2 >= -k.machine_scale_times_rounding),
             Status.IMPOSSIBLE,
         )
         # S3: its loop does not close
         # S3: in the other assembly mode, or too close to a type 2 singularity
         require(
             status,
-            (absolute(level_of_c) <= k.shared_product_2) & (2.0 * motor_s3 >= -k.machine_scale_times_rounding),
+            (absolute(level_of_c) <= k.shared_product_2) & (twice_motor_s3 >= -k.machine_scale_times_rounding),
             Status.IMPOSSIBLE,
         )
         # S4: its loop does not close
@@ -439,19 +451,16 @@ class ArrayPrograms(Programs):
         require(
             status,
             (absolute(level_of_r) <= k.shared_product_3)
+            & (twice_motor_s4 >= -k.machine_scale_times_rounding)
             & (absolute(level_of_d) <= 1.000000000001 * reach_of_d)
-            & (2.0 * motor_s4 >= -k.machine_scale_times_rounding)
             & (-shared_sum >= -k.shared_product_4),
             Status.IMPOSSIBLE,
         )
         return (
             margin_teeth_on_a1,
             sin_c,
-            margin_crank_s2,
             margin_lever_b,
-            margin_crank_s3,
             margin_lever_c,
-            margin_crank_s4,
             margin_lever_r,
             margin_crank_r,
             margin_lever_d,

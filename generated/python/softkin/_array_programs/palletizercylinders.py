@@ -696,6 +696,7 @@ class ArrayPrograms(Programs):
         require(status, reasonable(axis_a1, axis_a4, axis_m3, axis_s2), Status.BAD_INPUT)
         motor_s2 = axis_s2 - k.offset_s2
         level_of_b = motor_s2 * motor_s2 - k.sum_in_level_of_b
+        twice_motor_s2 = 2.0 * motor_s2
         motor_m3 = DEGREE * (axis_m3 - k.offset_m3)
         cos_motor_m3 = cos(motor_m3)
         sin_motor_m3 = sin(motor_m3)
@@ -736,15 +737,18 @@ class ArrayPrograms(Programs):
             k.shoulder_offset_plus_wrist_offset_x + k.link_length_2 * cos_c + k.link_length_1 * sin_b
         )
         cos_c_from_b = cos(b - c)
-        margin_crank_s2 = -motor_s2 * k.quotient_in_margin_crank_s2
-        margin_lever_b = (k.across_of_b * cos(b) - k.along_of_b * sin_b) * k.quotient_in_margin_lever_b
+        margin_lever_b = (
+            (k.across_of_b * cos(b) - k.along_of_b * sin_b)
+            * k.quotient_in_margin_lever_b
+            / select(2.0 * absolute(motor_s2) > 1e-12, -twice_motor_s2, 1.0)
+        )
         margin_crank_m3 = -k.half_by_crank_length_by_rod_length * shared_sum
         margin_lever_c = (across_of_c * cos_c - along_of_c * sin_of_c) * k.half_by_lever_length_by_rod_length
         # S2: its loop does not close
         # S2: in the other assembly mode, or too close to a type 2 singularity
         require(
             status,
-            (absolute(level_of_b) <= k.product_in_pose_is_met) & (2.0 * motor_s2 >= -k.machine_scale_times_rounding),
+            (absolute(level_of_b) <= k.product_in_pose_is_met) & (twice_motor_s2 >= -k.machine_scale_times_rounding),
             Status.IMPOSSIBLE,
         )
         # M3: its loop does not close
@@ -754,14 +758,7 @@ class ArrayPrograms(Programs):
             (absolute(level_of_c) <= 1.000000000001 * reach_of_c) & (-shared_sum >= -k.product_in_pose_is_met_2),
             Status.IMPOSSIBLE,
         )
-        return (
-            margin_axis_a4_on_a1,
-            cos_c_from_b,
-            margin_crank_s2,
-            margin_lever_b,
-            margin_crank_m3,
-            margin_lever_c,
-        ), status
+        return (margin_axis_a4_on_a1, cos_c_from_b, margin_lever_b, margin_crank_m3, margin_lever_c), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the frame by rows, per radian."""
