@@ -19,7 +19,7 @@ SHIFTS = (0.0, 1e-9, -1e-5)
 """How far a margin is from zero near a singular pose."""
 DRAWN = 6000
 CYLINDERS = {
-    "Softkin_Excavator": {1: (600.0, 1300.0), 2: (820.0, 1300.0), 3: (500.0, 850.0)},
+    "Softkin_Excavator": {1: (600.0, 1300.0), 2: (900.0, 1250.0), 3: (500.0, 850.0)},
     "Softkin_PalletizerCylinders": {1: (300.0, 800.0)},
     "Softkin_ScissorLift": {0: (100.0, 1590.0)},
 }
