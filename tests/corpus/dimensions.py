@@ -61,7 +61,7 @@ DIMENSIONS: dict[str, dict[str, float]] = {
         "bucket_cylinder_base_x": -900.0, "bucket_cylinder_base_z": 200.0, "rocker_pivot_x": -220.0,
         "rocker_length": 200.0, "rod_length": 276.0, "bucket_ear_x": -60.0, "bucket_ear_z": 140.0,
     },
-    "Softkin_PalletizerCylinders": {
+    "Softkin_RodPalletizer": {
         "base_height": 500.0, "shoulder_offset": 150.0, "link_length_1": 700.0, "link_length_2": 800.0,
         "wrist_offset_x": 120.0, "wrist_offset_z": -90.0, "cylinder_base_x": -420.0, "cylinder_base_z": 60.0,
         "cylinder_eye": 380.0, "crank_base_x": 350.0, "crank_base_z": -300.0, "crank_length": 180.0,

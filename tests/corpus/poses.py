@@ -20,7 +20,7 @@ SHIFTS = (0.0, 1e-9, -1e-5)
 DRAWN = 6000
 CYLINDERS = {
     "Softkin_Excavator": {1: (600.0, 1300.0), 2: (900.0, 1250.0), 3: (500.0, 850.0)},
-    "Softkin_PalletizerCylinders": {1: (300.0, 800.0)},
+    "Softkin_RodPalletizer": {1: (300.0, 800.0)},
     "Softkin_ScissorLift": {0: (100.0, 1590.0)},
 }
 """Lengths of cylinders at which the loops of most machines close: anywhere else hardly any pose is found."""

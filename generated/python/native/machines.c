@@ -33,12 +33,12 @@
 #include "p2x_type2.h"
 #include "p2y.h"
 #include "palletizer.h"
-#include "palletizercylinders.h"
 #include "pcc.h"
 #include "planar_3rrr.h"
 #include "polar.h"
 #include "polar_z.h"
 #include "pos_rrr.h"
+#include "rodpalletizer.h"
 #include "scara2_z.h"
 #include "scara3_ccz.h"
 #include "scara3_z.h"
@@ -177,12 +177,12 @@ const softkin_native softkin_machines[] = {
     {"p2x_type2 e9df9cbc459e05d1", &p2x_type2_mechanism, {p2x_type2_regular, NULL}},
     {"p2y f699eaab88473243", &p2y_mechanism, {p2y_regular, NULL}},
     {"palletizer b22aa2e3fca3a87d", &palletizer_mechanism, {palletizer_regular, palletizer_regular_all}},
-    {"palletizercylinders 0831f01fc7b00e11", &palletizercylinders_mechanism, {NULL, NULL}},
     {"pcc fc915a8e08510de0", &pcc_mechanism, {pcc_regular, pcc_regular_all}},
     {"planar_3rrr e5024333caf97add", &planar_3rrr_mechanism, {NULL, NULL}},
     {"polar 7f22839a27cccfa9", &polar_mechanism, {polar_regular, NULL}},
     {"polar_z ac9610c84473bd12", &polar_z_mechanism, {polar_z_regular, NULL}},
     {"pos_rrr 87af57219db5c9a0", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
+    {"rodpalletizer ae4b86efc1ad8f90", &rodpalletizer_mechanism, {NULL, NULL}},
     {"scara2_z b37de2a39400f06c", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},
     {"scara3_ccz 33cf2d6b22d4e16b", &scara3_ccz_mechanism, {scara3_ccz_regular, scara3_ccz_regular_all}},
     {"scara3_z f177072bc3d7d9c6", &scara3_z_mechanism, {scara3_z_regular, scara3_z_regular_all}},

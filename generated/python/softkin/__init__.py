@@ -64,12 +64,12 @@ if TYPE_CHECKING:
     from softkin.p2x_type2 import P2XType2
     from softkin.p2y import P2Y
     from softkin.palletizer import Palletizer
-    from softkin.palletizercylinders import PalletizerCylinders
     from softkin.pcc import PCC
     from softkin.planar_3rrr import Planar3RRR
     from softkin.polar import Polar
     from softkin.polar_z import PolarZ
     from softkin.pos_rrr import PosRRR
+    from softkin.rodpalletizer import RodPalletizer
     from softkin.scara2_z import Scara2Z
     from softkin.scara3_ccz import Scara3CCZ
     from softkin.scara3_z import Scara3Z
@@ -136,12 +136,12 @@ __all__ = [
     "P2XType1",
     "P2XType2",
     "Palletizer",
-    "PalletizerCylinders",
     "Parameter",
     "Planar3RRR",
     "Polar",
     "PolarZ",
     "PosRRR",
+    "RodPalletizer",
     "Rotation",
     "Scara2Z",
     "Scara3CCZ",
@@ -206,12 +206,12 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_P2X_Type2": ("p2x_type2", "P2XType2"),
     "Kin_P2Y": ("p2y", "P2Y"),
     "Softkin_Palletizer": ("palletizer", "Palletizer"),
-    "Softkin_PalletizerCylinders": ("palletizercylinders", "PalletizerCylinders"),
     "Kin_PCC": ("pcc", "PCC"),
     "Softkin_Planar_3RRR": ("planar_3rrr", "Planar3RRR"),
     "Kin_Polar": ("polar", "Polar"),
     "Kin_Polar_Z": ("polar_z", "PolarZ"),
     "Kin_Pos_RRR": ("pos_rrr", "PosRRR"),
+    "Softkin_RodPalletizer": ("rodpalletizer", "RodPalletizer"),
     "Kin_Scara2_Z": ("scara2_z", "Scara2Z"),
     "Kin_Scara3_CCZ": ("scara3_ccz", "Scara3CCZ"),
     "Kin_Scara3_Z": ("scara3_z", "Scara3Z"),
