@@ -11,7 +11,7 @@ import sympy as sp
 
 from derive.algebra.angle_sums import terms_of
 from derive.description.amounts import wrong_amounts
-from derive.description.kinds import number, pair
+from derive.description.fields import number, pair
 from derive.description.mechanism import (
     ROTATION,
     DescriptionError,
@@ -235,6 +235,8 @@ def _periods(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _shape(mechanism: Mechanism) -> Iterator[str]:
+    if mechanism.drives and mechanism.chain is None:
+        yield "drives= are loops that move joints of a chain: a closed loop states its rods"
     if (mechanism.chain is None) == (not mechanism.equations):
         yield "the mechanism needs either a chain or closure equations"
     yield from _position(mechanism)
@@ -316,7 +318,8 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
         *((f"bar {bar.name!r}", e) for bar in mechanism.bars for e in (*bar.base, *bar.plate, bar.length)),
     ]
     for place, expression in named:
-        yield from _unknown(place, expression, known, "a joint or a parameter of this mechanism")
+        hint = "; if a loop moves it, state the loop: drives=(driven(...),)" * (place == "chain")
+        yield from _unknown(place, expression, known, f"a joint or a parameter of this mechanism{hint}")
     for branch in mechanism.branches:
         if not branch.is_crossing and not joints & branch.indicator.free_symbols:
             yield f"branch {branch.name!r}: its indicator {branch.indicator} depends on no joint"

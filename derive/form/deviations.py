@@ -42,6 +42,8 @@ def with_deviations(drawn: Mechanism) -> Mechanism:
     """
     if drawn.chain is None:
         raise DescriptionError("the deviations of a closed loop are those of its dimensions, which are inputs already")
+    if drawn.drives:
+        raise DescriptionError("deviations of a chain whose joints are moved by loops are not known yet")
     if not drawn.task.position or drawn.task.turning not in _FOLLOWED:
         raise DescriptionError("deviations need a chain that commands a position, and not a pitch")
     own = tuple(_parameters(drawn, lines_of(drawn.chain, drawn.joints)))

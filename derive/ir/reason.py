@@ -74,6 +74,7 @@ class Why(Enum):
     OTHER_ASSEMBLY = "the other assembly mode"
     OTHER_MIRROR = "the mirror that the machine does not have"
     NO_POSE = "{} where the machine has no pose"
+    LOOP_OPEN = "{}: its loop does not close"
     RODS_APART = "the rods do not meet"
     CENTRES_ON_A_LINE = "the centres coincide or lie on a line: nothing holds the plate"
     UNCONTROLLED = "nothing controls the plate"

@@ -10,6 +10,7 @@ from derive.description.mechanism import DescriptionError, Mechanism, Plane, Tur
 from derive.equations.axes import Forward
 from derive.equations.chain_splits import is_spatial
 from derive.equations.closures.fixed_names import fixed_lets, with_fixed_names
+from derive.equations.drives import rate
 from derive.equations.named_pose import named_pose
 from derive.equations.pitch.chain import followed_factors
 from derive.equations.trigonometry import named_trigonometry
@@ -82,7 +83,7 @@ def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[
 
 def chain_entries(
     mechanism: Mechanism, rows: Sequence[str], screws: Sequence[Screw] = ()
-) -> tuple[tuple[Let, ...], list[sp.Expr]]:
+) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
     """The statements and the entries of these rows for a chain. screws: those of the true chain of a machine that has
     deviations.
     """
@@ -102,19 +103,23 @@ def scaled_entries(mechanism: Mechanism, entries: Sequence[sp.Expr]) -> tuple[sp
     joints = mechanism.solved_joints
     found = []
     for k, value in enumerate(entries):
-        is_place, is_slide = k // len(joints) < len(mechanism.task.position), not joints[k % len(joints)].is_angle
+        is_place, is_slide = k // len(joints) < len(mechanism.task.position), not joints[k % len(joints)].axis_is_angle
         power = int(is_slide) - int(is_place)
         found.append(value * SCALE**power)
     return tuple(found)
 
 
-def _per_motor(mechanism: Mechanism, matrix: sp.Matrix) -> tuple[tuple[Let, ...], list[sp.Expr]]:
+def _per_motor(mechanism: Mechanism, matrix: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
     """The entries per velocity of a motor, with names for their sines and cosines."""
-    coupled = matrix * _motor_matrix(mechanism)
+    rates = {k: rate(mechanism, j) for k, j in enumerate(mechanism.joints) if j.loops}
+    motors = _motor_matrix(mechanism)
+    for k, (_, value) in rates.items():
+        motors[k, k] = value
+    coupled = matrix * motors
     planar = mechanism.chain is not None and not is_spatial(mechanism.chain)
     entries = [sp.expand_mul(e) if planar else e for e in coupled]
     lets, values = named_trigonometry(mechanism, entries)
-    return lets, values
+    return (*(s for statements, _ in rates.values() for s in statements), *lets), values
 
 
 def entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:

@@ -236,7 +236,7 @@ class Kinematics:
         """The axes whose squared differences decide an automatic choice: the rotary ones, or all
         if there is none.
         """
-        angles = tuple(j for j in self.mechanism.joints if j.is_angle)
+        angles = tuple(j for j in self.mechanism.joints if j.axis_is_angle)
         return angles or self.mechanism.joints
 
 

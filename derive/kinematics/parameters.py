@@ -200,7 +200,7 @@ def _as_constant(parameter: Parameter) -> Output:
 
 def chooses_by_lengths(mechanism: Mechanism) -> bool:
     """Whether the distance of a branch to the reference is measured by linear axes alone."""
-    return bool(mechanism.branches) and not any(j.is_angle for j in mechanism.joints)
+    return bool(mechanism.branches) and not any(j.axis_is_angle for j in mechanism.joints)
 
 
 def machine_scale(mechanism: Mechanism) -> sp.Expr:

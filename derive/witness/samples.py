@@ -116,6 +116,7 @@ def _drawn(
         axes = axes_near_home(kin.mechanism, closure, values, parameters, reach, rng)
     else:
         axes = _axes(kin.mechanism, values, larger * reach, rng)
+        _move_loops(kin.mechanism, closure, axes, (parameters, reach), rng)
     values |= {j.axis.name: axes[:, i] for i, j in enumerate(kin.mechanism.joints)}
     joints = closure.joints(axes, parameters)[:, :, 0]
     outputs, status = run(kin.forward, values)
@@ -277,6 +278,25 @@ def _axes(mechanism: Mechanism, values: dict[str, Array], reach: Array, rng: Gen
         motor = np.maximum(-size, low) * (1 - drawn) + np.minimum(size, high) * drawn
         columns.append(motor + (0.0 if joint.multi_turn else values[joint.offset.name]))
     return np.stack(columns, axis=1)
+
+
+def _move_loops(
+    mechanism: Mechanism, closure: Closure, axes: Array, machines: tuple[Array, Array], rng: Generator
+) -> None:
+    """Give axes whose joints loops move values at which these close, where they do: those of random joint values.
+
+    machines: their parameters, and their reaches.
+    """
+    driven = [i for i, j in enumerate(mechanism.joints) if j.loops]
+    if not driven:
+        return
+    parameters, reach = machines
+    sizes = np.where(closure.angles, np.pi, reach[:, None])
+    motors = closure.motors(rng.uniform(-1.0, 1.0, axes.shape) * sizes, parameters)[:, :, 0]
+    for i in driven:
+        offset = parameters[:, closure.parameters.index(mechanism.joints[i].offset.name)]
+        turned = (np.degrees(motors[:, i]) + 180.0) % 360.0 - 180.0
+        axes[:, i] = offset + (turned if mechanism.joints[i].in_degrees else motors[:, i])
 
 
 def turns_of(joint: Joint, values: dict[str, Array]) -> Array:

@@ -17,10 +17,9 @@ from derive.geometry.frames import Motion
 from tests.catalogue.closure import Array, Closure
 from tests.mechanisms import catalogue
 
-MECHANISMS = tuple(m for _, m in catalogue() if not m.rods and not m.is_orientation and m.search is None)
-"""The serial mechanisms: machines of closed loops are in `loop_machines.py`, those of a platform in `hexapod`,
-orientation
-kinematics in `coupling`."""
+MECHANISMS = tuple(m for _, m in catalogue() if not (m.rods or m.drives or m.is_orientation or m.search))
+"""The serial mechanisms: machines of closed loops are in `loop_machines.py`, those with loops in a
+chain in `driven_machines.py`, those of a platform in `hexapod`, orientation kinematics in `coupling`."""
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths."""
 TURNS = 1000.0

@@ -58,6 +58,8 @@ def axes_of(mechanism: Mechanism, robot: softkin.Mechanism, scale: float) -> Arr
     columns = []
     for joint in mechanism.joints:
         low, high = joint.domain or ((-180.0, 180.0) if joint.is_angle else (-scale, scale))
+        if joint.loops:
+            low, high = sorted((0.8 * joint.nominal, 1.2 * joint.nominal))
         columns.append(rng.uniform(low, min(high, 2.0 * scale), 4000))
     drawn = np.stack(columns, axis=1)
     drawn[::50] = np.round(drawn[::50] / 90.0) * 90.0

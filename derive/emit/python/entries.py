@@ -178,9 +178,11 @@ def example(kin: Kinematics) -> list[str]:
 
 def chain(kin: Kinematics) -> list[str]:
     """The factors of a serial chain as it is described, each with the part of its amount that no axis moves, and what
-    each motor adds per unit. Empty for a loop, and where an amount is not linear in the motors.
+    each motor adds per unit. Empty for a loop, where loops move joints, and where an amount is not linear in motors.
     """
     described, joints = kin.mechanism.drawn or kin.mechanism.chain, kin.mechanism.joints
+    if any(j.loops for j in joints):
+        return []
     known = {j.symbol: sp.expand(j.ratio * j.motor + j.coupling) for j in joints} | {sp.pi: 180 * DEGREE}
     amounts = [] if described is None else [sp.expand(f.amount.xreplace(known)) for f in described.factors]
     moved = [[sp.diff(amount, j.motor) for j in joints] for amount in amounts]

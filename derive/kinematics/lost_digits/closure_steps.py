@@ -198,7 +198,7 @@ def at_step(machine: Machine) -> list[Statement]:
     width = len(mechanism.joints)
     for r, row in enumerate(machine.rows):
         for k, j in enumerate(mechanism.joints):
-            power = int(not j.is_angle) - int(row in COORDINATE_NAMES)
+            power = int(not j.axis_is_angle) - int(row in COORDINATE_NAMES)
             value = entries[r * width + k] * SCALE**power if j in machine.inverse.moving else _ZERO
             name = rate(r, k)
             found[name] = Let(name, value)
@@ -301,7 +301,7 @@ def _next(machine: Machine, joint: Joint, start: sp.Expr) -> sp.Expr:
     """The axis value behind a step: the start of the next attempt; if the pose is met on another branch, the closed
     form with what is known there, or the mirror image; else the step.
     """
-    unit = 1 / DEGREE if joint.is_angle else SCALE
+    unit = 1 / DEGREE if joint.axis_is_angle else SCALE
     moved = tried(joint) + real("shrinking") * real(f"step_{joint.key}") * unit
     beside = [flag(f"beside_{a.branch.name}") for a in machine.assignments if a.determinant.step == joint.symbol]
     across = 2 * start - tried(joint)

@@ -97,6 +97,8 @@ def frames(carrier: Part, first: Array, wrist: Part, second: Array) -> tuple[Arr
 
 def _range(one: Part, joint: object) -> tuple[float, float]:
     found = one.mechanism.joints[[j is joint for j in one.mechanism.joints].index(True)]
+    if found.loops:  # a cylinder has no other lengths than those at which its loop closes
+        return min(0.8 * found.nominal, 1.2 * found.nominal), max(0.8 * found.nominal, 1.2 * found.nominal)
     size = 170.0 if found.is_angle else 400.0
     low, high = found.domain or (-size, size)
     return max(low, -size), min(high, size)
