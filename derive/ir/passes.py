@@ -102,7 +102,7 @@ def _without_aliases(
                 continue
         if isinstance(s, Iterate):
             inner = _without_aliases(s.step, aliases, bound, names)
-            s = replace(s, step=tuple(i for i in inner if isinstance(i, Let | Solve)))
+            s = replace(s, step=tuple(i for i in inner if isinstance(i, Let | Solve | Call)))
         kept.append(_with_names(s, aliases))
         names |= set(s.bound())
     return kept
@@ -112,12 +112,23 @@ def _order(body: Sequence[Statement], outputs: Sequence[Output]) -> tuple[Statem
     ordered = [_with_ordered_step(s) if isinstance(s, Iterate) else s for s in body]
     needed = needed_for(ordered, [o.value for o in outputs])
     read = {s for o in outputs for s in symbols_of(o.value)}.union(*(s.reads() for s in needed))
-    return tuple(replace(s, names=tuple(n for n in s.names if n in read)) if isinstance(s, Call) else s for s in needed)
+    return tuple(_with_read_names(s, read) for s in needed)
+
+
+def _with_read_names(statement: Statement, read: set[sp.Symbol]) -> Statement:
+    """A call, or a loop with calls, without the results that nothing reads."""
+    if isinstance(statement, Call):
+        return replace(statement, names=tuple(n for n in statement.names if n in read))
+    if not isinstance(statement, Iterate) or not statement.calls():
+        return statement
+    inside = read.union(*map(names_in, (statement.done, *statement.following)), *(s.reads() for s in statement.step))
+    step = (_with_read_names(s, inside) for s in statement.step)
+    return replace(statement, step=tuple(s for s in step if isinstance(s, Let | Solve | Call)))
 
 
 def _with_ordered_step(loop: Iterate) -> Iterate:
     step = needed_for(loop.step, [loop.done, *loop.following])
-    return replace(loop, step=tuple(s for s in step if isinstance(s, Let | Solve)))
+    return replace(loop, step=tuple(s for s in step if isinstance(s, Let | Solve | Call)))
 
 
 def needed_for(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Statement, ...]:

@@ -108,13 +108,15 @@ class Iterate(Common):
     one.
 
     Every pass evaluates the step at the state. Then the loop ends, or the state becomes `following`. So the names of
-    the step are bound behind the loop, too, and belong to the final state.
+    the step are bound behind the loop, too, and belong to the final state. A program that the step calls may itself
+    iterate; if it refuses in any pass, so does the caller.
     """
 
     expression_fields, name_fields, is_straight = ("start", "step", "done", "following"), ("state", "step"), False
+    program_fields = ("step",)
     state: tuple[sp.Symbol, ...]
     start: tuple[sp.Expr, ...]
-    step: tuple[Let | Solve, ...]
+    step: tuple[Let | Solve | Call, ...]
     following: tuple[sp.Expr, ...]
     """Each may read its own state and the names of the step, but no other state: the order of assignment is free."""
     done: Boolean
@@ -126,12 +128,16 @@ class Iterate(Common):
 
     @property
     def refuses(self) -> bool:
-        """Whether it has a status for the case that `done` never holds."""
-        return self.otherwise is not None
+        """Whether it has a status for the case that `done` never holds, or a program that it calls may refuse."""
+        return self.otherwise is not None or any(s.refuses for s in self.step)
+
+    def calls(self) -> tuple[Call, ...]:
+        """The calls of its step."""
+        return tuple(s for s in self.step if isinstance(s, Call))
 
     def reads(self) -> set[sp.Symbol]:
         """The names that it reads and does not bind itself: the step reads what it binds."""
-        return super().reads() - set(self.bound())
+        return super().reads().union(*(call.reads() for call in self.calls())) - set(self.bound())
 
 
 @dataclass(frozen=True)
@@ -152,6 +158,9 @@ class Call(Common):
     wanted: Boolean = sp.true
     refusal: tuple[Status, Reason] | None = None
     """The status and the reason of the caller where the shared program refuses; None: the status of that program."""
+    passes: int | None = None
+    """In a loop: the most passes that all runs together make of a loop of the shared program, or of one that this
+    calls; None: every run may make as many as there may be in one run."""
 
     @property
     def is_conditional(self) -> bool:
@@ -261,6 +270,11 @@ class Program:
     def requires(self) -> tuple[Require, ...]:
         """The conditions, in order."""
         return tuple(s for s in self.body if isinstance(s, Require))
+
+    def calls(self) -> tuple[Call, ...]:
+        """The calls, those in loops as well, in order."""
+        steps = (s.step if isinstance(s, Iterate) else (s,) for s in self.body)
+        return tuple(s for step in steps for s in step if isinstance(s, Call))
 
     def bound(self) -> tuple[sp.Symbol, ...]:
         """Every name that a statement binds, in order."""

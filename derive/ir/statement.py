@@ -57,11 +57,13 @@ class Common:
 
     def programs(self) -> tuple[Program, ...]:
         """The programs that it runs."""
-        return self._values(self.program_fields)
+        return tuple(_leaves(self._values(self.program_fields), lambda inner: inner.programs()))
 
     def calling(self, programs: Mapping[str, Program]) -> Self:
         """The same statement, which runs the programs that now have the names of its own."""
-        return self._changed(self.program_fields, lambda program: programs[program.name], lambda inner: inner)
+        return self._changed(
+            self.program_fields, lambda program: programs[program.name], lambda inner: inner.calling(programs)
+        )
 
     def _values(self, fields: Iterable[str]) -> tuple[Any, ...]:
         return tuple([getattr(self, field) for field in fields])

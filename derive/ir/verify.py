@@ -9,7 +9,7 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import PRIMITIVES
-from derive.ir.program import Call, Iterate, Program, Solve, Statement, reason_expressions
+from derive.ir.program import Call, FindRoot, Iterate, Program, Solve, Statement, reason_expressions, shared
 from derive.ir.symbols import is_decided, names_in, symbols_of
 from derive.ir.types import IllTypedError, check_types
 
@@ -73,9 +73,15 @@ def _check_call(program: Program, call: Call) -> None:
         raise BrokenProgram(f"{program.name}: {call.program.name} has no output {strangers[0]!r}")
     if strangers := [n.name for n in arguments if n not in call.program.inputs]:
         raise BrokenProgram(f"{program.name}: {call.program.name} does not read {strangers[0]!r}")
+    if call.passes is not None and any(isinstance(s, FindRoot) for p in _run_by(call) for s in p.body):
+        raise BrokenProgram(f"{program.name}: {call.program.name} scans for roots, so `passes` does not bound its work")
     if unbound := [s.name for s in call.constants if s not in program.inputs]:
         message = f"{program.name}: {call.program.name} reads {unbound[0]!r}, which is neither given nor an input"
         raise RepeatedName(message, *(name.name for name in program.bound()))
+
+
+def _run_by(call: Call) -> tuple[Program, ...]:
+    return (call.program, *shared([call.program]))
 
 
 def _check_loop(program: Program, loop: Iterate, bound: dict[str, sp.Symbol]) -> None:

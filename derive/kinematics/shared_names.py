@@ -13,7 +13,7 @@ import sympy as sp
 
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.form.inner_names import in_given_names, inputs_named, joined, suspects, with_inner_names
-from derive.ir.program import Call, Program, Statement, shared
+from derive.ir.program import Program, Statement, shared
 from derive.ir.symbols import cosine, sine
 from derive.ir.verify import BrokenProgram, RepeatedName
 from derive.solver.solve import MOST_TERMS
@@ -44,7 +44,7 @@ def refuse_shared_names(mechanism: Mechanism, statements: Iterable[Statement]) -
     """Refuse a parameter named like a value of the derivation, or of a program that it calls."""
     own = Program("derivation", (), tuple(statements), ())
     programs = (own, *shared([own]))
-    given = (name for p in programs for s in p.body if isinstance(s, Call) for name, _ in s.given)
+    given = (name for p in programs for call in p.calls() for name, _ in call.given)
     refuse_names(mechanism, (*given, *(name for p in programs for name in p.bound())))
 
 

@@ -51,6 +51,10 @@ class Effect:
         read, refused = (tuple((e, change(v)) for e, v in pairs) for pairs in (self.read, self.refused))
         return Effect(self.statement, read, refused)
 
+    def calling(self, programs: Mapping[str, Program]) -> Effect:
+        """The same, which runs the programs that now have the names of its own."""
+        return replace(self, statement=self.statement.calling(programs))
+
 
 @dataclass(frozen=True)
 class Loop:
@@ -60,6 +64,10 @@ class Loop:
     start: tuple[Value, ...]
     step: tuple[Effect | Node, ...]
     ending: tuple[Value, ...]
+
+    def calling(self, programs: Mapping[str, Program]) -> Loop:
+        """The same, which runs the programs that now have the names of its own."""
+        return replace(self, step=tuple(s if isinstance(s, Node) else s.calling(programs) for s in self.step))
 
 
 Item = Effect | Loop

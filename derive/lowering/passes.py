@@ -30,7 +30,7 @@ from derive.ir.symbols import Sign
 from derive.ir.tree import Item, Tree
 from derive.kept import kept_by_identity
 from derive.lowering.cutting import cut
-from derive.lowering.draft import Draft, Effect, Reader, changed, values_of
+from derive.lowering.draft import Draft, Reader, changed, values_of
 from derive.lowering.factoring import Dividing, Factoring, collected, opened
 from derive.lowering.hoisting import Constant, Gathering, hoisted
 from derive.lowering.scheduling import decided, refused_late, scheduled, together, with_reasons_on_sides
@@ -204,9 +204,7 @@ def lowered(
     taken = {*constants, *(let.name.name for let in lets)}
     done: dict[str, Program] = {}
     for draft in drafts:
-        draft.items[:] = [
-            replace(i, statement=i.statement.calling(done)) if isinstance(i, Effect) else i for i in draft.items
-        ]
+        draft.items[:] = [item.calling(done) for item in draft.items]
         short = cut(draft, graph, names)
         done[draft.program.name] = written(short, names, taken, modulo_turns=passes.modulo_turns)
     return tuple(done.values()), lets

@@ -17,7 +17,7 @@ from sympy.logic.boolalg import Boolean
 from derive.ir.graph import ODD, PRODUCT, SUM, Node, Value, reached
 from derive.ir.passes import with_inputs
 from derive.ir.primitives import Atan2, Select
-from derive.ir.program import Let, Output, Program, Solve, Statement, rewritten
+from derive.ir.program import Call, Let, Output, Program, Solve, Statement, rewritten
 from derive.ir.symbols import Names, count, is_count
 from derive.lowering.cutting import LONGEST, SHORT, letters
 from derive.lowering.draft import Draft, Effect, Item, Named, read_values
@@ -150,7 +150,7 @@ class _Writer:
         yield replace(
             item.statement,
             start=tuple(map(self.text, item.start)),
-            step=tuple(s for s in step if isinstance(s, Let | Solve)),
+            step=tuple(s for s in step if isinstance(s, Let | Solve | Call)),
             done=done,
             following=tuple(following),
         )

@@ -217,16 +217,33 @@ def _statement(statement: Statement, repeats: Repeats | None = None) -> Cost:
         entries = _total(map(expression_cost, (*statement.matrix, *statement.right)))
         return entries + solve_cost(statement.size, statement.columns)
     if isinstance(statement, Call):
-        given = _total(expression_cost(value) for _, value in statement.given)
-        return given + cost_of(statement.program, repeats=repeats)
+        return _given(statement) + cost_of(statement.program, repeats=repeats)
     if isinstance(statement, FindRoot):
         tried, looked = _most_of(statement) if repeats is None else (repeats.trials, repeats.finished)
         return (cost_of(statement.trial) + _OF_A_TRIAL) * tried + cost_of(statement.finish) * looked
-    one_pass = _total(map(_statement, statement.step)) + _total(
+    calls, passes = statement.calls(), statement.limit if repeats is None else repeats.passes
+    one_pass = _total(_given(s) if isinstance(s, Call) else _statement(s) for s in statement.step) + _total(
         map(expression_cost, (statement.done, *statement.following))
     )
-    passes = statement.limit if repeats is None else repeats.passes
-    return _total(map(expression_cost, statement.start)) + one_pass * passes
+    runs = _total(_runs(call, passes, repeats) for call in calls)
+    return _total(map(expression_cost, statement.start)) + one_pass * passes + runs
+
+
+def _given(call: Call) -> Cost:
+    return _total(map(expression_cost, call.children()))
+
+
+def _runs(call: Call, times: int, repeats: Repeats | None) -> Cost:
+    """The cost of all runs of a program in a loop. Repeats that are counted, or bounded by `passes`, are those of all
+    runs together.
+    """
+    if repeats is not None:
+        of_all = replace(repeats, passes=repeats.inner)
+    elif call.passes is not None:
+        of_all = Repeats(passes=call.passes, inner=call.passes)
+    else:
+        return cost_of(call.program) * times
+    return cost_of(call.program, repeats=Repeats()) * (times - 1) + cost_of(call.program, repeats=of_all)
 
 
 def _most_of(search: FindRoot) -> tuple[int, int]:
@@ -257,6 +274,7 @@ def _bounds(program: Program) -> Iterator[Bound]:
     for statement in program.body:
         if isinstance(statement, Iterate):
             yield Bound(program.name, statement.note, statement.limit)
+            yield from (bound for call in statement.calls() for bound in _bounds(call.program))
         elif isinstance(statement, FindRoot):
             yield from _bounds(statement.trial) if statement.is_listed else ()
             yield Bound(program.name, statement.note, len(statement.sides) or TRIALS)

@@ -104,15 +104,20 @@ def rotation_texts() -> tuple[str, ...]:
 def reasons_of(kinematics: Kinematics) -> Reasons:
     """The reasons of a mechanism."""
     programs = (kinematics.setup, kinematics.branch, kinematics.limits)
-    without = (replace(p, body=tuple(s for s in p.body if not _explains(s))) for p in programs)
+    without = (replace(p, body=tuple(_unexplained(p.body))) for p in programs)
     if any(p.requires() for p in shared(without)):
         raise TypeError(f"{kinematics.mechanism.name}: the inverse calls a program that gives no reasons")
     return Reasons({j.symbol.name: j.moved_name for j in kinematics.mechanism.joints})
 
 
-def _explains(statement: Statement) -> bool:
-    """Whether a statement is a call that gives its own reason."""
-    return isinstance(statement, Call) and statement.refusal is not None
+def _unexplained(statements: Iterable[Statement]) -> Iterator[Statement]:
+    """The statements without the calls that give their own reasons."""
+    for statement in statements:
+        if isinstance(statement, Iterate):
+            calls = tuple(_unexplained(statement.calls()))
+            yield replace(statement, step=tuple(s for s in statement.step if not isinstance(s, Call) or s in calls))
+        elif not isinstance(statement, Call) or statement.refusal is None:
+            yield statement
 
 
 def texts(kinematics: Kinematics) -> tuple[str, ...]:
@@ -127,7 +132,9 @@ def _texts(statements: Iterable[object], reasons: Reasons) -> Iterator[str]:
             for check in reasons.checks([statement]):
                 yield from (check.reason, *(why for _, why in check.turns))
         elif isinstance(statement, Iterate):
-            yield reasons.loop(statement)
+            yield from _texts(statement.step, reasons)
+            if statement.otherwise is not None:
+                yield reasons.loop(statement)
         elif isinstance(statement, Call) and (found := reasons.call(statement)):
             yield found[1]
 

@@ -129,11 +129,14 @@ class Body(walk.Body):
         ]
         if call.is_conditional:
             lines = block(f"if ({self.printer.conjunction([call.wanted])})", lines)
+        types = {name: type_of(symbol) for name, symbol in names.items()}
+        declares = self.declared.isdisjoint(call.names)
+        assigned = [f"{spelled(name)} = {converted(types[name], place)};" for name, place in own]
         return [
             *comment(call.note),
             f"double {array}[{len(call.program.outputs)}]{' = {0.0}' if call.is_conditional else ''};",
             *lines,
-            *taken(own, {name: type_of(symbol) for name, symbol in names.items()}),
+            *(taken(own, types) if declares else assigned),
         ]
 
     def search(self, search: FindRoot) -> list[str]:

@@ -82,7 +82,8 @@ class Body(walk.Body):
             value = f"{PRINTER.conjunction([call.wanted])} ? {value} : {nothing}"
         wanted = {name.name for name in call.names}
         taken = _trimmed([spelled(o.name) if o.name in wanted else "" for o in call.program.outputs])
-        tail = [f"const {list_of(taken)} = {found};"] if taken else []
+        word = "const " if self.declared.isdisjoint(call.names) else ""
+        tail = [f"{word}{list_of(taken)} = {found};"] if taken else []
         refused = PRINTER.when(f"{found} instanceof Refusal", self.refusals.of_call(call, found))
         return [*comment(call.note), f"const {found} = {value};", *refused, *tail]
 

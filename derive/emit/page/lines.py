@@ -79,15 +79,18 @@ class Lines:
         elif isinstance(item, Iterate):
             yield from self._loop(item)
         elif isinstance(item, Call):
-            pairs = [(name, value) for name, value in item.given if name != value]
-            given = [line for name, value in pairs for line in self.math.equation(name, value)]
-            names = ", ".join(self._spelling(n.name) for n in item.names)
-            what = item.note or "a program that several methods share"
-            note = f"{what}: {method_name(item.program)}, which gives {names}{', with' if given else ''}"
-            note = f"only where a pose would be refused: {note}" if item.is_rare else note
-            yield Line("call", math=tuple(given), note=note)
+            line = self._call(item)
+            yield replace(line, note=f"only where a pose would be refused: {line.note}") if item.is_rare else line
         else:
             yield from self._search(item)
+
+    def _call(self, call: Call) -> Line:
+        pairs = [(name, value) for name, value in call.given if name != value]
+        given = [line for name, value in pairs for line in self.math.equation(name, value)]
+        names = ", ".join(self._spelling(n.name) for n in call.names)
+        what = call.note or "a program that several methods share"
+        note = f"{what}: {method_name(call.program)}, which gives {names}{', with' if given else ''}"
+        return Line("call", math=tuple(given), note=note)
 
     def _let(self, let: Let) -> Line:
         own = Line("value", self.name(let.name), note=let.comment, neutral=let.name.name)
@@ -132,7 +135,12 @@ class Lines:
         state = [line for s, v in zip(item.state, item.start, strict=True) for line in self.math.equation(s, v)]
         yield Line("loop", math=tuple(state), note=f"{item.note}: begin with")
         yield Line("loop", note=f"repeat, at most {item.limit} times")
-        yield from self.of(item.step, 1)
+        for statement in item.step:
+            if isinstance(statement, Call) and statement.is_conditional:
+                yield Line("where", math=self.math.lines(statement.wanted), depth=1)
+                yield replace(self._call(statement), depth=2)
+            else:
+                yield from self.of((statement,), 1)
         yield Line("where", math=self.math.lines(item.done), note="the end is reached", depth=1)
         following = zip(item.state, item.following, strict=True)
         yield Line("otherwise", math=tuple(line for s, v in following for line in self.math.equation(s, v)), depth=1)

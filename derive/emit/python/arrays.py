@@ -74,7 +74,8 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
 
     for item, same in grouped(applied(ARRAYS, Tree.of(program), NOTHING).items):
         if isinstance(item, Iterate):
-            lines += [*array_head(item, printer), *step_lines(item, printer), *array_end(item, printer)]
+            step = step_lines(item, printer, lambda call: calls.array_lines(call, printer))
+            lines += [*array_head(item, printer), *step, *array_end(item, printer)]
         elif isinstance(item, Call):
             lines += calls.array_lines(item, printer)
         elif isinstance(item, FindRoot):
@@ -92,7 +93,7 @@ def values_of_a_row(kin: Kinematics) -> int:
     """The number of values of one row in the inverse: inputs, intermediate values, results. A program that every pose
     calls has its own values for every slot.
     """
-    called = {s.program.name for s in kin.branch.body if isinstance(s, Call) and not s.is_rare}
+    called = {c.program.name for c in kin.branch.calls() if not (c.is_rare and c in kin.branch.body)}
     programs = [(kin.branch, 1), *((p, 2 ** len(kin.branches) if p.name in called else 1) for p in kin.shared)]
     own = sum(slots * (len(p.inputs) + len(p.bound())) for p, slots in programs)
     return own + OF_A_SEARCH * any(map(has_search, kin.shared))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -80,16 +80,21 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
         if isinstance(item, Require):
             lines += refusals.lines(same)
         elif isinstance(item, Iterate):
-            lines += [*scalar_head(item, printer), *step_lines(item, printer)]
+            lines += scalar_head(item, printer)
+            lines += step_lines(item, printer, lambda call: _called(call, refusals, printer))
             refusal = "" if item.otherwise is None else refusals.of_loop(item.otherwise, item)
             lines += scalar_end(item, conjunction([item.done]), refusal, printer)
         elif isinstance(item, Call):
-            lines += python_calls.scalar_lines(item, printer, refusals.of_call(item))
+            lines += _called(item, refusals, printer)
         elif isinstance(item, FindRoot):
             lines += python_calls.scalar_search(item, printer)
         else:
             lines += _item_lines(item, refusals, printer)
     return lines
+
+
+def _called(call: Call, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
+    return python_calls.scalar_lines(call, printer, refusals.of_call(call))
 
 
 def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
@@ -132,9 +137,10 @@ def binding_lines(statement: Let | Solve, printer: ScalarPrinter) -> list[str]:
     return let_lines(statement, printer) if isinstance(statement, Let) else solve_lines(statement, printer)
 
 
-def step_lines(loop: Iterate, printer: ScalarPrinter) -> list[str]:
-    """The step of a loop."""
-    return [f"    {line}" for s in loop.step for line in binding_lines(s, printer)]
+def step_lines(loop: Iterate, printer: ScalarPrinter, called: Callable[[Call], list[str]]) -> list[str]:
+    """The step of a loop. called: the lines of a call."""
+    lines = (called(s) if isinstance(s, Call) else binding_lines(s, printer) for s in loop.step)
+    return _indented([line for one in lines for line in one])
 
 
 def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
@@ -198,17 +204,17 @@ def solve_lines(system: Solve, printer: ScalarPrinter) -> list[str]:
 
 def scalar_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     """The lines that set the start, and open the loop."""
-    return _head(loop, ", ".join(_values(loop, loop.start, printer)))
+    return _head(loop, [f"{', '.join(_names(loop.state))} = {', '.join(_values(loop, loop.start, printer))}"])
 
 
 def array_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     """The lines that set the start, which may be one for all rows, and open the loop."""
-    return _head(loop, f"initial({', '.join(_values(loop, loop.start, printer))})")
+    start = f"initial({', '.join(_values(loop, loop.start, printer))})"
+    return _head(loop, taken_apart(_names(loop.state), start))
 
 
-def _head(loop: Iterate, start: str) -> list[str]:
-    note = note_lines(loop.note)
-    return [*note, f"{', '.join(_names(loop.state))} = {start}", f"for _ in range({loop.limit}):"]
+def _head(loop: Iterate, start: Sequence[str]) -> list[str]:
+    return [*note_lines(loop.note), *start, f"for _ in range({loop.limit}):"]
 
 
 def scalar_end(loop: Iterate, done: str, refusal: str, printer: ScalarPrinter) -> list[str]:
@@ -219,12 +225,15 @@ def scalar_end(loop: Iterate, done: str, refusal: str, printer: ScalarPrinter) -
 
 def array_end(loop: Iterate, printer: ScalarPrinter) -> list[str]:
     """The lines that leave the loop when every row is done; rows that are done keep their state while others go on."""
-    state = ", ".join(_names(loop.state))
     following = [f"{value}," for value in _values(loop, loop.following, printer)]
     return [
         *_indented([f"done = {printer.print(loop.done)}", "if settled(done, status):", "    break"]),
         *_indented(
-            [f"{state} = advanced(", "    done,", f"    ({state}),", "    (", *_indented(following, 2), "    ),", ")"]
+            [
+                *taken_apart(_names(loop.state), "advanced("),
+                *_indented(["done,", f"{tuple_of(_names(loop.state))},", "(", *_indented(following), "),"]),
+                ")",
+            ]
         ),
         *([] if loop.otherwise is None else [f"require(status, done, Status.{loop.otherwise.name})"]),
     ]

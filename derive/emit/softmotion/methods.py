@@ -24,7 +24,7 @@ from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st.shared import method_name, own_names, signature_of
 from derive.equations.windows import windows
 from derive.ir.constants import LEAST
-from derive.ir.program import Call, FindRoot, Program, shared
+from derive.ir.program import FindRoot, Program, shared
 from derive.ir.symbols import branch_sign
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
@@ -220,7 +220,7 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
         return printed(program, spelled | own, {o.name: own[o.name] for o in program.outputs}, taken, refusal)
     is_branch = signature.name == "SolveBranch"
     stored = _coordinates(program) if signature.name == "FindPose" else {}
-    if is_branch and any(isinstance(s, Call) for s in program.body):  # a call takes the axes as a whole
+    if is_branch and program.calls():  # a call takes the axes as a whole
         stored = {j.axis.name: spelled[j.axis.name] for j in kinematics.mechanism.joints}
     return printed(program, _positions(signature) | spelled, stored, taken, refusal, is_branch=is_branch)
 

@@ -73,7 +73,7 @@ def printed(
 
 
 def _outcome(program: Program, refusal: Refusal) -> Iterator[str]:
-    if any(isinstance(s, Call) and s.program.refuses for s in program.body):
+    if any(call.program.refuses for call in program.calls()):
         yield f"{OUTCOME} : {refusal.type};"
 
 

@@ -18,7 +18,7 @@ from derive.emit.st.layout import packed
 from derive.emit.st.names import capitalized, parameter_name, type_name
 from derive.emit.st.refusal import Refusal
 from derive.ir.program import Call, Program, Status
-from derive.ir.symbols import is_condition
+from derive.ir.symbols import is_condition, is_count
 from derive.ir.types import type_of
 
 OUTCOME = "outcome"
@@ -74,7 +74,7 @@ def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterato
         yield from lines
         return
     for name in call.names:  # where the method is not called
-        yield f"{printer.name(name)} := {'FALSE' if is_condition(name) else '0.0'};"
+        yield f"{printer.name(name)} := {'FALSE' if is_condition(name) else '0' if is_count(name) else '0.0'};"
     yield from (f"IF {printer.print(call.wanted)} THEN", *indented(lines), "END_IF")
 
 

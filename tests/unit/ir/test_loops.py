@@ -10,8 +10,9 @@ import sympy as sp
 from numpy.testing import assert_allclose
 from softkin import _array, _scalar
 
-from derive.ir.interpret import run, solve
+from derive.ir.interpret import run
 from derive.ir.passes import hoist, normalise
+from derive.ir.primitives import solve
 from derive.ir.program import Iterate, Let, Output, Program, Require, Solve, Status
 from derive.ir.symbols import real
 from derive.ir.verify import BrokenProgram, verify

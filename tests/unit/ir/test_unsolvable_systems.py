@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from softkin import _array, _scalar
 
-from derive.ir.interpret import solve
+from derive.ir.primitives import solve
 from tests.unit.ir.test_loops import controller
 
 Array = NDArray[np.float64]

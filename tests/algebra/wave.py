@@ -1,0 +1,146 @@
+"""The product of all residuals as a wave in the joint: its coefficients, from values at equal distances.
+
+    W(t) = k_0 + k_1 cos t + l_1 sin t + … + k_d cos d t + l_d sin d t
+
+Multiplied by powers of what its steps divide by, the product is a sum of waves up to some degree d; powers and degree
+are found at poses of random machines, by a Fourier transform. So `2 d + 1` values are enough; a few more tell by how
+much they are rounded: a wave beyond the degree is rounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import sympy as sp
+
+from derive.equations.axes import reference_value
+from derive.ir.interpret import Array, evaluate, run
+from derive.ir.passes import normalise
+from derive.ir.primitives import ToReal, larger
+from derive.ir.program import Iterate, Let, Output, Program, Statement
+from derive.ir.symbols import TRIED, count, real
+from derive.kinematics.sampling import sample_axes, sample_machine
+from derive.kinematics.scan.derivations import Scanned
+from derive.kinematics.scan.programs import GOAL
+from derive.solver.unsolved import Unsolved
+from tests.algebra.closure import trial_of_all_signs
+from tests.algebra.product import Product, product_of
+
+BEGIN = sp.Float("0.1")
+"""The first angle (radians): a round one may be one at which much vanishes."""
+NOISE = real("noise")
+"""Where the wave is smaller, it is rounding."""
+_BEYOND = 2
+"""The number of waves beyond the degree."""
+_MORE, _ROUNDING = 32, sp.Float("1e-14")
+"""The rounding of a value is at most so many times that of a wave beyond the degree, and that share of all waves."""
+_MACHINES, _ANGLES, _MOST_POWERS, _HIGHEST, _NOTHING = 6, 96, 4, 16, 1e-10
+
+
+def names_of(degree: int) -> list[sp.Symbol]:
+    """The names of the coefficients: cosines from 0 to the degree, then sines from 1."""
+    return [*(real(f"wave_cos_{n}") for n in range(degree + 1)), *(real(f"wave_sin_{n}") for n in range(1, degree + 1))]
+
+
+def turned(degree: int, angle: sp.Expr, word: str = "") -> tuple[list[Let], list[sp.Expr], list[sp.Expr]]:
+    """The statements that compute cosines and sines of multiples of an angle, up to the degree, and their names."""
+    c, s = ([real(f"{word}{f}_{n}") for n in range(degree + 1)] for f in ("cos", "sin"))
+    c[0], s[0] = sp.Integer(1), sp.Integer(0)
+    lets = [Let(c[1], sp.cos(angle)), Let(s[1], sp.sin(angle))]
+    for n in range(2, degree + 1):
+        lets += [Let(c[n], c[n - 1] * c[1] - s[n - 1] * s[1]), Let(s[n], s[n - 1] * c[1] + c[n - 1] * s[1])]
+    return lets, c, s
+
+
+def wave_program(both: Scanned) -> tuple[Program, int]:
+    """The program that computes the coefficients, with the bound of their rounding; and the degree."""
+    samples, trial = _samples(both), trial_of_all_signs(both)
+    found = product_of(trial.statements, trial.value, samples)
+    value, degree = _cleared(found, samples)
+    most = degree + _BEYOND
+    points = 2 * most + 1
+    number, names = count("sample"), names_of(most)
+    lets, c, s = turned(most, TRIED)
+    share = sp.Float(2.0 / points)
+    parts = [real("level") * c[0], *(real("taken") * f for f in (*c[1:], *s[1:]))]
+    step: list[Statement] = [
+        Let(TRIED, BEGIN + ToReal(number) * sp.Float(2.0 * np.pi / points)),
+        *found.statements,
+        *lets,
+        Let(real("taken"), share * value),
+        Let(real("level"), real("taken") / 2),
+    ]
+    loop = Iterate(
+        state=(number, *names),
+        start=(sp.Integer(0),) * (1 + len(names)),
+        step=tuple(s for s in step if isinstance(s, Let)),
+        following=(number + 1, *(n + p for n, p in zip(names, parts, strict=True))),
+        done=sp.Ge(number, points),
+        limit=points + 1,
+        otherwise=None,
+        note="the residuals of all branches, multiplied, at equal distances around the circle",
+    )
+    own = names_of(degree)
+    beyond = [n for n in names if n not in own]
+    outputs = [*(Output(n.name, n) for n in own), Output(NOISE.name, NOISE)]
+    program = normalise("compute_wave", (loop, *_noise(own, beyond)), outputs)
+    return replace(
+        program, summary="The product of the residuals of all branches as a sum of waves, and its rounding"
+    ), degree
+
+
+def _noise(own: Sequence[sp.Symbol], beyond: Sequence[sp.Symbol]) -> Iterator[Let]:
+    """The bound of the rounding of the wave."""
+    largest: sp.Expr = real("rounding_0")
+    yield Let(largest, _ROUNDING * sp.Add(*map(sp.Abs, own)))
+    for k, n in enumerate(beyond, 1):
+        yield Let(real(f"rounding_{k}"), larger(_MORE * sp.Abs(n), largest))
+        largest = real(f"rounding_{k}")
+    yield Let(NOISE, largest)
+
+
+def _samples(both: Scanned) -> dict[str, Array]:
+    """Poses of some machines, a row for each, and the joint all around the circle."""
+    mechanism = both.mechanism
+    outputs = [Output(n.name, n) for n in (*map(real, "xyz"), *both.forward.rotation)]
+    program = normalise("pose", both.forward.statements, outputs)
+    rows: list[dict[str, Array]] = []
+    for seed in range(61, 61 + _MACHINES):
+        machine = sample_machine(mechanism, seed)
+        axes = sample_axes(mechanism, machine, 1, seed)
+        pose, _ = run(program, {**machine, **axes})
+        goal = {GOAL[real(n)].name: v for n, v in pose.items() if real(n) in GOAL}
+        held = {reference_value(j).name: np.radians(axes[j.axis.name]) for j in mechanism.joints}
+        rows.append({**machine, **axes, **held, **goal})
+    found = {n: np.array([np.ravel(row[n])[:1] for row in rows], dtype=float) for n in rows[0]}
+    return found | {TRIED.name: 0.1 + 2.0 * np.pi * np.arange(_ANGLES)[None, :] / _ANGLES}
+
+
+def _cleared(found: Product, samples: dict[str, Array]) -> tuple[sp.Expr, int]:
+    """The product times the powers of its divisors that make its degree lowest, and this degree."""
+    known = dict(samples)
+    for let in found.statements:
+        known[let.name.name] = np.asarray(evaluate(let.value, known))
+    value = np.broadcast_to(evaluate(found.value, known), (_MACHINES, _ANGLES))
+    divisors = [np.broadcast_to(known[d.name], value.shape) for d in found.divisors]
+    best: tuple[int, int, tuple[int, ...]] | None = None
+    for powers in product(range(_MOST_POWERS + 1), repeat=len(divisors)):
+        cleared = value * np.prod([d**p for d, p in zip(divisors, powers, strict=True)], axis=0)
+        degree = _degree(cleared)
+        if degree <= _HIGHEST and (best is None or (degree, sum(powers)) < best[:2]):
+            best = (degree, sum(powers), powers)
+    if best is None:
+        raise Unsolved("the residual is no wave of a low degree")
+    factors = [d**p for d, p in zip(found.divisors, best[2], strict=True)]
+    return sp.Mul(found.value, *factors), best[0]
+
+
+def _degree(values: Array) -> int:
+    """The degree of the waves of which the values are the sum; above the highest where they are no such sum."""
+    sizes = np.abs(np.fft.rfft(values, axis=1)) / values.shape[1]
+    largest = sizes.max(axis=1, keepdims=True)
+    present = np.flatnonzero((sizes > _NOTHING * largest).any(axis=0))
+    return int(present.max(initial=0))
