@@ -69,6 +69,11 @@ class Parameter(Quantity):
     """Its value in the machine that is tested, of a deviation: the machine that is drawn and shown has none."""
 
     @property
+    def shown(self) -> tuple[float, float]:
+        """The range that is shown where values are entered."""
+        return self.usual or (self.low, self.high)
+
+    @property
     def tested(self) -> float:
         """The value in the machine that is tested."""
         return self.nominal if self.deviation is None else self.deviation

@@ -152,15 +152,11 @@ def _parameter(parameter: Parameter) -> Iterator[str]:
             yield f"{word!r} cannot name a parameter: letters, digits and _, and no digit first"
     if not _UNIT.match(parameter.unit):
         yield f"parameter {name!r}: {parameter.unit!r} is no unit: letters, digits, / and ^"
-    stated = (
-        parameter.nominal,
-        *_shown(parameter),
-        *(() if parameter.default is None else (parameter.default,)),
-    )
+    stated = (parameter.nominal, *parameter.shown, *(() if parameter.default is None else (parameter.default,)))
     if strange := [value for value in stated if not isinstance(value, int | float)]:
         yield f"parameter {name!r}: {strange[0]!r} is not a number"
         return
-    low, high = _shown(parameter)
+    low, high = parameter.shown
     if not low < high:
         yield f"parameter {name!r}: its range {_interval(parameter)} is empty"
     for word, value in (("nominal value", parameter.nominal), ("default", parameter.default)):
@@ -170,17 +166,13 @@ def _parameter(parameter: Parameter) -> Iterator[str]:
             yield f"parameter {name!r}: its {word} {value:g} is outside its range {_interval(parameter)}"
 
 
-def _shown(parameter: Parameter) -> Interval:
-    return parameter.usual or (parameter.low, parameter.high)
-
-
 def _contains(parameter: Parameter, value: float) -> bool:
-    low, high = _shown(parameter)
+    low, high = parameter.shown
     return low <= value <= high and not (parameter.low_open and value == low)
 
 
 def _interval(parameter: Parameter) -> str:
-    low, high = _shown(parameter)
+    low, high = parameter.shown
     return f"{']' if parameter.low_open else '['}{low:g} .. {high:g}]"
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,7 +11,7 @@ import sympy as sp
 from derive.description.joints import Loop
 from derive.description.mechanism import DescriptionError, Joint, Mechanism
 from derive.drawing.belts import belt_of
-from derive.drawing.labels import Values, axis_name, interface, plain
+from derive.drawing.labels import Values, axis_name, interface, lengths_of, plain
 from derive.drawing.pins import pins_of
 from derive.drawing.scene import Belt, Body, Dimension, Frame, Point, Scene, Segment, Slide, Turn, point
 from derive.geometry.frames import Factor, Motion
@@ -47,6 +47,7 @@ def chain_scene(mechanism: Mechanism, values: Values, tool: Frame) -> Scene:
         grounds=((0.0, 0.0, 0.0),),
         tool=tool,
         hidden=tuple(walker.hidden),
+        loops=tuple(_loops(mechanism)),
         belt=_belt(mechanism, walker),
     )
 
@@ -211,6 +212,16 @@ def _drives(mechanism: Mechanism, values: Values, walker: _Walker) -> list[Slide
             unit: Point = point(total / np.linalg.norm(total))
             found.append(Slide(axis_name(joint), point(walker.position), unit, has_rail=False))
     return found
+
+
+def _loops(mechanism: Mechanism) -> Iterator[tuple[sp.Expr, tuple[sp.Expr, ...]]]:
+    """What every loop moves, and the lengths that it has and no loop before it: there are too many to draw."""
+    left = list(lengths_of(mechanism))
+    for loop in (loop for joint in mechanism.joints for loop in joint.loops):
+        read = loop.vector.free_symbols | sp.sympify(loop.length).free_symbols
+        own = [p for p in left if p.symbol in read]
+        left = [p for p in left if p not in own]
+        yield sp.Symbol(loop.name), tuple(plain(p.symbol) for p in own)
 
 
 def _unsigned(mechanism: Mechanism, amount: sp.Expr) -> sp.Expr:

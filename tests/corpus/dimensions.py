@@ -1,6 +1,9 @@
 """The machines that are asked: dimensions (millimetres, degrees) of every mechanism, and pairs that are coupled."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
 
 _TRIANGLE = {
     "rail_x_1": 0.0,
@@ -152,6 +155,13 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     },
 }  # fmt: skip
 
+CYLINDERS: dict[str, dict[int, tuple[float, float]]] = {
+    "Softkin_Excavator": {1: (600.0, 1300.0), 2: (900.0, 1250.0), 3: (500.0, 850.0)},
+    "Softkin_RodPalletizer": {1: (300.0, 800.0)},
+    "Softkin_ScissorLift": {0: (100.0, 1590.0)},
+}
+"""Lengths of cylinders at which the loops of most machines close: anywhere else hardly any pose is found."""
+
 ALSO: dict[str, tuple[dict[str, float], ...]] = {
     "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": ({"j6_offset_x": 0.0}, {"j6_offset_x": -20.0, "a3": -50.0}),
     "Kin_Ac6_ThreeParallel": ({"d4": 0.0}, {"a3": -425.0, "d4": 0.0}),
@@ -191,3 +201,12 @@ COUPLED: dict[str, tuple[Part, Part]] = {
         ("Kin_Polar_Z", {}), ("Kin_Wrist2", {"tool_length": 90.0, "roll_axis_offset_z": -40.0}),
     ),
 }  # fmt: skip
+
+
+def ends_of(name: str, most: Sequence[float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Between what the axes of a mechanism are drawn: these values on both sides of zero, and lengths of cylinders."""
+    high = np.array(most, float)
+    low = -high
+    for axis, ends in CYLINDERS.get(name, {}).items():
+        low[axis], high[axis] = ends
+    return low, high

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import softkin
 
-from tests.corpus.dimensions import DIMENSIONS
+from tests.corpus.dimensions import CYLINDERS, DIMENSIONS
 from tests.corpus.robots import Robot, robot
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -18,12 +18,6 @@ REGULAR = 0.05
 SHIFTS = (0.0, 1e-9, -1e-5)
 """How far a margin is from zero near a singular pose."""
 DRAWN = 6000
-CYLINDERS = {
-    "Softkin_Excavator": {1: (600.0, 1300.0), 2: (900.0, 1250.0), 3: (500.0, 850.0)},
-    "Softkin_RodPalletizer": {1: (300.0, 800.0)},
-    "Softkin_ScissorLift": {0: (100.0, 1590.0)},
-}
-"""Lengths of cylinders at which the loops of most machines close: anywhere else hardly any pose is found."""
 RIGHT = (0.0, 90.0, -90.0, 180.0, -180.0, 270.0)
 
 

@@ -237,8 +237,8 @@ OF_CLASS = frozenset(
     checks_limits condition configuration configuration_offset deviations diagnose forward forward_batch from_dict
     from_json image_on in_degrees in_radians inverse inverse_all inverse_all_batch inverse_batch inverse_offset
     is_compatible jacobian jacobian_batch limits line manipulability names nearest nearest_batch orientation
-    orientation_image parameters path project singularity singularity_batch to_dict to_json twist with_base
-    with_tool
+    orientation_image parameters path project singularity singularity_batch tilted_plane to_dict to_json twist
+    with_base with_tool
     """.split()
 )
 """The attributes of a class besides its parameters."""

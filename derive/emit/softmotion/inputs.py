@@ -77,7 +77,7 @@ def _range(parameter: Parameter) -> str:
     allowed input is infinite.
     """
     largest = float(LARGEST)
-    least, most = parameter.usual or (parameter.low, parameter.high)
+    least, most = parameter.shown
     left, low = ("]", "-inf") if least <= -largest else ("[", f"{least:g}")
     right, high = ("[", "+inf") if most >= largest else ("]", f"{most:g}")
     return f"{']' if parameter.low_open else left}{low} .. {high}{right}"

@@ -10,6 +10,7 @@ from softkin import Status
 
 from derive.description.mechanism import Mechanism, Role, Turning
 from tests.catalogue.closure import Array, Closure
+from tests.catalogue.driven_machines import DrivenClosure
 from tests.mechanisms import catalogue
 
 EVERYTHING = {m.name: m for _, m in catalogue()}
@@ -67,6 +68,8 @@ def part(mechanism: Mechanism, **given: float) -> Part:
     known = dict(given) if mechanism in ORIENTATIONS else lengths | given
     offsets = {j.offset.name: 3.0 + 2.0 * k for k, j in enumerate(mechanism.joints) if j.domain is None}
     robot = softkin.catalogue()[mechanism.name](**(offsets | known))
+    if mechanism.drives:
+        return Part(mechanism, robot, DrivenClosure(mechanism, robot.parameters, sum(map(abs, lengths.values()))))
     return Part(mechanism, robot, Closure(mechanism, robot.parameters))
 
 
