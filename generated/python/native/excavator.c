@@ -476,30 +476,30 @@ static softkin_status find_limits(const void *machine, const double *axes, softk
   }
   /* limits of S2 */
   if (!(axis_s2 >= k->lowest_s2)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "B: below its lower limit", "u", k->lowest_s2 - axis_s2,
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "S2: below its lower limit", "u", k->lowest_s2 - axis_s2,
         0);
   }
   if (!(axis_s2 <= k->highest_s2)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "B: above its upper limit", "u", axis_s2 - k->highest_s2,
-        0);
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "S2: above its upper limit", "u",
+        axis_s2 - k->highest_s2, 0);
   }
   /* limits of S3 */
   if (!(axis_s3 >= k->lowest_s3)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "C: below its lower limit", "u", k->lowest_s3 - axis_s3,
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "S3: below its lower limit", "u", k->lowest_s3 - axis_s3,
         0);
   }
   if (!(axis_s3 <= k->highest_s3)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "C: above its upper limit", "u", axis_s3 - k->highest_s3,
-        0);
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "S3: above its upper limit", "u",
+        axis_s3 - k->highest_s3, 0);
   }
   /* limits of S4 */
   if (!(axis_s4 >= k->lowest_s4)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "D: below its lower limit", "u", k->lowest_s4 - axis_s4,
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "S4: below its lower limit", "u", k->lowest_s4 - axis_s4,
         0);
   }
   if (!(axis_s4 <= k->highest_s4)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "D: above its upper limit", "u", axis_s4 - k->highest_s4,
-        0);
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "S4: above its upper limit", "u",
+        axis_s4 - k->highest_s4, 0);
   }
   return SOFTKIN_OK;
 }

@@ -425,20 +425,20 @@ static softkin_status find_limits(const void *machine, const double *axes, softk
   }
   /* limits of S2 */
   if (!(axis_s2 >= k->lowest_s2)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "B: below its lower limit", "u", k->lowest_s2 - axis_s2,
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "S2: below its lower limit", "u", k->lowest_s2 - axis_s2,
         0);
   }
   if (!(axis_s2 <= k->highest_s2)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "B: above its upper limit", "u", axis_s2 - k->highest_s2,
-        0);
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "S2: above its upper limit", "u",
+        axis_s2 - k->highest_s2, 0);
   }
   /* limits of M3 */
   if (!(axis_m3 >= k->lowest_m3)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "C: below its lower limit", "deg",
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "M3: below its lower limit", "deg",
         k->lowest_m3 - axis_m3, 0);
   }
   if (!(axis_m3 <= k->highest_m3)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "C: above its upper limit", "deg",
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "M3: above its upper limit", "deg",
         axis_m3 - k->highest_m3, 0);
   }
   return SOFTKIN_OK;

@@ -187,12 +187,12 @@ static softkin_status find_limits(const void *machine, const double *axes, softk
   }
   /* limits of S1 */
   if (!(axis_s1 >= k->lowest_s1)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "H: below its lower limit", "u", k->lowest_s1 - axis_s1,
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "S1: below its lower limit", "u", k->lowest_s1 - axis_s1,
         0);
   }
   if (!(axis_s1 <= k->highest_s1)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "H: above its upper limit", "u", axis_s1 - k->highest_s1,
-        0);
+    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "S1: above its upper limit", "u",
+        axis_s1 - k->highest_s1, 0);
   }
   return SOFTKIN_OK;
 }

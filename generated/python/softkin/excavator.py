@@ -263,7 +263,7 @@ class Excavator(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Excavator"
-    KEY = "excavator 44b3b54254d2f9ef"
+    KEY = "excavator a6681b058eaa33a1"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Swing about Z", multi_turn=True),
         Axis(name="S2", kind="linear", unit="u", meaning="Cylinder of the boom: its length", multi_turn=False),
@@ -879,11 +879,11 @@ class Excavator(Mechanism):
         if not lowest_a1 <= axis_a1 <= highest_a1:
             return beyond_turn("A1", axis_a1, lowest_a1, highest_a1)
         if not lowest_s2 <= axis_s2 <= highest_s2:
-            return beyond("B", axis_s2, lowest_s2, highest_s2, "u")
+            return beyond("S2", axis_s2, lowest_s2, highest_s2, "u")
         if not lowest_s3 <= axis_s3 <= highest_s3:
-            return beyond("C", axis_s3, lowest_s3, highest_s3, "u")
+            return beyond("S3", axis_s3, lowest_s3, highest_s3, "u")
         if not lowest_s4 <= axis_s4 <= highest_s4:
-            return beyond("D", axis_s4, lowest_s4, highest_s4, "u")
+            return beyond("S4", axis_s4, lowest_s4, highest_s4, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:

@@ -169,7 +169,7 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_RodPalletizer"
-    KEY = "rodpalletizer ae4b86efc1ad8f90"
+    KEY = "rodpalletizer e1889874a996966f"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="S2", kind="linear", unit="u", meaning="Cylinder of the rear arm: its length", multi_turn=False),
@@ -1040,9 +1040,9 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
         if not lowest_a4 <= axis_a4 <= highest_a4:
             return beyond_turn("A4", axis_a4, lowest_a4, highest_a4)
         if not lowest_s2 <= axis_s2 <= highest_s2:
-            return beyond("B", axis_s2, lowest_s2, highest_s2, "u")
+            return beyond("S2", axis_s2, lowest_s2, highest_s2, "u")
         if not lowest_m3 <= axis_m3 <= highest_m3:
-            return beyond("C", axis_m3, lowest_m3, highest_m3, "deg")
+            return beyond("M3", axis_m3, lowest_m3, highest_m3, "deg")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:

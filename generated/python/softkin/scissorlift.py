@@ -75,7 +75,7 @@ class ScissorLift(OffsetKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_ScissorLift"
-    KEY = "scissorlift 97d91c44b3095980"
+    KEY = "scissorlift 1cb95c04d333b424"
     AXES = (
         Axis(name="S1", kind="linear", unit="u", meaning="Cylinder: fixed lower pin to the rollers", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Table about Z", multi_turn=True),
@@ -252,7 +252,7 @@ class ScissorLift(OffsetKinematics, TwistChoice):
         if not lowest_a2 <= axis_a2 <= highest_a2:
             return beyond_turn("A2", axis_a2, lowest_a2, highest_a2)
         if not lowest_s1 <= axis_s1 <= highest_s1:
-            return beyond("H", axis_s1, lowest_s1, highest_s1, "u")
+            return beyond("S1", axis_s1, lowest_s1, highest_s1, "u")
         return None
 
     def _singularity(self, axes: Reals) -> Reals | Status:
