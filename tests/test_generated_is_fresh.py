@@ -38,8 +38,8 @@ def test_every_mechanism_agrees(entry: Entry, generation: Generation) -> None:
         assert found.solutions >= 8
         assert found.missed is not None
         assert found.missed[0] <= found.missed[1] / 100
-    elif not entry[1].rods:  # fewer poses are regular where loops must close, and near the edge of an inclined axis
-        assert 100 <= evidence.poses <= 144
+    elif not entry[1].rods and not entry[1].drives:  # some poses are at the edge of what an inclined axis reaches
+        assert 130 <= evidence.poses <= 144
         assert found.solutions == 2 ** len(entry[1].branches)
     else:  # random dimensions may form no loop, and some working modes lie on the other assembly side
         assert evidence.poses >= 72

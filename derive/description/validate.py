@@ -310,9 +310,7 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
         *((f"bar {bar.name!r}", e) for bar in mechanism.bars for e in (*bar.base, *bar.plate, bar.length)),
     ]
     for place, expression in named:
-        hint = "; or state the loop that moves it: drives=(driven(...),)" if place == "chain" else ""
-        unknown = _unknown(place, expression, known, "a joint or a parameter of this mechanism")
-        yield from (f"{problem}{hint}" for problem in unknown)
+        yield from _unknown(place, expression, known, "a joint or a parameter of this mechanism")
     for branch in mechanism.branches:
         if not branch.is_crossing and not joints & branch.indicator.free_symbols:
             yield f"branch {branch.name!r}: its indicator {branch.indicator} depends on no joint"
