@@ -1,9 +1,6 @@
 """The machines that are asked: dimensions (millimetres, degrees) of every mechanism, and pairs that are coupled."""
 
-from collections.abc import Mapping, Sequence
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Mapping
 
 _TRIANGLE = {
     "rail_x_1": 0.0,
@@ -61,23 +58,6 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     "Softkin_Palletizer": {
         "base_height": 320.0, "shoulder_offset": 80.0, "link_length_1": 300.0, "link_length_2": 350.0,
         "wrist_offset_x": 60.0, "wrist_offset_z": -90.0,
-    },
-    "Softkin_Excavator": {
-        "boom_foot_x": 300.0, "boom_foot_z": 800.0, "boom_length": 1800.0, "stick_length": 1100.0,
-        "bucket_length": 600.0, "boom_cylinder_base_x": 250.0, "boom_cylinder_base_z": -350.0,
-        "boom_cylinder_eye_x": 900.0, "boom_cylinder_eye_z": -150.0, "stick_cylinder_base_x": -1000.0,
-        "stick_cylinder_base_z": 350.0, "stick_cylinder_eye_x": -250.0, "stick_cylinder_eye_z": 100.0,
-        "bucket_cylinder_base_x": -900.0, "bucket_cylinder_base_z": 200.0, "rocker_pivot_x": -220.0,
-        "rocker_length": 200.0, "rod_length": 276.0, "bucket_ear_x": -60.0, "bucket_ear_z": 140.0,
-    },
-    "Softkin_RodPalletizer": {
-        "base_height": 500.0, "shoulder_offset": 150.0, "link_length_1": 700.0, "link_length_2": 800.0,
-        "wrist_offset_x": 120.0, "wrist_offset_z": -90.0, "cylinder_base_x": -420.0, "cylinder_base_z": 60.0,
-        "cylinder_eye": 380.0, "crank_base_x": 350.0, "crank_base_z": -300.0, "crank_length": 180.0,
-        "rod_length": 308.0, "lever_length": 220.0,
-    },
-    "Softkin_ScissorLift": {
-        "beam_length": 1600.0, "table_height": 120.0,
     },
     "Softkin_ScaraOnRail": {"link_length_1": 325.0, "link_length_2": 225.0},
     "Softkin_SkewGantry3": {"skew": 78.0},
@@ -155,13 +135,6 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     },
 }  # fmt: skip
 
-CYLINDERS: dict[str, dict[int, tuple[float, float]]] = {
-    "Softkin_Excavator": {1: (600.0, 1300.0), 2: (900.0, 1250.0), 3: (500.0, 850.0)},
-    "Softkin_RodPalletizer": {1: (300.0, 800.0)},
-    "Softkin_ScissorLift": {0: (100.0, 1590.0)},
-}
-"""Lengths of cylinders at which the loops of most machines close: anywhere else hardly any pose is found."""
-
 ALSO: dict[str, tuple[dict[str, float], ...]] = {
     "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": ({"j6_offset_x": 0.0}, {"j6_offset_x": -20.0, "a3": -50.0}),
     "Kin_Ac6_ThreeParallel": ({"d4": 0.0}, {"a3": -425.0, "d4": 0.0}),
@@ -201,12 +174,3 @@ COUPLED: dict[str, tuple[Part, Part]] = {
         ("Kin_Polar_Z", {}), ("Kin_Wrist2", {"tool_length": 90.0, "roll_axis_offset_z": -40.0}),
     ),
 }  # fmt: skip
-
-
-def ends_of(name: str, most: Sequence[float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Between what the axes of a mechanism are drawn: these values on both sides of zero, and lengths of cylinders."""
-    high = np.array(most, float)
-    low = -high
-    for axis, ends in CYLINDERS.get(name, {}).items():
-        low[axis], high[axis] = ends
-    return low, high

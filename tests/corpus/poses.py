@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import softkin
 
-from tests.corpus.dimensions import CYLINDERS, DIMENSIONS
-from tests.corpus.robots import Robot, robot
+from tests.corpus.robots import Robot
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Axes = tuple[float, ...]
@@ -91,13 +90,7 @@ def _possible(one: Robot, rng: np.random.Generator) -> Iterator[Axes]:
 
 def _any(one: Robot, count: int, rng: np.random.Generator) -> Array:
     size = np.where(one.is_angle, 178.0, one.reach)
-    drawn = rng.uniform(-1.0, 1.0, (count, len(size)))
-    for axis, (low, high) in CYLINDERS.get(one.recipe[0]["name"], {}).items():
-        unit = (
-            one.reach / robot([{"name": one.recipe[0]["name"], "parameters": DIMENSIONS[one.recipe[0]["name"]]}]).reach
-        )
-        drawn[:, axis] = (low + high + (high - low) * drawn[:, axis]) / 2.0 * unit / size[axis]
-    return drawn * size
+    return rng.uniform(-1.0, 1.0, (count, len(size))) * size
 
 
 def _about_home(one: Robot, rng: np.random.Generator) -> Iterator[Axes]:

@@ -11,7 +11,7 @@ import numpy as np
 import softkin
 from softkin import Frame, KinematicsError, Mechanism
 
-from tests.corpus.dimensions import DIMENSIONS, ends_of
+from tests.corpus.dimensions import DIMENSIONS
 
 NAMES = tuple(DIMENSIONS)
 SOME = ("Kin_ArticulatedRobot_6DOF", "Kin_Scara4_ZCcoupled_Type1", "Kin_Delta_P3C_Type3", "Kin_Hexapod", "Kin_Wrist2",
@@ -73,8 +73,8 @@ def _drawn(robot: Mechanism, name: str, random: np.random.Generator) -> tuple[fl
         tilt = 5.0 if robot.FREEDOM == "three" else 0.0
         return tuple(robot.inverse(Frame.from_euler(random.uniform(-5.0, 5.0), tilt, 0.0, place)))
     size = sum(abs(v) for k, v in given.items() if not k.startswith(("offset", "lower", "upper"))) or 500.0
-    low, high = ends_of(name, [170.0 if axis.unit == "deg" else 0.4 * size for axis in robot.AXES])
-    return tuple(random.uniform(low, high).tolist())
+    most = np.array([170.0 if axis.unit == "deg" else 0.4 * size for axis in robot.AXES])
+    return tuple(random.uniform(-most, most).tolist())
 
 
 def outcome(call: Callable[..., Any], *given: Any) -> Any:

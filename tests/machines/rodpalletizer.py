@@ -1,4 +1,4 @@
-"""Softkin_RodPalletizer: a palletizer whose rear arm a cylinder moves, and whose forearm a crank with a rod."""
+"""RodPalletizer: a palletizer whose rear arm a cylinder moves, and whose forearm a crank with a rod."""
 
 from sympy import cos, sin
 
@@ -44,7 +44,7 @@ A4 = rotary("A4", "Flange about Z")
 OUT = BESIDE + L1 * sin(REAR) + L2 * cos(FOREARM) + WRIST
 
 MECHANISM = Mechanism(
-    name="Softkin_RodPalletizer",
+    name="RodPalletizer",
     vendor=Vendor.TEXTBOOK,
     family="articulated",
     source="palletizing robots with linear drives and rods",
