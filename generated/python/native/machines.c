@@ -50,7 +50,6 @@
 #include "scara4_zccoupled_type1.h"
 #include "scaraonrail.h"
 #include "sccc.h"
-#include "skewgantry3.h"
 #include "tabletable_ac.h"
 #include "tabletable_bc.h"
 #include "tgantry2.h"
@@ -133,7 +132,6 @@ softkin_regular scara4_zccoupled_type1_regular;
 softkin_regular_all scara4_zccoupled_type1_regular_all;
 softkin_regular scaraonrail_regular;
 softkin_regular_all scaraonrail_regular_all;
-softkin_regular skewgantry3_regular;
 softkin_regular tabletable_ac_regular;
 softkin_regular_all tabletable_ac_regular_all;
 softkin_regular tabletable_bc_regular;
@@ -212,7 +210,6 @@ const softkin_native softkin_machines[] = {
         {scara4_zccoupled_type1_regular, scara4_zccoupled_type1_regular_all}},
     {"scaraonrail a59e29ec1fc13d4d", &scaraonrail_mechanism, {scaraonrail_regular, scaraonrail_regular_all}},
     {"sccc 44de60f530721870", &sccc_mechanism, {NULL, NULL}},
-    {"skewgantry3 2c8fd2425da162a5", &skewgantry3_mechanism, {skewgantry3_regular, NULL}},
     {"tabletable_ac 6909ab958c9b1d87", &tabletable_ac_mechanism,
         {tabletable_ac_regular, tabletable_ac_regular_all}},
     {"tabletable_bc 9e35af7c68b68092", &tabletable_bc_mechanism,
