@@ -82,8 +82,8 @@ function chainOf({ factors, loops = [] }, values) {
     const frame = { position: line[0], rotation: frameAlong(axis) };
     bodies.push({ name: loop.name, kind: "rod", joints: loop.joints, frame, lines: [line] });
     if (loop.cylinder) {
-      joints.push({ joints: [loop.cylinder], kind: "slide", at: times(0.5, plus(...line)), axis, body: bodies.length - 1,
-        travel: sizeOf(minus(line[1], line[0])) });
+      const slide = { joints: [loop.cylinder], kind: "slide", at: times(0.5, plus(...line)), axis };
+      joints.push({ ...slide, body: bodies.length - 1, travel: sizeOf(minus(line[1], line[0])) });
     }
     const arms = [start, tip].flatMap((pins) => pins.slice(1).map((pin, i) => [pins[i], pin]));
     const lever = { name: `levers of ${loop.name}`, kind: "link", joints: loop.joints, frame, lines: arms };
