@@ -1,4 +1,6 @@
-"""Searched arms, solved by algebra: all roots of a wave, as the truth about what the scan of the product finds.
+"""Searched arms, solved by algebra: all roots of a wave, a second way beside the scan of the compiler.
+
+Both share the trial, which solves the other joints where one is known; how its roots are found is not shared.
 
 The residual of a trial, multiplied over the signs of all roots, is a wave in the searched joint, of degree 8 for six
 turning axes. So its zeros can be found without a gap: nothing that is a solution is missed.

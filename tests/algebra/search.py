@@ -26,8 +26,6 @@ from tests.algebra.parts import AT, END, HIGH, IS_PART, LOW, MOST_STEPS, STEPS, 
 from tests.algebra.settle import NUMBER, REMAINS, SETTLED, next_number, settle_program, try_program
 from tests.algebra.wave import BEGIN, wave_program
 
-FIND_ROOT = "find_root"
-"""The name of the program."""
 ONWARD = flag("onward")
 """Whether the next root ahead of the start is wanted, not the nearest one."""
 AWAY = real("away")
@@ -39,8 +37,6 @@ AHEAD = sp.Float("1e-7")
 symmetric about its start, roots are as far to both sides, and rounding would choose, in every language another one.
 The next root ahead is further away than this.
 """
-ELSEWHERE = sp.Float("2.5")
-"""All roots are found onward from so far ahead of the reference, which may be a root."""
 _NEAR = sp.Float("1e-3")
 """The closure is met only from where the residual of the branch is at most this."""
 _TURN = 2 * sp.pi
@@ -89,7 +85,7 @@ def search_program(
         Output(AWAY.name, Select(sp.Lt(NEAREST, _FAR), NEAREST, _ZERO)),
     ]
     outputs += [Output(f"found_{j.name}", _kept(j)) for j in every]
-    program = normalise(FIND_ROOT, (*before, loop), outputs)
+    program = normalise("find_root", (*before, loop), outputs)
     return replace(
         program, summary="The joints at the root nearest to the start, or next ahead of it; zeros where there is none"
     )

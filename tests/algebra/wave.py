@@ -45,9 +45,9 @@ def names_of(degree: int) -> list[sp.Symbol]:
     return [*(real(f"wave_cos_{n}") for n in range(degree + 1)), *(real(f"wave_sin_{n}") for n in range(1, degree + 1))]
 
 
-def turned(degree: int, angle: sp.Expr, word: str = "") -> tuple[list[Let], list[sp.Expr], list[sp.Expr]]:
+def turned(degree: int, angle: sp.Expr) -> tuple[list[Let], list[sp.Expr], list[sp.Expr]]:
     """The statements that compute cosines and sines of multiples of an angle, up to the degree, and their names."""
-    c, s = ([real(f"{word}{f}_{n}") for n in range(degree + 1)] for f in ("cos", "sin"))
+    c, s = ([real(f"{f}_{n}") for n in range(degree + 1)] for f in ("cos", "sin"))
     c[0], s[0] = sp.Integer(1), sp.Integer(0)
     lets = [Let(c[1], sp.cos(angle)), Let(s[1], sp.sin(angle))]
     for n in range(2, degree + 1):
